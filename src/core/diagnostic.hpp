@@ -1,0 +1,82 @@
+// What is wrong with the user's text or data, as a value: collected by the stages, rendered once at the end.
+// Wording lives in the file that owns the stage's messages (check/errors.cpp, data/errors.cpp, grammar/errors.cpp), never at the place of detection.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/source.hpp"
+
+namespace sysid {
+
+enum class Severity { error, warning, note };
+
+/// A place with a few words under its carets ("[N/m]").
+struct Label {
+  Span span;
+  std::string text;
+};
+
+struct Diagnostic {
+  Severity severity = Severity::error;
+  std::string code;                 // "E2103"; E1 syntax, E2 names, types and units, E3 system, E4 data, E5 numerics, E6 inference
+  std::string message;              // lower case, no full stop
+  std::optional<Label> primary;     // absent: the message concerns no place in the text
+  std::vector<Label> secondary;     // where two places conflict
+  std::string help;                 // what to do; may be empty
+};
+
+/// Collects diagnostics of one source, in the order of detection.
+class Diagnostics {
+ public:
+  void add(Diagnostic diagnostic) { all_.push_back(std::move(diagnostic)); }
+  bool has_errors() const;
+  std::vector<Diagnostic> const& all() const { return all_; }
+
+ private:
+  std::vector<Diagnostic> all_;
+};
+
+/// `file:line:col: error[E2103]: message`, the line with carets, `help:` and `more:` lines. Sorted by place; the first 20 errors.
+/// colour: ANSI colours.
+std::string render(Diagnostics const& diagnostics, Source const& source, bool colour = false);
+std::string render(Diagnostic const& diagnostic, Source const& source, bool colour = false);
+
+/// Up to three of `known` nearest to `text` by edit distance, nearest first; empty when none is near enough.
+std::vector<std::string> nearest(std::string_view text, std::vector<std::string> const& known);
+
+/// "did you mean `a`, `b` or `c`?", or empty.
+std::string did_you_mean(std::string_view text, std::vector<std::string> const& known);
+
+/// A fault of ours: caught by the program's entry, which asks for the file and exits with 70.
+class InternalError : public std::exception {
+ public:
+  explicit InternalError(std::string what) : what_(std::move(what)) {}
+  char const* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
+};
+
+/// The user's data or request cannot be served; carries its diagnostic through code that has no Diagnostics at hand.
+class UserError : public std::exception {
+ public:
+  explicit UserError(Diagnostic diagnostic) : diagnostic_(std::move(diagnostic)) {}
+  Diagnostic const& diagnostic() const { return diagnostic_; }
+  char const* what() const noexcept override { return diagnostic_.message.c_str(); }
+
+ private:
+  Diagnostic diagnostic_;
+};
+
+/// A file that cannot be read or written: exit code 74.
+class IoError : public std::exception {
+ public:
+  explicit IoError(std::string what) : what_(std::move(what)) {}
+  char const* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
+};
+
+}  // namespace sysid

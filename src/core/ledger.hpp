@@ -1,0 +1,38 @@
+// The failure ledger: every failed solve has a class and a place, is counted and reported; failures are results, not hidden state.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sysid {
+
+enum class FailureClass { non_finite, step_limit, domain };
+
+struct Failure {
+  FailureClass kind = FailureClass::non_finite;
+  std::string where;           // the sub-expression in the user's words, e.g. "k3*y^3 at duffing.sysid:12"
+  std::uint64_t count = 0;
+  double time = 0;             // of the first example [s]
+  std::vector<double> example; // its parameters, declared units, in the order of Target::names
+};
+
+class Ledger {
+ public:
+  void add_solves(std::uint64_t count) { solves_ += count; }
+  /// Counts a failure; `example` and `time` are kept for the first one of its (kind, where).
+  void add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example, std::uint64_t count = 1);
+  /// Adds another ledger's counts; merging in a fixed order gives the same ledger for any number of threads.
+  void merge(Ledger const& other);
+
+  std::uint64_t solves() const { return solves_; }
+  std::uint64_t failed() const;
+  std::vector<Failure> const& failures() const { return failures_; }
+
+ private:
+  std::uint64_t solves_ = 0;
+  std::vector<Failure> failures_;
+};
+
+std::string name(FailureClass kind);
+
+}  // namespace sysid

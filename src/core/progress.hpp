@@ -1,0 +1,25 @@
+// How far a long job is, told to whoever shows it; jobs know this interface, never the terminal.
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+namespace sysid {
+
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  virtual void begin(std::string_view what, std::uint64_t total) = 0;
+  /// done: units of `total` finished so far; note: a few words of the current state ("acceptance 0.24").
+  virtual void advance(std::uint64_t done, std::string_view note) = 0;
+  virtual void end() = 0;
+};
+
+/// Shows nothing.
+class SilentProgress : public Progress {
+ public:
+  void begin(std::string_view, std::uint64_t) override {}
+  void advance(std::uint64_t, std::string_view) override {}
+  void end() override {}
+};
+
+}  // namespace sysid

@@ -1,0 +1,45 @@
+// Named settings of a back end or task: a table says what there is; the checker refuses the rest by name; a Settings holds the values.
+#pragma once
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace sysid {
+
+enum class SettingKind { integer, real, word, flag };
+
+struct SettingRow {
+  std::string_view name;
+  SettingKind kind;
+  std::string_view fallback;     // the default, as the user would write it
+  double minimum;                // smallest allowed number, inclusive (integer, real)
+  double maximum;                // largest allowed number, inclusive
+  std::string_view choices;      // for a word: "adaptive spherical", separated by blanks
+  std::string_view summary;      // one line for `sysid list` and the docs
+};
+
+using SettingValue = std::variant<std::int64_t, double, std::string, bool>;
+
+/// Values by name; every row of the table has one, given or default.
+class Settings {
+ public:
+  Settings() = default;
+  /// All defaults of the table.
+  explicit Settings(std::span<SettingRow const> rows);
+
+  void set(std::string const& name, SettingValue value) { values_[name] = std::move(value); }
+  std::int64_t integer(std::string const& name) const;
+  double real(std::string const& name) const;
+  std::string const& word(std::string const& name) const;
+  bool flag(std::string const& name) const;
+  std::map<std::string, SettingValue> const& all() const { return values_; }
+
+ private:
+  SettingValue const& at(std::string const& name) const;
+  std::map<std::string, SettingValue> values_;
+};
+
+}  // namespace sysid

@@ -1,0 +1,52 @@
+// Units of measurement as values: a dimension over the seven SI bases, a scale to the coherent SI unit and, for temperatures, an offset.
+// Unit *expressions* are parsed by the language; this file knows atoms (through UDUNITS-2) and their algebra.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sysid {
+
+/// Exact small fraction, for exponents such as 1/2. Always reduced, denominator > 0.
+struct Rational {
+  int numerator = 0;
+  int denominator = 1;
+  friend bool operator==(Rational const&, Rational const&) = default;
+};
+Rational operator+(Rational a, Rational b);
+Rational operator-(Rational a, Rational b);
+Rational operator*(Rational a, Rational b);
+/// The fraction equal to x with a denominator up to 64, or nothing.
+std::optional<Rational> to_rational(double x);
+
+/// kg, m, s, A, K, mol, cd. Plane angle is dimensionless, as in the SI.
+using Dimension = std::array<Rational, 7>;
+
+struct Unit {
+  Dimension dimension{};
+  double scale = 1;      // 1 of this unit = scale coherent SI units
+  double offset = 0;     // zero of this unit, in coherent SI units: 273.15 for degC
+  std::string text;      // as the user wrote it, without brackets; empty for a derived unit
+
+  bool dimensionless() const { return dimension == Dimension{}; }
+};
+
+/// A unit name with an optional SI prefix ("N", "mm", "percent", "degC", "-" for dimensionless), or nothing when unknown.
+std::optional<Unit> unit_atom(std::string_view name);
+/// Names near a misspelt atom, for "did you mean".
+std::vector<std::string> const& common_unit_names();
+
+Unit multiply(Unit const& a, Unit const& b);
+Unit divide(Unit const& a, Unit const& b);
+Unit power(Unit const& a, Rational exponent);
+
+/// The number in unit `to` of the quantity that is `value` in unit `from`, offsets applied (20 degC = 293.15 K).
+/// Dimensions must agree (the caller has checked).
+double convert(double value, Unit const& from, Unit const& to);
+
+/// Canonical SI text: "kg m/s^2"; "1" when dimensionless.
+std::string format_dimension(Dimension const& dimension);
+
+}  // namespace sysid

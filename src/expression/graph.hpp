@@ -1,0 +1,122 @@
+// Mathematical expressions as a hash-consed graph: equal sub-expressions are one node, constants fold as they are built.
+// The checker builds models of it, order reduction solves in it, the program stage compiles from it. It knows no text, only spans.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "core/source.hpp"
+
+namespace sysid {
+
+/// Index of a node in its Graph. Operands come before their users, so a pass over increasing ids is a topological order.
+using NodeId = std::uint32_t;
+
+struct Function;  // expression/function.hpp
+
+enum class Operation : std::uint8_t {
+  // leaves
+  constant,      // value
+  leaf,          // leaf_kind, index, stage
+  // arithmetic
+  negate, add, subtract, multiply, divide,
+  power,         // a^b
+  fused,         // a*b + c, rounded once; introduced by the program stage only
+  square_root, absolute, sign, minimum, maximum, floor,
+  // conditions are 1 or 0
+  less, less_equal, equal, conjunction, disjunction, negation,
+  select,        // a ? b : c
+  call,          // one or two arguments, `function` says which
+};
+
+enum class LeafKind : std::uint8_t {
+  parameter,      // declared value, coherent SI
+  unconstrained,  // sampler's coordinate
+  state,          // of the first-order system
+  input,          // at the current time
+  input_rate,     // its time derivative
+  time,
+  measured,       // the channel's sample at the current time
+  unknown,        // a highest derivative still to be solved for, or a place holder of a symbolic pass
+  step_size,      // h of the integrator
+};
+
+/// Place within one integrator step where an input or time leaf is read: its begin, middle or end. Equations use `begin`.
+enum class Stage : std::uint8_t { begin, middle, end };
+
+struct Node {
+  Operation operation = Operation::constant;
+  LeafKind leaf_kind = LeafKind::parameter;
+  Stage stage = Stage::begin;
+  std::int32_t index = 0;
+  double value = 0;
+  Function const* function = nullptr;
+  NodeId a = 0, b = 0, c = 0;
+};
+
+class Graph {
+ public:
+  // Building. Constants fold, neutral elements vanish (x + 0, x*1, x/1, x^1, --x; x*0 is 0), operands of commutative
+  // operations are put in one order. Nothing else is rewritten here: heavier algebra belongs to the program stage.
+  NodeId constant(double value);
+  NodeId leaf(LeafKind kind, int index = 0, Stage stage = Stage::begin);
+  NodeId negate(NodeId a);
+  NodeId add(NodeId a, NodeId b);
+  NodeId subtract(NodeId a, NodeId b);
+  NodeId multiply(NodeId a, NodeId b);
+  NodeId divide(NodeId a, NodeId b);
+  NodeId power(NodeId a, NodeId b);
+  NodeId fused(NodeId a, NodeId b, NodeId c);
+  NodeId unary(Operation operation, NodeId a);                // square_root, absolute, sign, floor, negation
+  NodeId binary(Operation operation, NodeId a, NodeId b);     // minimum, maximum, comparisons, conjunction, disjunction
+  NodeId select(NodeId condition, NodeId then, NodeId otherwise);
+  NodeId call(Function const& function, NodeId a);
+  NodeId call(Function const& function, NodeId a, NodeId b);
+  /// The same operation as `node` on other operands.
+  NodeId rebuild(Node const& node, NodeId a, NodeId b, NodeId c);
+
+  // Looking.
+  Node const& operator[](NodeId id) const { return nodes_[id]; }
+  std::size_t size() const { return nodes_.size(); }
+  /// 0 to 3.
+  int operand_count(NodeId id) const;
+  std::optional<double> constant_value(NodeId id) const;
+  bool is_constant(NodeId id, double value) const;
+  /// Whether any leaf below `root` satisfies the predicate.
+  bool depends(NodeId root, std::function<bool(Node const&)> const& predicate) const;
+  /// All nodes below the roots, each once, in topological order.
+  std::vector<NodeId> reachable(std::span<NodeId const> roots) const;
+
+  // Where a node came from, for messages about it; the first span given stays.
+  void set_span(NodeId id, Span span);
+  std::optional<Span> span(NodeId id) const;
+
+  // Symbolic work.
+  /// d(root)/d(leaf). sign, floor, comparisons have derivative 0; absolute x: sign(x); min, max, select: by branch.
+  NodeId differentiate(NodeId root, NodeId leaf);
+  /// `root` with every leaf replaced by `replacement(leaf id)`; nothing keeps the leaf.
+  NodeId substitute(NodeId root, std::function<std::optional<NodeId>(NodeId)> const& replacement);
+  std::vector<NodeId> substitute(std::span<NodeId const> roots, std::function<std::optional<NodeId>(NodeId)> const& replacement);
+  /// The value of `root` with leaf values from `value_of(leaf id)`; the reference for every executor.
+  double evaluate(NodeId root, std::function<double(NodeId)> const& value_of) const;
+  std::vector<double> evaluate(std::span<NodeId const> roots, std::function<double(NodeId)> const& value_of) const;
+
+  /// Infix text; leaf names from `name_of(leaf id)`.
+  std::string format(NodeId root, std::function<std::string(NodeId)> const& name_of) const;
+
+ private:
+  NodeId intern(Node node);
+  std::vector<Node> nodes_;
+  std::vector<Span> spans_;  // begin == end: none
+  std::unordered_map<std::uint64_t, std::vector<NodeId>> index_;
+};
+
+/// The value of one operation on operand values: what folding, `evaluate` and the executors agree on, bit for bit.
+/// sign(0) = 0; minimum and maximum return the other operand if one is NaN only by the rule (a < b ? a : b), (a > b ? a : b).
+double apply(Node const& node, double a, double b, double c);
+
+}  // namespace sysid

@@ -1,0 +1,29 @@
+// Convergence diagnostics after Vehtari, Gelman, Simpson, Carpenter and Buerkner (2021): rank-normalised split R-hat, bulk and tail
+// effective sample size, Monte Carlo standard error. Equal to the R package `posterior` on recorded draws.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sysid {
+
+/// draws[c][i]: chain c, iteration i; all chains of one length.
+using ChainValues = std::vector<std::vector<double>>;
+
+/// NaN for constant or non-finite draws, as `posterior` returns NA.
+double rhat(ChainValues const& draws);
+double ess_bulk(ChainValues const& draws);
+double ess_tail(ChainValues const& draws);
+double ess_mean(ChainValues const& draws);
+double mcse_mean(ChainValues const& draws);
+
+struct Summary {
+  std::string name, unit;
+  double mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail, mcse_mean;
+};
+Summary summarise(std::string name, std::string unit, ChainValues const& draws);
+
+/// Quantile of type 7 (R's default), draws need not be sorted.
+double quantile(std::vector<double> draws, double probability);
+
+}  // namespace sysid

@@ -1,0 +1,300 @@
+// The syntax tree: what the user wrote, in the user's order, with places. No meaning is attached here.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/source.hpp"
+
+namespace sysid::ast {
+
+/// A value on the heap with value semantics: deep copies, deep equality. Lets a variant hold itself.
+template <class T>
+class Box {
+ public:
+  Box() : value_(std::make_unique<T>()) {}
+  Box(T value) : value_(std::make_unique<T>(std::move(value))) {}
+  Box(Box const& other) : value_(std::make_unique<T>(*other.value_)) {}
+  Box(Box&&) noexcept = default;
+  Box& operator=(Box const& other) { return *this = Box(other); }
+  Box& operator=(Box&&) noexcept = default;
+  T& operator*() { return *value_; }
+  T const& operator*() const { return *value_; }
+  T* operator->() { return value_.get(); }
+  T const* operator->() const { return value_.get(); }
+  friend bool operator==(Box const& a, Box const& b) { return *a == *b; }
+
+ private:
+  std::unique_ptr<T> value_;
+};
+
+// Spans take no part in equality: parse(unparse(tree)) == tree.
+struct Located {
+  Span span;
+  friend bool operator==(Located const&, Located const&) { return true; }
+};
+
+struct Name : Located {
+  std::string text;
+  friend bool operator==(Name const&, Name const&) = default;
+};
+
+struct Expression;
+struct UnitExpression;
+
+/// `m`, `s^2`, `s^-1`, `N^(1-n)`, `(m s)`: an atom or a group, a power, and whether a `/` stands before it.
+struct UnitFactor : Located {
+  std::variant<Name, Box<UnitExpression>> base;     // Name "1" for the digit 1
+  std::optional<Box<Expression>> exponent;
+  bool reciprocal = false;
+  friend bool operator==(UnitFactor const&, UnitFactor const&) = default;
+};
+
+/// What stands between `[` and `]`: `[N s/m]`, `[1/m^2]`, `[-]`. Blank and `*` multiply; `/` divides by the next factor only.
+struct UnitExpression : Located {
+  std::vector<UnitFactor> factors;
+  friend bool operator==(UnitExpression const&, UnitExpression const&) = default;
+};
+
+/// `9.81`, `9.81 [m/s^2]`.
+struct Number : Located {
+  double value = 0;
+  std::optional<UnitExpression> unit;
+  friend bool operator==(Number const&, Number const&) = default;
+};
+
+/// `"text"`, without quotes; escapes \" \\ \n resolved.
+struct Text : Located {
+  std::string value;
+  friend bool operator==(Text const&, Text const&) = default;
+};
+
+/// `y''`: a name and how many primes follow it.
+struct Reference : Located {
+  Name name;
+  int primes = 0;
+  friend bool operator==(Reference const&, Reference const&) = default;
+};
+
+/// `- a`, `not a`.
+struct Unary : Located {
+  std::string symbol;
+  Box<Expression> operand;
+  friend bool operator==(Unary const&, Unary const&) = default;
+};
+
+/// `a + b`; symbols + - * / ^ < <= > >= == != and or .. (range).
+struct Binary : Located {
+  std::string symbol;
+  Box<Expression> left, right;
+  friend bool operator==(Binary const&, Binary const&) = default;
+};
+
+/// `f(a, sd = b)`: positional and named arguments.
+struct Argument;
+struct Call : Located {
+  Name function;
+  std::vector<Argument> arguments;
+  friend bool operator==(Call const&, Call const&);
+};
+
+/// `if a < b then c else d`.
+struct Conditional : Located {
+  Box<Expression> condition, then, otherwise;
+  friend bool operator==(Conditional const&, Conditional const&) = default;
+};
+
+/// `(a, b, c)`: two or more expressions.
+struct List : Located {
+  std::vector<Expression> items;
+  friend bool operator==(List const&, List const&);
+};
+
+struct Expression : Located {
+  std::variant<Number, Text, Reference, Box<Unary>, Box<Binary>, Box<Call>, Box<Conditional>, Box<List>> node;
+  friend bool operator==(Expression const&, Expression const&) = default;
+};
+
+struct Argument : Located {
+  std::optional<Name> name;
+  Expression value;
+  friend bool operator==(Argument const&, Argument const&) = default;
+};
+
+inline bool operator==(Call const& a, Call const& b) { return a.function == b.function && a.arguments == b.arguments; }
+inline bool operator==(List const& a, List const& b) { return a.items == b.items; }
+
+/// `m [kg]`.
+struct Declared : Located {
+  Name name;
+  std::optional<UnitExpression> unit;
+  friend bool operator==(Declared const&, Declared const&) = default;
+};
+
+// --- inside a model ---------------------------------------------------------------------------------------------------------------
+
+/// `time t [s]`.
+struct TimeDeclaration : Located {
+  Declared time;
+  friend bool operator==(TimeDeclaration const&, TimeDeclaration const&) = default;
+};
+/// `input x [N], u [V]`.
+struct InputDeclaration : Located {
+  std::vector<Declared> names;
+  friend bool operator==(InputDeclaration const&, InputDeclaration const&) = default;
+};
+/// `state y [m], z`.
+struct StateDeclaration : Located {
+  std::vector<Declared> names;
+  friend bool operator==(StateDeclaration const&, StateDeclaration const&) = default;
+};
+/// `initial y = 0, y' = v0`.
+struct InitialValue : Located {
+  Reference state;
+  Expression value;
+  friend bool operator==(InitialValue const&, InitialValue const&) = default;
+};
+struct InitialDeclaration : Located {
+  std::vector<InitialValue> values;
+  friend bool operator==(InitialDeclaration const&, InitialDeclaration const&) = default;
+};
+/// `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`; neither: `prior` and `value` empty, which the checker refuses.
+struct ParameterDeclaration : Located {
+  Declared name;
+  std::optional<Call> prior;
+  std::optional<Expression> value;
+  friend bool operator==(ParameterDeclaration const&, ParameterDeclaration const&) = default;
+};
+/// `constant g [m/s^2] = 9.81`, `let w0 = sqrt(k/m)`, `derive fn [Hz] = w0/(2*pi)`.
+enum class DefinitionKind { constant, local, derived };
+struct Definition : Located {
+  DefinitionKind kind = DefinitionKind::local;
+  Declared name;
+  Expression value;
+  friend bool operator==(Definition const&, Definition const&) = default;
+};
+/// `function f(a, b) = a*b`.
+struct FunctionDefinition : Located {
+  Name name;
+  std::vector<Name> parameters;
+  Expression value;
+  friend bool operator==(FunctionDefinition const&, FunctionDefinition const&) = default;
+};
+/// `observe displacement [m] ~ normal(y, precision = beta)`; the unit may be left out.
+struct Observation : Located {
+  Declared channel;
+  Call noise;
+  friend bool operator==(Observation const&, Observation const&) = default;
+};
+/// `m*y'' + c*y' = x`.
+struct Equation : Located {
+  Expression left, right;
+  friend bool operator==(Equation const&, Equation const&) = default;
+};
+
+using ModelStatement = std::variant<TimeDeclaration, InputDeclaration, StateDeclaration, InitialDeclaration, ParameterDeclaration, Definition,
+                                    FunctionDefinition, Observation, Equation>;
+
+/// `model duffing "Duffing's oscillator" { ... }`.
+struct Model : Located {
+  Name name;
+  std::optional<Text> title;
+  std::vector<ModelStatement> statements;
+  friend bool operator==(Model const&, Model const&) = default;
+};
+
+// --- inside a data block ----------------------------------------------------------------------------------------------------------
+
+/// A column by its name: an identifier or a text.
+struct Column : Located {
+  std::string name;
+  std::optional<UnitExpression> unit;
+  friend bool operator==(Column const&, Column const&) = default;
+};
+/// `file "duffing.csv"`.
+struct DataFile : Located {
+  Text path;
+  friend bool operator==(DataFile const&, DataFile const&) = default;
+};
+/// `time t [s]`: the column that holds time.
+struct DataTime : Located {
+  Column column;
+  friend bool operator==(DataTime const&, DataTime const&) = default;
+};
+/// `rate 1000 [Hz]` or `step 1 [ms]`: equally spaced rows, time 0 at the first.
+struct DataRate : Located {
+  bool step = false;
+  Expression value;
+  friend bool operator==(DataRate const&, DataRate const&) = default;
+};
+/// `input x = force [N] hold zero_order`; the rule must be given (its absence is refused by the checker).
+struct DataInput : Located {
+  Name input;
+  Column column;
+  std::optional<Name> rule;
+  friend bool operator==(DataInput const&, DataInput const&) = default;
+};
+/// `measure displacement = y_noisy [mm]`.
+struct DataMeasure : Located {
+  Name channel;
+  Column column;
+  friend bool operator==(DataMeasure const&, DataMeasure const&) = default;
+};
+/// `split train = rows 1..500, test = rows 501..1500`; rows count from 1, both ends included.
+struct SplitPart : Located {
+  Name name;
+  Expression first, last;
+  friend bool operator==(SplitPart const&, SplitPart const&) = default;
+};
+struct DataSplit : Located {
+  std::vector<SplitPart> parts;
+  friend bool operator==(DataSplit const&, DataSplit const&) = default;
+};
+
+using DataStatement = std::variant<DataFile, DataTime, DataRate, DataInput, DataMeasure, DataSplit>;
+
+/// `data bench { ... }`.
+struct Data : Located {
+  Name name;
+  std::vector<DataStatement> statements;
+  friend bool operator==(Data const&, Data const&) = default;
+};
+
+// --- tasks ------------------------------------------------------------------------------------------------------------------------
+
+/// `bench` or `bench.train`.
+struct DataReference : Located {
+  Name data;
+  std::optional<Name> part;
+  friend bool operator==(DataReference const&, DataReference const&) = default;
+};
+
+/// After `with` or a comma: `mh(samples = 25000)`, `start = rest`, `input x = gaussian(sd = 10)`.
+struct Option : Located {
+  bool input = false;
+  std::optional<Name> key;
+  Expression value;
+  friend bool operator==(Option const&, Option const&) = default;
+};
+
+/// `posterior = fit duffing to bench.train with mh(samples = 25000), start = rest`.
+struct Task : Located {
+  std::optional<Name> name;
+  Name verb;                                // simulate, fit, predict
+  Name subject;                             // a model (simulate, fit) or a task (predict)
+  std::optional<Name> preposition;          // to, on
+  std::optional<DataReference> data;
+  std::vector<Option> options;
+  friend bool operator==(Task const&, Task const&) = default;
+};
+
+using Item = std::variant<Model, Data, FunctionDefinition, Task>;
+
+struct File {
+  std::vector<Item> items;
+  friend bool operator==(File const&, File const&) = default;
+};
+
+}  // namespace sysid::ast

@@ -1,0 +1,16 @@
+// Text to syntax tree. Implemented in grammar/, the only folder that knows Boost.Spirit.
+#pragma once
+#include <optional>
+
+#include "core/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// The tree of a whole file, or nothing when anything was reported. Up to 20 independent syntax errors (E1...); never throws on any bytes.
+std::optional<ast::File> parse(Source const& source, Diagnostics& diagnostics);
+
+/// One expression alone, for tests and for the command line (`--set k=1e4 [N/m]`).
+std::optional<ast::Expression> parse_expression(Source const& source, Diagnostics& diagnostics);
+
+}  // namespace sysid
