@@ -1,5 +1,6 @@
 // What is wrong with the user's text or data, as a value: collected by the stages, rendered once at the end.
-// Wording lives in the file that owns the stage's messages (check/errors.cpp, data/errors.cpp, grammar/errors.cpp), never at the place of detection.
+// Wording lives in the file that owns the stage's messages (check/errors.cpp, data/errors.cpp, grammar/errors.cpp), never at the
+// place of detection.
 #pragma once
 #include <optional>
 #include <string>
@@ -19,11 +20,11 @@ struct Label {
 
 struct Diagnostic {
   Severity severity = Severity::error;
-  std::string code;                 // "E2103"; E1 syntax, E2 names, types and units, E3 system, E4 data, E5 numerics, E6 inference
-  std::string message;              // lower case, no full stop
-  std::optional<Label> primary;     // absent: the message concerns no place in the text
-  std::vector<Label> secondary;     // where two places conflict
-  std::string help;                 // what to do; may be empty
+  std::string code;              // "E2103"; E1 syntax, E2 names, types and units, E3 system, E4 data, E5 numerics, E6 inference
+  std::string message;           // lower case, no full stop
+  std::optional<Label> primary;  // absent: the message concerns no place in the text
+  std::vector<Label> secondary;  // where two places conflict
+  std::string help;              // what to do; may be empty
 };
 
 /// Collects diagnostics of one source, in the order of detection.
@@ -37,12 +38,20 @@ class Diagnostics {
   std::vector<Diagnostic> all_;
 };
 
-/// `file:line:col: error[E2103]: message`, the line with carets, `help:` and `more:` lines. Sorted by place; the first 20 errors.
-/// colour: ANSI colours.
+/// `file:line:col: error[E2103]: message`, the lines with carets, `help:` and `more:` lines. Sorted by place, those without one
+/// last; the first 20 errors, then how many more there are. colour: ANSI colours.
 std::string render(Diagnostics const& diagnostics, Source const& source, bool colour = false);
 std::string render(Diagnostic const& diagnostic, Source const& source, bool colour = false);
 
-/// Up to three of `known` nearest to `text` by edit distance, nearest first; empty when none is near enough.
+/// For programs (`--error-format=json`): one JSON object per diagnostic and line, all of them, in the order of `render`.
+std::string render_json(Diagnostics const& diagnostics, Source const& source);
+std::string render_json(Diagnostic const& diagnostic, Source const& source);
+
+/// Edit distance that counts a swap of two neighbours as one edit (Damerau and Levenshtein, no substring edited twice). In bytes.
+int edit_distance(std::string_view a, std::string_view b);
+
+/// Up to three of `known` nearest to `text` by edit distance, nearest first; empty when none is near enough. Names that differ in
+/// capitals alone are nearest of all; a name that `text` begins (three letters at least) is near too.
 std::vector<std::string> nearest(std::string_view text, std::vector<std::string> const& known);
 
 /// "did you mean `a`, `b` or `c`?", or empty.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sysid {
 
@@ -32,10 +33,13 @@ class Source {
   Place place(std::uint32_t offset) const;
   /// The line (from 1) without its end; empty beyond the text.
   std::string_view line(int number) const;
+  /// Offset of the first byte of the line; the end of the text beyond it.
+  std::uint32_t line_begin(int number) const;
 
  private:
   std::string name_;
   std::string text_;
+  std::vector<std::uint32_t> line_begins_;
 };
 
 }  // namespace sysid

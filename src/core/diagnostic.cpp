@@ -1,0 +1,286 @@
+// Diagnostics as text for people and as JSON for programs.
+#include "core/diagnostic.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace sysid {
+
+namespace {
+
+constexpr std::size_t shown_errors = 20;
+constexpr int tab_width = 4;
+
+std::string_view word(Severity severity) {
+  switch (severity) {
+    case Severity::warning:
+      return "warning";
+    case Severity::note:
+      return "note";
+    case Severity::error:
+      break;
+  }
+  return "error";
+}
+
+/// ANSI colours, or nothing.
+struct Paint {
+  bool on;
+  std::string operator()(std::string_view sequence, std::string_view text) const {
+    return on && !text.empty() ? fmt::format("\033[{}m{}\033[0m", sequence, text) : std::string(text);
+  }
+  std::string severity(Severity severity, std::string_view text) const {
+    return (*this)(severity == Severity::error ? "1;31" : severity == Severity::warning ? "1;33" : "1;36", text);
+  }
+  std::string gutter(std::string_view text) const { return (*this)("34", text); }
+};
+
+/// A line as shown: tabs become blanks, and `column[i]` is where byte i stands.
+struct ShownLine {
+  std::string text;
+  std::vector<int> column;
+};
+
+ShownLine shown(std::string_view line) {
+  ShownLine out;
+  int column = 0;
+  for (char const byte : line) {
+    bool const continues_character = (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
+    out.column.push_back(continues_character ? std::max(column - 1, 0) : column);
+    if (continues_character) {
+      out.text += byte;
+    } else if (byte == '\t') {
+      int const blanks = tab_width - column % tab_width;
+      out.text.append(static_cast<std::size_t>(blanks), ' ');
+      column += blanks;
+    } else {
+      out.text += static_cast<unsigned char>(byte) < 0x20U ? ' ' : byte;
+      ++column;
+    }
+  }
+  out.column.push_back(column);
+  return out;
+}
+
+/// One underlined stretch of a shown line.
+struct Mark {
+  int begin, end;
+  bool primary;
+  std::string text;
+};
+
+Mark mark_on(Label const& label, bool primary, Source const& source, int line_number, ShownLine const& line) {
+  std::uint32_t const line_begin = source.line_begin(line_number);
+  std::size_t const last = line.column.size() - 1;
+  std::size_t const begin = std::min<std::size_t>(label.span.begin - line_begin, last);
+  // A span that runs on into later lines is underlined to the end of its first.
+  std::size_t const end = std::clamp<std::size_t>(label.span.end > line_begin ? label.span.end - line_begin : 0, begin, last);
+  int const first = line.column[begin];
+  return {first, std::max(line.column[end], first + 1), primary, label.text};
+}
+
+/// The rows under a line: all underlines with the text of the rightmost, then the other texts from right to left, each on the
+/// first row where it is free to stand.
+std::vector<std::string> mark_rows(std::vector<Mark> marks, Severity severity, Paint paint) {
+  std::stable_sort(marks.begin(), marks.end(), [](Mark const& a, Mark const& b) { return a.begin < b.begin; });
+  struct Piece {
+    int begin;
+    std::string text;
+    bool primary;
+  };
+  std::vector<std::vector<Piece>> rows(1);
+  int position = 0;
+  for (Mark const& mark : marks) {
+    int const begin = std::max(mark.begin, position);
+    if (begin >= mark.end) continue;  // hidden by an overlapping mark; its text is still shown
+    rows[0].push_back({begin, std::string(static_cast<std::size_t>(mark.end - begin), mark.primary ? '^' : '-'), mark.primary});
+    position = mark.end;
+  }
+  for (std::size_t i = marks.size(); i-- > 0;) {
+    Mark const& mark = marks[i];
+    if (mark.text.empty()) continue;
+    if (i + 1 == marks.size() && position <= mark.end) {
+      rows[0].push_back({mark.end + 1, mark.text, mark.primary});
+      continue;
+    }
+    // Texts are placed from right to left, so a row is free when its leftmost piece begins behind this one.
+    std::size_t const length = mark.text.size();
+    std::size_t row = 1;
+    while (row < rows.size() && !rows[row].empty() && mark.begin + static_cast<int>(length) + 1 > rows[row].front().begin) ++row;
+    if (row == rows.size()) rows.emplace_back();
+    rows[row].insert(rows[row].begin(), {mark.begin, mark.text, mark.primary});
+  }
+  std::vector<std::string> out;
+  for (std::vector<Piece> const& row : rows) {
+    std::string text;
+    int column = 0;
+    for (Piece const& piece : row) {
+      text.append(static_cast<std::size_t>(std::max(piece.begin - column, 0)), ' ');
+      text += piece.primary ? paint.severity(severity, piece.text) : paint("36", piece.text);
+      column = std::max(column, piece.begin) + static_cast<int>(piece.text.size());
+    }
+    out.push_back(std::move(text));
+  }
+  return out;
+}
+
+std::string excerpt(Diagnostic const& diagnostic, Source const& source, Paint paint) {
+  std::map<int, std::vector<std::pair<Label const*, bool>>> by_line;
+  by_line[source.place(diagnostic.primary->span.begin).line].emplace_back(&*diagnostic.primary, true);
+  for (Label const& label : diagnostic.secondary) by_line[source.place(label.span.begin).line].emplace_back(&label, false);
+  int const digits = std::max(4, static_cast<int>(std::to_string(by_line.rbegin()->first).size()));
+  std::string out;
+  int previous = 0;
+  for (auto const& [number, labels] : by_line) {
+    if (previous != 0 && number > previous + 1) out += paint.gutter("...") + "\n";
+    previous = number;
+    ShownLine const line = shown(source.line(number));
+    out += fmt::format("{} {}\n", paint.gutter(fmt::format("{:>{}} |", number, digits)), line.text);
+    std::vector<Mark> marks;
+    for (auto const& [label, primary] : labels) marks.push_back(mark_on(*label, primary, source, number, line));
+    for (std::string const& row : mark_rows(std::move(marks), diagnostic.severity, paint))
+      out += fmt::format("{} {}\n", paint.gutter(fmt::format("{:>{}} |", "", digits)), row);
+  }
+  return out;
+}
+
+/// In the order in which they are shown.
+std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
+  std::vector<Diagnostic const*> out;
+  for (Diagnostic const& diagnostic : diagnostics.all()) out.push_back(&diagnostic);
+  std::stable_sort(out.begin(), out.end(), [](Diagnostic const* a, Diagnostic const* b) {
+    if (!a->primary || !b->primary) return a->primary.has_value() && !b->primary.has_value();
+    return a->primary->span.begin < b->primary->span.begin;
+  });
+  return out;
+}
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = lower(c);
+  return out;
+}
+
+}  // namespace
+
+bool Diagnostics::has_errors() const {
+  return std::any_of(all_.begin(), all_.end(), [](Diagnostic const& d) { return d.severity == Severity::error; });
+}
+
+std::string render(Diagnostic const& diagnostic, Source const& source, bool colour) {
+  Paint const paint{colour};
+  std::string where = source.name();
+  if (diagnostic.primary) {
+    Place const place = source.place(diagnostic.primary->span.begin);
+    where += fmt::format("{}{}:{}", where.empty() ? "" : ":", place.line, place.column);
+  }
+  std::string kind(word(diagnostic.severity));
+  if (!diagnostic.code.empty()) kind += fmt::format("[{}]", diagnostic.code);
+  std::string out = fmt::format("{}{}{}: {}\n", paint("1", where), where.empty() ? "" : ": ",
+                                paint.severity(diagnostic.severity, kind), paint("1", diagnostic.message));
+  if (diagnostic.primary) out += excerpt(diagnostic, source, paint);
+  if (!diagnostic.help.empty()) out += fmt::format("{} {}\n", paint("1;32", "help:"), diagnostic.help);
+  if (!diagnostic.code.empty()) out += fmt::format("{} sysid explain {}\n", paint("1", "more:"), diagnostic.code);
+  return out;
+}
+
+std::string render(Diagnostics const& diagnostics, Source const& source, bool colour) {
+  std::string out;
+  std::size_t errors = 0;
+  for (Diagnostic const* diagnostic : sorted(diagnostics)) {
+    if (diagnostic->severity == Severity::error && ++errors > shown_errors) continue;
+    if (!out.empty()) out += '\n';
+    out += render(*diagnostic, source, colour);
+  }
+  if (errors > shown_errors) out += fmt::format("\n... and {} more\n", errors - shown_errors);
+  return out;
+}
+
+std::string render_json(Diagnostic const& diagnostic, Source const& source) {
+  auto const place_of = [&](Label const& label) {
+    Place const begin = source.place(label.span.begin);
+    Place const end = source.place(label.span.end);
+    return nlohmann::ordered_json{{"line", begin.line},       {"column", begin.column},    {"end_line", end.line},
+                                  {"end_column", end.column}, {"begin", label.span.begin}, {"end", label.span.end},
+                                  {"label", label.text}};
+  };
+  nlohmann::ordered_json out;
+  out["file"] = source.name();
+  out["severity"] = word(diagnostic.severity);
+  out["code"] = diagnostic.code;
+  out["message"] = diagnostic.message;
+  out["primary"] = diagnostic.primary ? place_of(*diagnostic.primary) : nlohmann::ordered_json(nullptr);
+  out["secondary"] = nlohmann::ordered_json::array();
+  for (Label const& label : diagnostic.secondary) out["secondary"].push_back(place_of(label));
+  out["help"] = diagnostic.help;
+  // The user's text may hold any bytes: what is not UTF-8 is replaced, never thrown at the user.
+  return out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string render_json(Diagnostics const& diagnostics, Source const& source) {
+  std::string out;
+  for (Diagnostic const* diagnostic : sorted(diagnostics)) out += render_json(*diagnostic, source);
+  return out;
+}
+
+int edit_distance(std::string_view a, std::string_view b) {
+  std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before = last;
+    last = row;
+    row[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+std::vector<std::string> nearest(std::string_view text, std::vector<std::string> const& known) {
+  std::string const lower_text = lower(text);
+  std::vector<std::pair<int, std::string>> near;
+  for (std::string const& name : known) {
+    if (name.empty() || name == text) continue;
+    std::size_t const longer = std::max(text.size(), name.size());
+    // A one-letter name resembles every other: only its capital is near.
+    int const cutoff = longer < 2 ? 0 : longer < 5 ? 1 : longer < 9 ? 2 : 3;
+    std::string const lower_name = lower(name);
+    // Differences in capitals cost nothing unless everything else is equal.
+    int const distance = edit_distance(lower_text, lower_name);
+    if (distance <= cutoff)
+      near.emplace_back(distance, name);
+    else if (text.size() >= 3 && lower_name.starts_with(lower_text))
+      near.emplace_back(cutoff + 1, name);
+  }
+  std::stable_sort(near.begin(), near.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
+  std::vector<std::string> out;
+  for (auto& [distance, name] : near) {
+    if (out.size() == 3) break;
+    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
+  }
+  return out;
+}
+
+std::string did_you_mean(std::string_view text, std::vector<std::string> const& known) {
+  std::vector<std::string> const names = nearest(text, known);
+  switch (names.size()) {
+    case 0:
+      return "";
+    case 1:
+      return fmt::format("did you mean `{}`?", names[0]);
+    case 2:
+      return fmt::format("did you mean `{}` or `{}`?", names[0], names[1]);
+    default:
+      return fmt::format("did you mean `{}`, `{}` or `{}`?", names[0], names[1], names[2]);
+  }
+}
+
+}  // namespace sysid

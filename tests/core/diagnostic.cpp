@@ -1,0 +1,178 @@
+// Diagnostics as the user sees them: places, carets, order, number, and near names.
+#include "core/diagnostic.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+using namespace sysid;
+
+namespace {
+
+Span find(Source const& source, std::string_view text, std::size_t from = 0) {
+  std::size_t const at = source.text().find(text, from);
+  return {static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at + text.size())};
+}
+
+Diagnostic at(std::uint32_t offset, std::string message) {
+  return {Severity::error, "E1001", std::move(message), Label{{offset, offset + 1}, ""}, {}, ""};
+}
+
+}  // namespace
+
+TEST_CASE("a diagnostic shows the place, the line, both spans with their units, help and where to read more") {
+  std::string text(8, '\n');
+  text += "  m*y'' + c*y' + k + k3*y^3 = x\n";
+  Source const source("duffing.sysid", text);
+  Diagnostic const diagnostic{Severity::error,
+                              "E2103",
+                              "this term cannot be added to the ones before it",
+                              Label{find(source, "k +"), "[N/m]"},
+                              {Label{find(source, "m*y'' + c*y'"), "[N]"}},
+                              "multiply it by a length; `y` is one"};
+  Diagnostic shorter = diagnostic;
+  shorter.primary->span.end = shorter.primary->span.begin + 1;
+  CHECK(render(shorter, source) ==
+        "duffing.sysid:9:18: error[E2103]: this term cannot be added to the ones before it\n"
+        "   9 |   m*y'' + c*y' + k + k3*y^3 = x\n"
+        "     |   ------------   ^ [N/m]\n"
+        "     |   [N]\n"
+        "help: multiply it by a length; `y` is one\n"
+        "more: sysid explain E2103\n");
+}
+
+TEST_CASE("a second span on another line is shown with its line, in the order of the text") {
+  Source const source("a.sysid", "state y [m]\ninput x [N]\n\nstate y [N]\n");
+  Diagnostic const diagnostic{Severity::error,          "E2002", "`y` is declared twice", Label{find(source, "y [N]"), "again"},
+                              {Label{{6, 7}, "first"}}, ""};
+  CHECK(render(diagnostic, source) ==
+        "a.sysid:4:7: error[E2002]: `y` is declared twice\n"
+        "   1 | state y [m]\n"
+        "     |       - first\n"
+        "...\n"
+        "   4 | state y [N]\n"
+        "     |       ^^^^^ again\n"
+        "more: sysid explain E2002\n");
+}
+
+TEST_CASE("texts that would run into each other stand on rows of their own") {
+  Source const source("a", "a+b+c");
+  Diagnostic const diagnostic{
+      Severity::error, "", "three units", Label{{4, 5}, "metres"}, {Label{{0, 1}, "kilograms"}, Label{{2, 3}, "seconds"}}, ""};
+  CHECK(render(diagnostic, source) ==
+        "a:1:5: error: three units\n"
+        "   1 | a+b+c\n"
+        "     | - - ^ metres\n"
+        "     |   seconds\n"
+        "     | kilograms\n");
+}
+
+TEST_CASE("tabs and letters of two bytes do not shift the carets") {
+  Source const source("a", "\t\xCF\x83\t= q");
+  Diagnostic const diagnostic{Severity::warning, "E2001", "unknown", Label{find(source, "q"), ""}, {}, ""};
+  CHECK(render(diagnostic, source) ==
+        "a:1:6: warning[E2001]: unknown\n"
+        "   1 |     \xCF\x83   = q\n"
+        "     |           ^\n"
+        "more: sysid explain E2001\n");
+}
+
+TEST_CASE("a span over several lines is underlined to the end of its first line") {
+  Source const source("a", "k = (1 +\n  2)\n");
+  Diagnostic const diagnostic{Severity::error, "", "too long", Label{{4, 13}, ""}, {}, ""};
+  CHECK(render(diagnostic, source) == "a:1:5: error: too long\n   1 | k = (1 +\n     |     ^^^^\n");
+}
+
+TEST_CASE("a place at the end of the text has a caret behind the last character") {
+  Source const source("a", "model m {");
+  Diagnostic const diagnostic{Severity::error, "", "expected `}`", Label{{9, 9}, ""}, {}, ""};
+  CHECK(render(diagnostic, source) == "a:1:10: error: expected `}`\n   1 | model m {\n     |          ^\n");
+}
+
+TEST_CASE("a message without a place names the file alone") {
+  Source const source("a.csv", "");
+  CHECK(render(Diagnostic{Severity::error, "E4001", "no rows", {}, {}, ""}, source) ==
+        "a.csv: error[E4001]: no rows\nmore: sysid explain E4001\n");
+}
+
+TEST_CASE("diagnostics are sorted by place, those without one last") {
+  Source const source("a", "abcdef");
+  Diagnostics all;
+  all.add({Severity::error, "", "nowhere", {}, {}, ""});
+  all.add(at(4, "late"));
+  all.add(at(1, "early"));
+  std::string const text = render(all, source);
+  CHECK(text.find("early") < text.find("late"));
+  CHECK(text.find("late") < text.find("nowhere"));
+}
+
+TEST_CASE("twenty errors are shown and the rest counted; warnings are not errors") {
+  Source const source("a", std::string(100, 'x'));
+  Diagnostics all;
+  CHECK_FALSE(all.has_errors());
+  all.add({Severity::warning, "", "careful", Label{{99, 100}, ""}, {}, ""});
+  CHECK_FALSE(all.has_errors());
+  for (std::uint32_t i = 0; i < 23; ++i) all.add(at(i, "error number " + std::to_string(i) + " of many"));
+  CHECK(all.has_errors());
+  std::string const text = render(all, source);
+  CHECK(text.find("error number 19 ") != std::string::npos);
+  CHECK(text.find("error number 20 ") == std::string::npos);
+  CHECK(text.find("careful") != std::string::npos);
+  CHECK(text.ends_with("\n... and 3 more\n"));
+}
+
+TEST_CASE("colours surround the words and change nothing else") {
+  Source const source("a", "abc");
+  std::string const plain = render(at(1, "wrong"), source);
+  std::string coloured = render(at(1, "wrong"), source, true);
+  CHECK(coloured.find("\033[1;31m") != std::string::npos);
+  for (std::size_t escape; (escape = coloured.find('\033')) != std::string::npos;)
+    coloured.erase(escape, coloured.find('m', escape) - escape + 1);
+  CHECK(coloured == plain);
+}
+
+TEST_CASE("JSON has one object per line with places from one, for every diagnostic") {
+  Source const source("a",
+                      "ab\n\xFF"
+                      "cd");
+  Diagnostics all;
+  for (std::uint32_t i = 0; i < 25; ++i) all.add(at(4, "wrong \"quote\""));
+  std::string const text = render_json(all, source);
+  CHECK(std::count(text.begin(), text.end(), '\n') == 25);
+  auto const object = nlohmann::json::parse(text.substr(0, text.find('\n')));
+  CHECK(object["file"] == "a");
+  CHECK(object["severity"] == "error");
+  CHECK(object["code"] == "E1001");
+  CHECK(object["message"] == "wrong \"quote\"");
+  CHECK(object["primary"]["line"] == 2);
+  CHECK(object["primary"]["column"] == 2);
+  CHECK(object["primary"]["begin"] == 4);
+}
+
+TEST_CASE("the edit distance counts insertion, deletion, substitution and a swap as one") {
+  CHECK(edit_distance("", "") == 0);
+  CHECK(edit_distance("abc", "") == 3);
+  CHECK(edit_distance("kitten", "sitting") == 3);  // the textbook example
+  CHECK(edit_distance("alhpa", "alpha") == 1);
+  CHECK(edit_distance("ca", "abc") == 3);  // no substring is edited twice
+}
+
+TEST_CASE("near names come nearest first, at most three, and only when near") {
+  std::vector<std::string> const known = {"displacement", "gamma", "alpha", "Alpha", "k1", "k2", "k3", "k4", "gaussian", "x", "y"};
+  CHECK(nearest("alhpa", known) == std::vector<std::string>{"alpha", "Alpha"});
+  CHECK(nearest("displacment", known) == std::vector<std::string>{"displacement"});
+  CHECK(nearest("k5", known).size() == 3);
+  CHECK(nearest("gauss", known) == std::vector<std::string>{"gaussian"});
+  CHECK(nearest("stiffness", known).empty());
+  CHECK(nearest("q", known).empty());                           // one letter is near no other
+  CHECK(nearest("X", known) == std::vector<std::string>{"x"});  // but to its capital
+  CHECK(nearest("ALPHA", known) == std::vector<std::string>{"alpha", "Alpha"});
+}
+
+TEST_CASE("did you mean lists names as a sentence") {
+  CHECK(did_you_mean("gama", {"gamma"}) == "did you mean `gamma`?");
+  CHECK(did_you_mean("k5", {"k1", "k2"}) == "did you mean `k1` or `k2`?");
+  CHECK(did_you_mean("k5", {"k1", "k2", "k3", "k4"}) == "did you mean `k1`, `k2` or `k3`?");
+  CHECK(did_you_mean("zzz", {"alpha"}).empty());
+}
