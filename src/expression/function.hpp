@@ -1,4 +1,5 @@
-// A built-in function as a row of data: how it is called, computed, differentiated. One file and one row adds another (function/table.cpp).
+// A built-in function as a row of data: how it is called, computed, differentiated. One file and one row adds another
+// (function/table.cpp).
 #pragma once
 #include <span>
 #include <string_view>
@@ -19,6 +20,9 @@ struct Function {
   /// d(call)/d(argument `which`), an expression in the arguments a, b; nullptr: not differentiable by us.
   NodeId (*derivative)(Graph&, NodeId call, NodeId a, NodeId b, int which);
 };
+
+/// The natural logarithm: the one function the graph itself needs, to differentiate a power by its exponent.
+extern Function const log_function;
 
 /// How the units of arguments and result relate.
 enum class UnitRule {

@@ -20,17 +20,31 @@ struct Function;  // expression/function.hpp
 
 enum class Operation : std::uint8_t {
   // leaves
-  constant,      // value
-  leaf,          // leaf_kind, index, stage
+  constant,  // value
+  leaf,      // leaf_kind, index, stage
   // arithmetic
-  negate, add, subtract, multiply, divide,
-  power,         // a^b
-  fused,         // a*b + c, rounded once; introduced by the program stage only
-  square_root, absolute, sign, minimum, maximum, floor,
+  negate,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,  // a^b
+  fused,  // a*b + c, rounded once; introduced by the program stage only
+  square_root,
+  absolute,
+  sign,
+  minimum,
+  maximum,
+  floor,
   // conditions are 1 or 0
-  less, less_equal, equal, conjunction, disjunction, negation,
-  select,        // a ? b : c
-  call,          // one or two arguments, `function` says which
+  less,
+  less_equal,
+  equal,
+  conjunction,
+  disjunction,
+  negation,
+  select,  // a ? b : c
+  call,    // one or two arguments, `function` says which
 };
 
 enum class LeafKind : std::uint8_t {
@@ -40,9 +54,9 @@ enum class LeafKind : std::uint8_t {
   input,          // at the current time
   input_rate,     // its time derivative
   time,
-  measured,       // the channel's sample at the current time
-  unknown,        // a highest derivative still to be solved for, or a place holder of a symbolic pass
-  step_size,      // h of the integrator
+  measured,   // the channel's sample at the current time
+  unknown,    // a highest derivative still to be solved for, or a place holder of a symbolic pass
+  step_size,  // h of the integrator
 };
 
 /// Place within one integrator step where an input or time leaf is read: its begin, middle or end. Equations use `begin`.
@@ -60,8 +74,10 @@ struct Node {
 
 class Graph {
  public:
-  // Building. Constants fold, neutral elements vanish (x + 0, x*1, x/1, x^1, --x; x*0 is 0), operands of commutative
-  // operations are put in one order. Nothing else is rewritten here: heavier algebra belongs to the program stage.
+  // Building. Constants fold by `apply`; neutral elements vanish (x + 0, x*1, x/1, x^1, --x; x^0 and 1^x are 1; x*0, 0/x and x - x
+  // are 0 whatever x, as in algebra); a minus sign goes into its sum (a + -b, a - -b, -1*a); a decided select is its branch;
+  // operands of add, multiply, equal, conjunction and disjunction are put in one order. Nothing else is rewritten here: heavier
+  // algebra belongs to the program stage. Constants are told apart by their bits (0 and -0 are two), and there is one NaN.
   NodeId constant(double value);
   NodeId leaf(LeafKind kind, int index = 0, Stage stage = Stage::begin);
   NodeId negate(NodeId a);
@@ -71,8 +87,8 @@ class Graph {
   NodeId divide(NodeId a, NodeId b);
   NodeId power(NodeId a, NodeId b);
   NodeId fused(NodeId a, NodeId b, NodeId c);
-  NodeId unary(Operation operation, NodeId a);                // square_root, absolute, sign, floor, negation
-  NodeId binary(Operation operation, NodeId a, NodeId b);     // minimum, maximum, comparisons, conjunction, disjunction
+  NodeId unary(Operation operation, NodeId a);             // square_root, absolute, sign, floor, negation
+  NodeId binary(Operation operation, NodeId a, NodeId b);  // minimum, maximum, comparisons, conjunction, disjunction
   NodeId select(NodeId condition, NodeId then, NodeId otherwise);
   NodeId call(Function const& function, NodeId a);
   NodeId call(Function const& function, NodeId a, NodeId b);
@@ -96,7 +112,8 @@ class Graph {
   std::optional<Span> span(NodeId id) const;
 
   // Symbolic work.
-  /// d(root)/d(leaf). sign, floor, comparisons have derivative 0; absolute x: sign(x); min, max, select: by branch.
+  /// d(root)/d(leaf). sign, floor, comparisons have derivative 0; absolute x: sign(x); min, max, select: by branch. Throws
+  /// InternalError where a function on the way has no derivative.
   NodeId differentiate(NodeId root, NodeId leaf);
   /// `root` with every leaf replaced by `replacement(leaf id)`; nothing keeps the leaf.
   NodeId substitute(NodeId root, std::function<std::optional<NodeId>(NodeId)> const& replacement);
@@ -105,7 +122,8 @@ class Graph {
   double evaluate(NodeId root, std::function<double(NodeId)> const& value_of) const;
   std::vector<double> evaluate(std::span<NodeId const> roots, std::function<double(NodeId)> const& value_of) const;
 
-  /// Infix text; leaf names from `name_of(leaf id)`.
+  /// Infix text in the language's notation; leaf names from `name_of(leaf id)`. Parts longer than 20 000 characters are shown as
+  /// dots.
   std::string format(NodeId root, std::function<std::string(NodeId)> const& name_of) const;
 
  private:
@@ -115,8 +133,12 @@ class Graph {
   std::unordered_map<std::uint64_t, std::vector<NodeId>> index_;
 };
 
+/// 0 to 3.
+int operand_count(Node const& node);
+
 /// The value of one operation on operand values: what folding, `evaluate` and the executors agree on, bit for bit.
-/// sign(0) = 0; minimum and maximum return the other operand if one is NaN only by the rule (a < b ? a : b), (a > b ? a : b).
+/// sign is (a > 0) - (a < 0); minimum and maximum are (a < b ? a : b) and (a > b ? a : b), also for a NaN; select takes b where a
+/// != 0; power is elementary::pow (an executor that expands integer powers into products agrees to rounding only).
 double apply(Node const& node, double a, double b, double c);
 
 }  // namespace sysid

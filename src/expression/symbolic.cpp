@@ -1,0 +1,127 @@
+// Symbolic passes over a graph: derivatives and substitution. Both walk in topological order, so depth costs no stack.
+#include <string>
+
+#include "core/diagnostic.hpp"
+#include "core/elementary.hpp"
+#include "expression/function.hpp"
+#include "expression/graph.hpp"
+
+namespace sysid {
+namespace {
+
+NodeId log_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) { return graph.divide(graph.constant(1), a); }
+
+/// d(a^b): the exponent's part is a^b log a, which tends to 0 as a falls to 0 for b > 0; log is kept finite there.
+NodeId power_derivative(Graph& graph, NodeId power, Node const& node, NodeId da, NodeId db) {
+  NodeId const one = graph.constant(1);
+  NodeId const by_base = graph.multiply(graph.multiply(node.b, graph.power(node.a, graph.subtract(node.b, one))), da);
+  if (graph.is_constant(db, 0)) return by_base;
+  NodeId const base = graph.select(graph.binary(Operation::equal, node.a, graph.constant(0)), one, node.a);
+  NodeId const by_exponent = graph.multiply(graph.multiply(power, graph.call(log_function, base)), db);
+  return graph.is_constant(da, 0) ? by_exponent : graph.add(by_base, by_exponent);
+}
+
+}  // namespace
+
+// The graph itself needs one elementary function, for the derivative of a power by its exponent.
+Function const log_function{"log", 1, &elementary::log, &elementary::log_lanes, nullptr, nullptr, &log_derivative};
+
+NodeId Graph::differentiate(NodeId root, NodeId leaf) {
+  std::vector<NodeId> const order = reachable({&root, 1});
+  NodeId const zero = constant(0), one = constant(1);
+  std::vector<NodeId> derivative(root + std::size_t{1}, zero);
+  for (NodeId const id : order) {
+    if (id == leaf) {
+      derivative[id] = one;
+      continue;
+    }
+    Node const node = nodes_[id];  // a copy: nodes_ grows below
+    int const operands = operand_count(id);
+    NodeId const da = operands > 0 ? derivative[node.a] : zero;
+    NodeId const db = operands > 1 ? derivative[node.b] : zero;
+    NodeId const dc = operands > 2 ? derivative[node.c] : zero;
+    if (is_constant(da, 0) && is_constant(db, 0) && is_constant(dc, 0)) continue;
+    NodeId& result = derivative[id];
+    switch (node.operation) {
+      case Operation::negate:
+        result = negate(da);
+        break;
+      case Operation::add:
+        result = add(da, db);
+        break;
+      case Operation::subtract:
+        result = subtract(da, db);
+        break;
+      case Operation::multiply:
+        result = add(multiply(da, node.b), multiply(node.a, db));
+        break;
+      case Operation::divide:
+        result = divide(subtract(da, multiply(id, db)), node.b);
+        break;
+      case Operation::power:
+        result = power_derivative(*this, id, node, da, db);
+        break;
+      case Operation::fused:
+        result = add(add(multiply(da, node.b), multiply(node.a, db)), dc);
+        break;
+      case Operation::square_root:
+        result = divide(da, multiply(constant(2), id));
+        break;
+      case Operation::absolute:
+        result = multiply(unary(Operation::sign, node.a), da);
+        break;
+      case Operation::minimum:
+        result = select(binary(Operation::less, node.a, node.b), da, db);
+        break;
+      case Operation::maximum:
+        result = select(binary(Operation::less, node.b, node.a), da, db);
+        break;
+      case Operation::select:
+        result = select(node.a, db, dc);
+        break;
+      case Operation::call: {
+        if (node.function->derivative == nullptr)
+          throw InternalError("the derivative of `" + std::string(node.function->name) + "` is not known");
+        NodeId const second = node.function->arity == 2 ? node.b : node.a;
+        NodeId sum = zero;
+        if (!is_constant(da, 0)) sum = multiply(node.function->derivative(*this, id, node.a, second, 0), da);
+        if (!is_constant(db, 0)) sum = add(sum, multiply(node.function->derivative(*this, id, node.a, second, 1), db));
+        result = sum;
+        break;
+      }
+      default:
+        break;  // piecewise constant: sign, floor, conditions
+    }
+  }
+  return derivative[root];
+}
+
+NodeId Graph::substitute(NodeId root, std::function<std::optional<NodeId>(NodeId)> const& replacement) {
+  return substitute({&root, 1}, replacement).front();
+}
+
+std::vector<NodeId> Graph::substitute(std::span<NodeId const> roots,
+                                      std::function<std::optional<NodeId>(NodeId)> const& replacement) {
+  std::vector<NodeId> const order = reachable(roots);
+  std::vector<NodeId> image(order.empty() ? 0 : order.back() + std::size_t{1});
+  for (NodeId const id : order) {
+    Node const node = nodes_[id];
+    if (node.operation == Operation::leaf) {
+      image[id] = replacement(id).value_or(id);
+      continue;
+    }
+    int const operands = operand_count(id);
+    NodeId const a = operands > 0 ? image[node.a] : 0, b = operands > 1 ? image[node.b] : 0, c = operands > 2 ? image[node.c] : 0;
+    bool const unchanged = (operands < 1 || a == node.a) && (operands < 2 || b == node.b) && (operands < 3 || c == node.c);
+    image[id] = unchanged ? id : rebuild(node, a, b, c);
+    // Messages about the new node point at the old one's place; constants are shared by many places and get none.
+    if (!unchanged && nodes_[image[id]].operation != Operation::constant)
+      if (std::optional<Span> const place = span(id)) set_span(image[id], *place);
+  }
+  std::vector<NodeId> result;
+  result.reserve(roots.size());
+  for (NodeId const root : roots) result.push_back(image[root]);
+  return result;
+}
+
+}  // namespace sysid
