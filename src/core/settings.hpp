@@ -1,5 +1,7 @@
-// Named settings of a back end or task: a table says what there is; the checker refuses the rest by name; a Settings holds the values.
+// Named settings of a back end or task: a table says what there is; the checker refuses the rest by name; a Settings holds the
+// values.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -14,14 +16,20 @@ enum class SettingKind { integer, real, word, flag };
 struct SettingRow {
   std::string_view name;
   SettingKind kind;
-  std::string_view fallback;     // the default, as the user would write it
-  double minimum;                // smallest allowed number, inclusive (integer, real)
-  double maximum;                // largest allowed number, inclusive
-  std::string_view choices;      // for a word: "adaptive spherical", separated by blanks
-  std::string_view summary;      // one line for `sysid list` and the docs
+  std::string_view fallback;  // the default, as the user would write it
+  double minimum;             // smallest allowed number, inclusive (integer, real)
+  double maximum;             // largest allowed number, inclusive
+  std::string_view choices;   // for a word: "adaptive spherical", separated by blanks
+  std::string_view summary;   // one line for `sysid list` and the docs
 };
 
 using SettingValue = std::variant<std::int64_t, double, std::string, bool>;
+
+/// The row of a name, or nullptr.
+SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_view name);
+
+/// Why `value` cannot be given to the row's setting ("it must be a whole number of at least 1"); empty when it can.
+std::string refuse(SettingRow const& row, SettingValue const& value);
 
 /// Values by name; every row of the table has one, given or default.
 class Settings {
@@ -31,11 +39,13 @@ class Settings {
   explicit Settings(std::span<SettingRow const> rows);
 
   void set(std::string const& name, SettingValue value) { values_[name] = std::move(value); }
+  /// A name that the table lacks, or one of another kind, is a fault of ours: InternalError. `real` also reads an integer.
   std::int64_t integer(std::string const& name) const;
   double real(std::string const& name) const;
   std::string const& word(std::string const& name) const;
   bool flag(std::string const& name) const;
   std::map<std::string, SettingValue> const& all() const { return values_; }
+  friend bool operator==(Settings const&, Settings const&) = default;
 
  private:
   SettingValue const& at(std::string const& name) const;
