@@ -1,0 +1,125 @@
+// Files by system calls: every result is checked, since a full disk may show itself as late as fsync or close.
+#include "core/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "core/diagnostic.hpp"
+
+namespace sysid {
+
+namespace {
+
+/// The system's words, as the rest of our messages: lower case.
+std::string reason(int error) {
+  std::string text = std::generic_category().message(error);
+  if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a' && text[1] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'A' + 'a');
+  return text;
+}
+
+[[noreturn]] void fail(std::string_view what, std::filesystem::path const& path, int error) {
+  throw IoError(fmt::format("cannot {} `{}`: {}", what, path.string(), reason(error)));
+}
+
+int open_file(std::filesystem::path const& path, int flags) {
+  int descriptor;
+  do descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  while (descriptor < 0 && errno == EINTR);
+  return descriptor;
+}
+
+/// 0, or the error of the first call that failed. Always closes.
+int write_and_close(int descriptor, std::string_view bytes, bool durable) {
+  int error = 0;
+  while (!bytes.empty() && error == 0) {
+    ssize_t const written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written >= 0)
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    else if (errno != EINTR)
+      error = errno;
+  }
+  if (error == 0 && durable && ::fsync(descriptor) != 0) error = errno;
+  // After EINTR the descriptor is closed all the same (Linux).
+  if (::close(descriptor) != 0 && errno != EINTR && error == 0) error = errno;
+  return error;
+}
+
+/// Makes the rename itself durable. Some file systems cannot; the file is whole in any case.
+void flush_folder(std::filesystem::path const& folder) {
+  int const descriptor = open_file(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+  if (descriptor < 0) return;
+  (void)::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+std::string read_file(std::filesystem::path const& path) {
+  int const descriptor = open_file(path, O_RDONLY);
+  if (descriptor < 0) fail("read", path, errno);
+  std::string bytes;
+  struct stat facts = {};
+  if (::fstat(descriptor, &facts) == 0 && facts.st_size > 0) bytes.reserve(static_cast<std::size_t>(facts.st_size));
+  char buffer[1 << 16];
+  int error = 0;
+  for (;;) {
+    ssize_t const got = ::read(descriptor, buffer, sizeof buffer);
+    if (got == 0) break;
+    if (got > 0) {
+      bytes.append(buffer, static_cast<std::size_t>(got));
+    } else if (errno != EINTR) {
+      error = errno;
+      break;
+    }
+  }
+  ::close(descriptor);
+  if (error != 0) fail("read", path, error);
+  return bytes;
+}
+
+void write_file(std::filesystem::path const& path, std::string_view bytes) {
+  std::filesystem::path target = path;
+  struct stat facts = {};
+  if (::stat(path.c_str(), &facts) == 0) {
+    if (!S_ISREG(facts.st_mode) && !S_ISDIR(facts.st_mode)) {
+      // A device or pipe keeps its name: renaming over /dev/null would replace it.
+      int const descriptor = open_file(path, O_WRONLY);
+      if (descriptor < 0) fail("write", path, errno);
+      if (int const error = write_and_close(descriptor, bytes, false)) fail("write", path, error);
+      return;
+    }
+    std::error_code ignored;
+    std::filesystem::path const real = std::filesystem::canonical(path, ignored);
+    if (!ignored) target = real;
+  }
+  std::filesystem::path partial = target;
+  partial += ".partial";
+  int const descriptor = open_file(partial, O_WRONLY | O_CREAT | O_TRUNC);
+  if (descriptor < 0) fail("write", path, errno);
+  int error = write_and_close(descriptor, bytes, true);
+  if (error == 0 && ::rename(partial.c_str(), target.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(partial.c_str());
+    fail("write", path, error);
+  }
+  flush_folder(target.parent_path());
+}
+
+void make_folder(std::filesystem::path const& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) fail("make the folder", path, error.value());
+  if (!std::filesystem::is_directory(path)) fail("make the folder", path, ENOTDIR);
+}
+
+void remove_file(std::filesystem::path const& path) {
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail("remove", path, errno);
+}
+
+}  // namespace sysid

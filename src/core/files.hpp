@@ -1,0 +1,23 @@
+// Files read whole and written whole: a reader never sees half a file, a failed write leaves the old one and names the reason.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace sysid {
+
+/// The bytes of a file. IoError "cannot read `PATH`: reason" otherwise.
+std::string read_file(std::filesystem::path const& path);
+
+/// Writes `bytes` under a temporary name in the same folder (PATH.partial), flushes them to the disk and renames: `path` holds
+/// either the old bytes or all of the new. On failure the temporary file is removed and IoError "cannot write `PATH`: reason" is
+/// thrown. A symbolic link is followed; a device or pipe is written directly.
+void write_file(std::filesystem::path const& path, std::string_view bytes);
+
+/// The folder with all above it; nothing when it is there. IoError otherwise.
+void make_folder(std::filesystem::path const& path);
+
+/// Removes a file if it is there. IoError when it is there and cannot be removed.
+void remove_file(std::filesystem::path const& path);
+
+}  // namespace sysid
