@@ -1,5 +1,5 @@
-// Units of measurement as values: a dimension over the seven SI bases, a scale to the coherent SI unit and, for temperatures, an offset.
-// Unit *expressions* are parsed by the language; this file knows atoms (through UDUNITS-2) and their algebra.
+// Units of measurement as values: a dimension over the seven SI bases, a scale to the coherent SI unit and, for temperatures, an
+// offset. Unit *expressions* are parsed by the language; this file knows atoms (through UDUNITS-2) and their algebra.
 #pragma once
 #include <array>
 #include <optional>
@@ -26,18 +26,23 @@ using Dimension = std::array<Rational, 7>;
 
 struct Unit {
   Dimension dimension{};
-  double scale = 1;      // 1 of this unit = scale coherent SI units
-  double offset = 0;     // zero of this unit, in coherent SI units: 273.15 for degC
-  std::string text;      // as the user wrote it, without brackets; empty for a derived unit
+  double scale = 1;   // 1 of this unit = scale coherent SI units
+  double offset = 0;  // zero of this unit, in coherent SI units: 273.15 for degC
+  std::string text;   // as the user wrote it, without brackets; empty for a derived unit
+  Rational radian{};  // exponent of the radian (rpm and rad/s: 1) and of the hertz: both are 1/s to the SI, 2 pi apart to the user
+  Rational hertz{};
 
   bool dimensionless() const { return dimension == Dimension{}; }
 };
 
-/// A unit name with an optional SI prefix ("N", "mm", "percent", "degC", "-" for dimensionless), or nothing when unknown.
+/// A unit name with an optional SI prefix ("N", "mm", "percent", "degC", "delta_degC", "-" for dimensionless), or nothing when
+/// unknown. Prefixes go with SI units and their like only, so that "mph" is unknown and not a milliphot. `text` is the name.
+/// Thread-safe. IoError when the unit database of UDUNITS-2 cannot be read.
 std::optional<Unit> unit_atom(std::string_view name);
 /// Names near a misspelt atom, for "did you mean".
 std::vector<std::string> const& common_unit_names();
 
+/// Products and powers are of intervals: an offset is dropped, but for the factor 1 and the power 1, which change nothing.
 Unit multiply(Unit const& a, Unit const& b);
 Unit divide(Unit const& a, Unit const& b);
 Unit power(Unit const& a, Rational exponent);
@@ -46,7 +51,11 @@ Unit power(Unit const& a, Rational exponent);
 /// Dimensions must agree (the caller has checked).
 double convert(double value, Unit const& from, Unit const& to);
 
-/// Canonical SI text: "kg m/s^2"; "1" when dimensionless.
+/// Whether one counts cycles and the other radians ([Hz] and [rad/s], [Hz] and [rpm]): `convert` has factor 1 there, as the SI has,
+/// where the user means 2 pi. Such a conversion must be refused.
+bool cycles_against_radians(Unit const& a, Unit const& b);
+
+/// Canonical SI text, readable as a unit expression: "kg m/s^2", "kg/(m s^2)", "m^(1/2)"; "1" when dimensionless.
 std::string format_dimension(Dimension const& dimension);
 
 }  // namespace sysid
