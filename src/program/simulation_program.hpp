@@ -1,0 +1,98 @@
+// A first-order system with its integrator and its observations as one program: prologue (once per parameter vector), step, observe
+// (per scored sample), record, epilogue. Sub-expressions are sorted by binding time, so each is computed as seldom as it may be.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "program/integrator.hpp"
+#include "program/kernel.hpp"
+
+namespace sysid {
+
+/// Expressions to be summed over the scored, non-missing samples of one channel: functions of measured(channel), state, input,
+/// input_rate, time and parameter leaves. A log density comes back with its constants: terms of parameters alone are multiplied by
+/// the number of samples.
+struct ChannelSource {
+  std::vector<NodeId> sums;
+};
+
+struct SimulationSource {
+  Graph graph;
+  int parameters = 0;  // parameter leaves 0 ... parameters - 1
+  int inputs = 0;
+  std::vector<NodeId> initial;     // one per state: expressions of parameters
+  std::vector<NodeId> derivative;  // one per state: expressions of state, input, input_rate, parameter, time
+  std::vector<ChannelSource> channels;
+  std::vector<NodeId> records;  // written out at every sample: expressions of the same leaves (measured as well)
+  std::string integrator = "rk4";
+
+  int states() const { return static_cast<int>(derivative.size()); }
+};
+
+/// Names of leaves, for the dump.
+struct ProgramNames {
+  std::vector<std::string> parameters, inputs, states, channels;
+};
+
+/// A value that is the same in all lanes at a step or sample, as raw data before the tables are computed.
+struct UniformLeaf {
+  LeafKind kind = LeafKind::time;  // input, input_rate, time, measured, step_size
+  int index = 0;
+  Stage stage = Stage::begin;
+};
+
+/// Uniforms of a section: constants, then values computed once per data set from raw leaves by `table`.
+struct UniformTable {
+  std::vector<UniformLeaf> leaves;  // inputs of the kernel
+  Kernel table;                     // outputs: the uniforms that depend on data
+};
+
+/// One sum over samples: count * per_sample + sum over data_terms + sum_i factor_i * accumulator_i, put together in the epilogue.
+struct Section {
+  Code code;
+  UniformTable uniforms;
+  std::shared_ptr<LinkedCode const> linked;
+};
+
+/// Registers of the file are, in this order: parameters, values hoisted into the prologue, states, accumulators, records, sums,
+/// temporaries; uniforms are, in this order: constants, then one row of the running section's table.
+struct RegisterLayout {
+  int parameters = 0, hoisted = 0, states = 0, accumulators = 0, records = 0, sums = 0, temporaries = 0;
+  int first_state() const { return parameters + hoisted; }
+  int first_accumulator() const { return first_state() + states; }
+  int first_record() const { return first_accumulator() + accumulators; }
+  int first_sum() const { return first_record() + records; }
+  int first_temporary() const { return first_sum() + sums; }
+  int total() const { return first_temporary() + temporaries; }
+  /// Rows the step and the observations touch: what has to stay in the first-level cache.
+  int hot = 0;
+};
+
+struct SimulationProgram {
+  SimulationSource source;
+  RegisterLayout registers;
+  std::vector<double> constants;
+  int widest_row = 0;            // uniforms of the section that has most, constants not counted
+  Section prologue;              // parameters -> hoisted values
+  Section start;                 // parameters -> initial states
+  Section step;                  // one integrator step
+  std::vector<Section> observe;  // per channel: one scored sample into the accumulators
+  Section record;                // one sample into the record registers
+  Section epilogue;              // accumulators -> sums; its row: samples per channel, then sums of data alone
+  std::vector<Kernel>
+      data_sums;  // per channel: terms of data alone, summed once per data set; inputs as observe[channel].uniforms.leaves
+
+  int sum_count() const;
+  /// The row of sum k of a channel in the output of Simulator::sums.
+  int sum_row(int channel, int k) const;
+};
+
+SimulationProgram compile(SimulationSource source);
+
+/// What `--dump program` prints.
+std::string dump(SimulationProgram const& program, ProgramNames const& names);
+
+}  // namespace sysid

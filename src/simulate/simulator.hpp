@@ -1,0 +1,68 @@
+// Runs a program over an experiment for any number of parameter vectors at once: lanes in blocks, blocks over threads.
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "core/lanes.hpp"
+#include "program/simulation_program.hpp"
+#include "simulate/schedule.hpp"
+
+namespace sysid {
+
+class ThreadPool;  // simulate/thread_pool.hpp
+
+/// How, never what: results are the same bytes for every choice.
+struct ExecutionOptions {
+  int lanes = 0;    // lanes per block; 0: chosen from the work and the first-level cache
+  int threads = 1;  // 0: one per processor
+};
+
+/// How the solve of one lane ended. `sample`: one by which it had failed (checked every few samples, the same ones for any width).
+struct Outcome {
+  bool ok = true;
+  int sample = -1;
+};
+
+/// The first non-finite sub-expression of a failed solve, in evaluation order, and the time it appeared.
+struct Diagnosis {
+  NodeId node = 0;  // of SimulationProgram::source.graph
+  double time = 0;
+  int sample = 0;
+};
+
+/// Immutable; all members may be called concurrently.
+class Simulator {
+ public:
+  Simulator(std::shared_ptr<SimulationProgram const> program, Schedule schedule, ExecutionOptions options = {});
+
+  SimulationProgram const& program() const { return *program_; }
+  Schedule const& schedule() const { return schedule_; }
+
+  /// parameters: [parameters x W], SI. out: [sum_count x W], rows as SimulationProgram::sum_row; NaN in failed lanes. outcome: [W].
+  /// A lane fails when a state or a sum is not finite. Lane w depends on column w alone.
+  void sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
+
+  /// Records of samples [first, last): record r of sample i is row (i - first) * records + r of out; a failed lane is NaN in every
+  /// row.
+  void records(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const;
+
+  /// Writes the parameters in force from sample `sample` on, for lanes [lane, lane + parameters.width()).
+  using Redraw = std::function<void(int sample, int lane, Lanes parameters)>;
+  /// `records` with parameters redrawn at every sample; the initial state is that of sample 0's. May be called from several
+  /// threads.
+  void records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const;
+
+  /// Re-runs one lane with plain arithmetic until something is not finite; nothing when it stays finite there.
+  std::optional<Diagnosis> diagnose(std::span<double const> parameters) const;
+
+ private:
+  int block_width(int lanes) const;
+
+  std::shared_ptr<SimulationProgram const> program_;
+  Schedule schedule_;
+  ExecutionOptions options_;
+  std::shared_ptr<ThreadPool> pool_;  // absent for one thread
+};
+
+}  // namespace sysid
