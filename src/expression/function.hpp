@@ -37,7 +37,7 @@ enum class UnitRule {
 struct FunctionRow {
   std::string_view name;
   int minimum_arguments;
-  int maximum_arguments;
+  int maximum_arguments;  // INT_MAX: any number
   UnitRule unit_rule;
   NodeId (*build)(Graph&, std::span<NodeId const> arguments);
   std::string_view summary;  // one line for `sysid list functions` and the docs
