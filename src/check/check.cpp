@@ -1,0 +1,65 @@
+// A whole file: models, then data blocks, then tasks in order. What fails its own check is not reported again where it is used.
+#include "check/check.hpp"
+
+#include <map>
+
+#include "check/data.hpp"
+#include "check/errors.hpp"
+#include "check/model.hpp"
+#include "check/tasks.hpp"
+
+namespace sysid {
+namespace {
+
+class Unique {
+ public:
+  Unique(std::string kind, Diagnostics& diagnostics) : kind_(std::move(kind)), diagnostics_(diagnostics) {}
+  bool operator()(ast::Name const& name, std::string const& text) {
+    auto const [place, fresh] = seen_.emplace(text, name.span);
+    if (!fresh) diagnostics_.add(errors::duplicate_item({{name.span}, text}, kind_, place->second));
+    return fresh;
+  }
+
+ private:
+  std::string kind_;
+  Diagnostics& diagnostics_;
+  std::map<std::string, Span> seen_;
+};
+
+}  // namespace
+
+std::optional<CheckedFile> check(ast::File const& tree, std::span<BackendSettings const> backends, Diagnostics& diagnostics) {
+  CheckedFile file;
+  TaskNames names;
+  std::vector<ast::FunctionDefinition const*> functions;
+  std::vector<ast::Task const*> tasks;
+  Unique unique_model("model", diagnostics), unique_data("data block", diagnostics), unique_task("task", diagnostics),
+      unique_function("function", diagnostics);
+  for (ast::Item const& item : tree.items) {
+    if (auto const* function = std::get_if<ast::FunctionDefinition>(&item))
+      if (unique_function(function->name, function->name.text)) functions.push_back(function);
+    if (auto const* task = std::get_if<ast::Task>(&item))
+      if (unique_task(task->name ? *task->name : task->verb, task_name(*task))) tasks.push_back(task);
+  }
+  for (ast::Item const& item : tree.items) {
+    if (auto const* model = std::get_if<ast::Model>(&item)) {
+      if (!unique_model(model->name, model->name.text)) continue;
+      auto checked = check_model(*model, functions, diagnostics);
+      names.models[model->name.text] = checked ? std::optional(static_cast<int>(file.models.size())) : std::nullopt;
+      if (checked) file.models.push_back(std::move(*checked));
+    } else if (auto const* data = std::get_if<ast::Data>(&item)) {
+      if (!unique_data(data->name, data->name.text)) continue;
+      auto checked = check_data(*data, diagnostics);
+      names.data[data->name.text] = checked ? std::optional(static_cast<int>(file.data.size())) : std::nullopt;
+      if (checked) file.data.push_back(std::move(*checked));
+    }
+  }
+  for (ast::Task const* task : tasks) {
+    auto checked = check_task(*task, names, file, backends, tasks, diagnostics);
+    if (checked) file.tasks.push_back(std::move(*checked));
+  }
+  if (diagnostics.has_errors()) return std::nullopt;
+  return file;
+}
+
+}  // namespace sysid

@@ -1,0 +1,21 @@
+// Syntax tree to checked file: names, kinds, units of literals, distributions, structure of the equations, data blocks, tasks.
+#pragma once
+#include <optional>
+#include <span>
+
+#include "check/checked.hpp"
+#include "core/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// A back end as tasks may name it: the checker knows its settings, nothing else.
+struct BackendSettings {
+  std::string_view name;
+  std::span<SettingRow const> settings;
+};
+
+/// The checked file, or nothing when an error was reported. Warnings do not prevent a result.
+std::optional<CheckedFile> check(ast::File const& file, std::span<BackendSettings const> backends, Diagnostics& diagnostics);
+
+}  // namespace sysid

@@ -1,0 +1,116 @@
+// A checked file: what every later stage works from. Models are typed and first order; data blocks and tasks refer to them by index.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/settings.hpp"
+#include "data/experiment.hpp"
+#include "model/model.hpp"
+
+namespace sysid {
+
+/// A column of a data block: its name in the file and the unit its numbers have.
+struct ColumnUse {
+  std::string column;
+  std::optional<Unit> unit;
+  Span span;
+};
+
+struct DataInputUse : ColumnUse {
+  std::string input;
+  InputRule rule = InputRule::zero_order;
+  Span rule_span;
+};
+
+struct DataMeasureUse : ColumnUse {
+  std::string channel;
+};
+
+/// Rows first..last of the file, counted from 1, both included.
+struct DataPart {
+  std::string name;
+  int first = 1;
+  int last = 0;  // 0: the last row of the file
+  Span span;
+};
+
+struct DataBlock {
+  std::string name;
+  Span span;
+  std::string path;       // as written, relative to the .sysid file
+  Span path_span;
+  std::optional<ColumnUse> time;
+  double step = 0;        // [s], when there is no time column
+  std::vector<DataInputUse> inputs;
+  std::vector<DataMeasureUse> measured;
+  std::vector<DataPart> parts;
+};
+
+/// Where a simulation begins and in which state (design: a split says which rows are scored).
+struct StartRule {
+  enum class Kind {
+    record,     // at the record's first row, in the model's initial values
+    rest,       // at the first scored row, in the model's initial values
+    estimated,  // at the first scored row; the state there is fitted to the first `rows` rows, which are then not scored
+  };
+  Kind kind = Kind::record;
+  int rows = 0;
+};
+
+/// A generated input record.
+struct InputGenerator {
+  enum class Kind { gaussian, sine, multisine, constant };
+  Kind kind = Kind::gaussian;
+  std::map<std::string, double> arguments;  // coherent SI
+  InputRule rule = InputRule::zero_order;
+};
+
+struct SimulateTask {
+  int model = 0;
+  std::vector<std::optional<double>> values;    // per model parameter, SI; absent: not given
+  std::vector<InputGenerator> inputs;           // per model input
+  double noise_fraction = -1;                   // of the standard deviation of each clean channel; negative: the model's own noise
+  int samples = 0;
+  double step = 0;                              // [s]
+  int substeps = 1;
+  std::optional<std::uint64_t> seed;
+  std::string file;                             // name of the CSV in the result folder
+};
+
+struct FitTask {
+  int model = 0;
+  int data = 0;
+  int part = -1;                                // -1: all rows
+  std::string backend;
+  Settings settings;                            // of the back end
+  StartRule start;
+  int substeps = 0;                             // 0: chosen by the tolerance guard
+  std::optional<std::uint64_t> seed;
+};
+
+struct PredictTask {
+  int fit = 0;                                  // index into CheckedFile::tasks
+  int data = 0;
+  int part = -1;
+  int draws = 200;
+  bool redraw_each_step = false;                // the tutorial's Fig. 8.4; the default is one draw per trajectory
+  StartRule start;
+  std::optional<std::uint64_t> seed;
+};
+
+struct Task {
+  std::string name;
+  Span span;
+  std::variant<SimulateTask, FitTask, PredictTask> what;
+};
+
+struct CheckedFile {
+  std::vector<Model> models;
+  std::vector<DataBlock> data;
+  std::vector<Task> tasks;
+};
+
+}  // namespace sysid

@@ -1,0 +1,174 @@
+// Data blocks: statements in any order, each at most once where once is meant.
+#include "check/data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "check/errors.hpp"
+#include "check/scope.hpp"
+#include "check/units.hpp"
+
+namespace sysid {
+namespace {
+
+std::optional<InputRule> input_rule(std::string const& name) {
+  static std::map<std::string, InputRule> const rules = {{"zero_order", InputRule::zero_order},
+                                                         {"linear", InputRule::linear},
+                                                         {"cubic", InputRule::cubic},
+                                                         {"band_limited", InputRule::band_limited}};
+  auto const place = rules.find(name);
+  return place == rules.end() ? std::nullopt : std::optional(place->second);
+}
+
+class DataChecker {
+ public:
+  DataChecker(ast::Data const& tree, Diagnostics& diagnostics)
+      : tree_(tree), diagnostics_(diagnostics), before_(diagnostics.all().size()), scope_(graph_, diagnostics, {}) {}
+
+  std::optional<DataBlock> run() {
+    block_.name = tree_.name.text;
+    block_.span = tree_.name.span;
+    for (ast::DataStatement const& statement : tree_.statements)
+      std::visit([&](auto const& each) { take(each); }, statement);
+    if (!file_) diagnostics_.add(errors::no_file(tree_.name));
+    if (!times_) diagnostics_.add(errors::no_time(tree_.name));
+    if (diagnostics_.all().size() > before_) return std::nullopt;
+    return block_;
+  }
+
+ private:
+  ColumnUse column(ast::Column const& tree) { return {tree.name, check_unit(tree.unit, diagnostics_), tree.span}; }
+
+  bool fresh(std::map<std::string, Span>& seen, ast::Name const& name, std::string const& what) {
+    auto const [place, is_fresh] = seen.emplace(name.text, name.span);
+    if (!is_fresh) diagnostics_.add(errors::stated_twice(name.span, place->second, what + " `" + name.text + "`"));
+    return is_fresh;
+  }
+
+  std::optional<double> number(ast::Expression const& tree, Unit const& unit, std::string const& what) {
+    auto const value = scope_.expression(tree);
+    if (!value) return std::nullopt;
+    auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
+    if (!constant) diagnostics_.add(errors::constant_needed(tree.span, what));
+    return constant;
+  }
+
+  void take(ast::DataFile const& tree) {
+    if (file_) diagnostics_.add(errors::stated_twice(tree.span, *file_, "the file"));
+    file_ = tree.span;
+    block_.path = tree.path.value;
+    block_.path_span = tree.path.span;
+  }
+  void take(ast::DataTime const& tree) {
+    if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
+    times_ = tree.span;
+    block_.time = column(tree.column);
+  }
+  void take(ast::DataRate const& tree) {
+    if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
+    times_ = tree.span;
+    Unit unit;  // Hz or s
+    unit.dimension[2] = {tree.step ? 1 : -1, 1};
+    auto const value = number(tree.value, unit, tree.step ? "the sampling step" : "the sampling rate");
+    if (!value) return;
+    if (!(*value > 0) || !std::isfinite(*value)) {
+      diagnostics_.add(errors::rate_not_positive(tree.value.span));
+      return;
+    }
+    block_.step = tree.step ? *value : 1 / *value;
+  }
+  void take(ast::DataInput const& tree) {
+    if (!fresh(inputs_, tree.input, "input")) return;
+    DataInputUse use;
+    static_cast<ColumnUse&>(use) = column(tree.column);
+    use.input = tree.input.text;
+    if (!tree.rule) {
+      diagnostics_.add(errors::rule_missing(tree));
+    } else if (auto const rule = input_rule(tree.rule->text)) {
+      use.rule = *rule;
+      use.rule_span = tree.rule->span;
+    } else {
+      diagnostics_.add(errors::unknown_rule(*tree.rule));
+    }
+    block_.inputs.push_back(std::move(use));
+  }
+  void take(ast::DataMeasure const& tree) {
+    if (!fresh(channels_, tree.channel, "channel")) return;
+    DataMeasureUse use;
+    static_cast<ColumnUse&>(use) = column(tree.column);
+    use.channel = tree.channel.text;
+    block_.measured.push_back(std::move(use));
+  }
+  void take(ast::DataSplit const& tree) {
+    for (ast::SplitPart const& part : tree.parts) {
+      if (!fresh(parts_, part.name, "part")) continue;
+      auto const first = number(part.first, Unit{}, "a row"), last = number(part.last, Unit{}, "a row");
+      if (!first || !last) continue;
+      if (*first != std::floor(*first) || *last != std::floor(*last) || *first < 1 || *last < *first || *last > 2e9) {
+        diagnostics_.add(errors::bad_rows(cover(part.first.span, part.last.span)));
+        continue;
+      }
+      block_.parts.push_back({part.name.text, static_cast<int>(*first), static_cast<int>(*last), part.span});
+    }
+  }
+
+  ast::Data const& tree_;
+  Diagnostics& diagnostics_;
+  std::size_t before_;
+  Graph graph_;
+  Scope scope_;
+  DataBlock block_;
+  std::optional<Span> file_, times_;
+  std::map<std::string, Span> inputs_, channels_, parts_;
+};
+
+}  // namespace
+
+std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnostics) { return DataChecker(tree, diagnostics).run(); }
+
+void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics) {
+  auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
+    if (!column.unit || !declared.unit) return;
+    if (column.unit->dimension != declared.unit->dimension || cycles_against_radians(*column.unit, *declared.unit))
+      diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text,
+                                            declared.unit->text.empty() ? format_dimension(declared.unit->dimension)
+                                                                        : declared.unit->text));
+  };
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    Quantity const& input = model.inputs[i];
+    auto const bound = std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
+    if (bound == block.inputs.end()) {
+      diagnostics.add(errors::input_not_bound(use, input.name, model.name, block.name));
+      continue;
+    }
+    compare_units(*bound, input, "column `" + bound->column + "`");
+    if (bound->rule != InputRule::zero_order) continue;
+    for (NodeId id = 0; id < model.graph.size(); ++id) {
+      Node const& node = model.graph[id];
+      if (node.operation == Operation::leaf && node.leaf_kind == LeafKind::input_rate && node.index == static_cast<int>(i)) {
+        diagnostics.add(errors::rate_under_zero_order(bound->rule_span, model.graph.span(id).value_or(input.span), input.name));
+        break;
+      }
+    }
+  }
+  std::vector<std::string> channels;
+  for (Channel const& channel : model.channels) channels.push_back(channel.name);
+  bool any = false;
+  for (DataMeasureUse const& measured : block.measured) {
+    auto const channel =
+        std::find_if(model.channels.begin(), model.channels.end(), [&](auto const& each) { return each.name == measured.channel; });
+    if (channel == model.channels.end()) continue;  // a block may serve several models
+    any = true;
+    compare_units(measured, *channel, "column `" + measured.column + "`");
+  }
+  if (any) return;
+  if (block.measured.empty()) {
+    diagnostics.add(errors::no_channel_bound(use, model.name, block.name, channels));
+  } else {
+    for (DataMeasureUse const& measured : block.measured)
+      diagnostics.add(errors::unknown_channel(measured.span, measured.channel, model.name, channels));
+  }
+}
+
+}  // namespace sysid

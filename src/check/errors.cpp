@@ -1,0 +1,312 @@
+// The checker's wording. Messages are lower case without a full stop; `help` says what to do.
+#include "check/errors.hpp"
+
+#include <fmt/format.h>
+
+#include "core/unit.hpp"
+
+namespace sysid::errors {
+namespace {
+
+Diagnostic error(std::string code, Span span, std::string message, std::string help = {}, std::string label = {}) {
+  return {Severity::error, std::move(code), std::move(message), Label{span, std::move(label)}, {}, std::move(help)};
+}
+
+Diagnostic conflict(std::string code, Span span, std::string label, Span other, std::string other_label, std::string message,
+                    std::string help = {}) {
+  Diagnostic result = error(std::move(code), span, std::move(message), std::move(help), std::move(label));
+  result.secondary.push_back({other, std::move(other_label)});
+  return result;
+}
+
+std::string quoted(Names const& names, std::string const& last = "and") {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i != 0) text += i + 1 == names.size() ? fmt::format(" {} ", last) : ", ";
+    text += fmt::format("`{}`", names[i]);
+  }
+  return text;
+}
+
+// "did you mean ...", else the given fallback.
+std::string guess_or(std::string const& text, Names const& known, std::string fallback) {
+  std::string guess = did_you_mean(text, known);
+  return guess.empty() ? std::move(fallback) : guess;
+}
+
+std::string choose(Names const& known, std::string const& what) {
+  if (known.empty()) return fmt::format("there is no {} here", what);
+  return fmt::format("there {} {}", known.size() == 1 ? "is" : "are", quoted(known));
+}
+
+std::string primed(ast::Reference const& reference) {
+  return reference.name.text + std::string(static_cast<std::size_t>(reference.primes), '\'');
+}
+
+}  // namespace
+
+Diagnostic unknown_name(ast::Name const& name, Names const& known) {
+  return error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
+               guess_or(name.text, known, "declare it as state, input, parameter, constant or local definition (let)"));
+}
+Diagnostic duplicate_name(ast::Name const& name, Span first) {
+  return conflict("E2002", name.span, "again here", first, "first declared here", fmt::format("`{}` is declared twice", name.text),
+                  "rename one of the two, or delete it");
+}
+Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity) {
+  if (is_quantity)
+    return error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
+                 fmt::format("multiplication is written with *: `{}*(...)`", name.text));
+  return error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
+               guess_or(name.text, known, "define it: `function f(a, b) = ...`; built-in ones: sysid list functions"));
+}
+Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {
+  std::string const wanted = least == most ? fmt::format("{}", least) : most > 100 ? fmt::format("{} or more", least)
+                                                                                   : fmt::format("{} to {}", least, most);
+  return error("E2004", function.span,
+               fmt::format("`{}` takes {} argument{}, here it has {}", function.text, wanted, wanted == "1" ? "" : "s", given),
+               "give each argument once, separated by commas");
+}
+Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function) {
+  return error("E2005", argument.span, fmt::format("arguments of the function `{}` have no names", function),
+               fmt::format("leave out `{} =`", argument.text));
+}
+Diagnostic definition_cycle(Span span, Names const& loop) {
+  return error("E2006", span, fmt::format("this definition needs itself: {}", fmt::join(loop, " -> ")),
+               "break the loop; a quantity with memory is a state with an equation");
+}
+Diagnostic primes_on(ast::Reference const& reference, std::string const& what) {
+  return error("E2007", reference.span, fmt::format("`{}` is {}: it has no time derivative", primed(reference), what),
+               fmt::format("primes belong to states and inputs; declare `state {}` if it moves", reference.name.text));
+}
+Diagnostic second_input_derivative(ast::Reference const& reference) {
+  return error("E2008", reference.span, fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
+               "bind the derivative as an input of its own");
+}
+Diagnostic not_a_number(Span span, std::string const& what) {
+  return error("E2009", span, fmt::format("{} cannot stand in an expression", what), "an expression is made of numbers and names");
+}
+Diagnostic constant_needed(Span span, std::string const& what) {
+  return error("E2010", span, fmt::format("{} must be a number known before the run", what),
+               "use numbers, constants and functions of them only");
+}
+Diagnostic unknown_unit(ast::Name const& name) {
+  return error("E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
+               guess_or(name.text, common_unit_names(), "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));
+}
+Diagnostic unit_exponent(Span span) {
+  return error("E2012", span, "the exponent of a unit must be a fraction of small whole numbers", "for example [m^2], [N^(1/2)], [s^-1]");
+}
+Diagnostic list_here(Span span) {
+  return error("E2013", span, "a list cannot stand in an expression", "parentheses with a comma make a list; remove the comma");
+}
+
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known) {
+  Names more = known;
+  std::string help = guess_or(name.text, more, fmt::format("distributions: {}", quoted(known)));
+  if (name.text == "gaussian" || name.text == "Normal") help = "did you mean `normal`?";
+  if (name.text == "loguniform" || name.text == "reciprocal") help = "did you mean `log_uniform`?";
+  if (name.text == "lognormal") help = "did you mean `log_normal`?";
+  return error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text), std::move(help));
+}
+Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
+  return error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
+               guess_or(argument.text, known, fmt::format("its arguments are {}", quoted(known))));
+}
+Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other) {
+  if (spelling == other)
+    return conflict("E2104", second, "again here", first, "first given here", fmt::format("`{}` is given twice", spelling), "keep one");
+  return conflict("E2104", second, fmt::format("`{}`", spelling), first, fmt::format("`{}`", other),
+                  fmt::format("`{}` and `{}` say the same thing twice", other, spelling),
+                  "keep one: precision = 1/variance, variance = sd^2");
+}
+Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
+  return error("E2105", call.span, fmt::format("`{}` needs {}", call.function.text, quoted(spellings, "or")),
+               fmt::format("write for example `{} = ...`", spellings.front()));
+}
+Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings) {
+  return error("E2106", span, fmt::format("say which this is: {}", quoted(spellings, "or")),
+               fmt::format("write `{}(..., {} = ...)`; scales are never positional", distribution, spellings.front()));
+}
+Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature) {
+  return error("E2107", span, fmt::format("`{}` has no further argument", distribution),
+               signature.empty() ? "it takes none" : fmt::format("its arguments are {}", quoted(signature)));
+}
+Diagnostic not_a_noise(ast::Call const& call, Names const& known) {
+  return error("E2108", call.function.span, fmt::format("`{}` cannot be the noise of a channel", call.function.text),
+               fmt::format("use {}", quoted(known, "or")));
+}
+Diagnostic cannot_truncate(Span span, std::string const& distribution) {
+  return error("E2109", span, fmt::format("`{}` cannot be truncated", distribution), "leave out `lower` and `upper`");
+}
+Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what) {
+  return error("E2110", span, fmt::format("the prior of `{}` reads {}", parameter, what),
+               "a prior may use numbers, constants and other parameters");
+}
+Diagnostic prior_cycle(Span span, Names const& loop) {
+  return error("E2111", span, fmt::format("these priors need each other: {}", fmt::join(loop, " -> ")),
+               "one of them must stand without the others");
+}
+Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason) {
+  return error("E2112", span, fmt::format("these arguments of `{}` are impossible: {}", distribution, reason), "correct the numbers");
+}
+Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter) {
+  std::string const& name = parameter.name.name.text;
+  return error("E2113", parameter.name.span, fmt::format("parameter `{}` has neither a prior nor a value", name),
+               fmt::format("give a prior, `parameter {} ~ log_uniform(0.1, 10)`, or a value, `parameter {} = 1`", name, name));
+}
+
+Diagnostic state_without_equation(Span declaration, std::string const& state, std::string const& highest) {
+  return error("E3001", declaration, fmt::format("state `{}` has no equation", state),
+               fmt::format("write the equation that contains {}", highest));
+}
+Diagnostic algebraic_state(Span declaration, std::string const& state) {
+  return error("E3002", declaration, fmt::format("no derivative of state `{}` appears in any equation", state),
+               fmt::format("give an equation with `{}'`; a quantity without memory is a local definition: `let {} = ...`", state, state));
+}
+Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
+  return error("E3003", equation.span, "one equation too many: the others already determine every state",
+               fmt::format("states: {}; delete this equation or declare the state it is for", quoted(states)));
+}
+Diagnostic nonlinear_in_highest(ast::Equation const& equation, std::string const& unknown) {
+  return error("E3004", equation.span, fmt::format("this equation is not linear in `{}`, a highest derivative", unknown),
+               fmt::format("solve it for `{}` by hand and write that", unknown));
+}
+Diagnostic undetermined(Span declaration, std::string const& unknown) {
+  return error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
+               "two equations say the same thing about the highest derivatives");
+}
+Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {
+  return error("E3006", reference.span, fmt::format("`{}` follows from the equations: it has no initial value", primed(reference)),
+               fmt::format("`{}` is of order {}: initial values are those of {}{}", state, order, fmt::format("`{}`", state),
+                           order > 1 ? fmt::format(" to its derivative {}", order - 1) : std::string()));
+}
+Diagnostic initial_missing(Span declaration, std::string const& component) {
+  return error("E3007", declaration, fmt::format("`{}` has no initial value", component), fmt::format("write `initial {} = 0`", component));
+}
+Diagnostic initial_twice(Span second, Span first, std::string const& component) {
+  return conflict("E3008", second, "again here", first, "first given here", fmt::format("the initial value of `{}` is given twice", component),
+                  "keep one");
+}
+Diagnostic initial_moves(Span span) {
+  return error("E3009", span, "an initial value cannot read states, inputs or time", "use numbers, constants and parameters");
+}
+Diagnostic not_a_state(ast::Name const& name, Names const& states) {
+  return error("E3010", name.span, fmt::format("`{}` is not a state", name.text), guess_or(name.text, states, choose(states, "state")));
+}
+Diagnostic channel_twice(ast::Name const& name, Span first) {
+  return conflict("E3011", name.span, "again here", first, "first observed here", fmt::format("channel `{}` is observed twice", name.text),
+                  "one `observe` per channel; two sensors are two channels");
+}
+Diagnostic nothing_observed(ast::Name const& model) {
+  return error("E3012", model.span, fmt::format("model `{}` observes nothing", model.text),
+               "say how data arise: `observe displacement ~ normal(y, sd = sigma)`");
+}
+Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first) {
+  return conflict("E3013", name.span, "again here", first, "first here", fmt::format("there are two {}s named `{}`", kind, name.text),
+                  "rename one of the two");
+}
+Diagnostic time_twice(Span second, Span first) {
+  return conflict("E3014", second, "again here", first, "first declared here", "time is declared twice", "keep one");
+}
+
+Diagnostic no_file(ast::Name const& block) {
+  return error("E4101", block.span, fmt::format("data block `{}` names no file", block.text), "add `file \"measurement.csv\"`");
+}
+Diagnostic no_time(ast::Name const& block) {
+  return error("E4102", block.span, fmt::format("data block `{}` does not say when its rows were taken", block.text),
+               "add `time t [s]` (a column) or `rate 1000 [Hz]`");
+}
+Diagnostic time_and_rate(Span second, Span first) {
+  return conflict("E4103", second, "and here", first, "here", "times are given twice, by a column and by a rate", "keep one of them");
+}
+Diagnostic stated_twice(Span second, Span first, std::string const& what) {
+  return conflict("E4104", second, "again here", first, "first here", fmt::format("{} is given twice", what), "keep one");
+}
+Diagnostic rule_missing(ast::DataInput const& input) {
+  return error("E4105", input.span, fmt::format("what does input `{}` do between its samples?", input.input.text),
+               "add `hold zero_order`, `hold linear`, `hold cubic` or `hold band_limited`: it changes the answer more than anything else");
+}
+Diagnostic unknown_rule(ast::Name const& rule) {
+  Names const known = {"zero_order", "linear", "cubic", "band_limited"};
+  std::string help = guess_or(rule.text, known, fmt::format("rules: {}", quoted(known)));
+  if (rule.text == "zoh") help = "did you mean `zero_order`?";
+  return error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help));
+}
+Diagnostic rate_not_positive(Span span) {
+  return error("E4107", span, "the sampling rate or step must be a positive number", "for example `rate 1000 [Hz]` or `step 1 [ms]`");
+}
+Diagnostic bad_rows(Span span) {
+  return error("E4108", span, "rows are whole numbers from 1, the first not after the last", "for example `split train = rows 1..500`");
+}
+Diagnostic input_not_bound(Span span, std::string const& input, std::string const& model, std::string const& data) {
+  return error("E4109", span, fmt::format("data `{}` does not give input `{}` of model `{}`", data, input, model),
+               fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input));
+}
+Diagnostic no_channel_bound(Span span, std::string const& model, std::string const& data, Names const& channels) {
+  return error("E4110", span, fmt::format("data `{}` measures no channel of model `{}`", data, model),
+               fmt::format("add `measure {} = COLUMN [unit]` to the data block", channels.empty() ? "CHANNEL" : channels.front()));
+}
+Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& model, Names const& channels) {
+  return error("E4111", span, fmt::format("model `{}` has no channel `{}`", model, channel),
+               guess_or(channel, channels, choose(channels, "channel")));
+}
+Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input) {
+  return conflict("E4112", rule, "held between samples", use, "its derivative is used here",
+                  fmt::format("`{}'` does not exist: input `{}` is held constant between its samples", input, input),
+                  "choose `hold linear`, `hold cubic` or `hold band_limited`");
+}
+Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {
+  return error("E4113", span, fmt::format("{} is in [{}], the model declares it in [{}]", what, column_unit, declared_unit),
+               "the two must measure the same kind of quantity");
+}
+
+Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known) {
+  return error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text),
+               guess_or(name.text, known, choose(known, kind)));
+}
+Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
+  return error("E6002", span, fmt::format("`{}` has no option `{}`", task, option),
+               guess_or(option, known, fmt::format("its options are {}", quoted(known))));
+}
+Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example) {
+  return error("E6003", task.verb.span, fmt::format("`{}` needs the option `{}`", task.verb.text, option),
+               fmt::format("add `{}` after `with`", example));
+}
+Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted) {
+  return error("E6004", span, fmt::format("`{}` must be {}", option, wanted), "");
+}
+Diagnostic option_range(Span span, std::string const& option, double least, double most) {
+  return error("E6005", span,
+               most < 1e15 ? fmt::format("`{}` must lie between {} and {}", option, least, most)
+                           : fmt::format("`{}` must be at least {}", option, least),
+               "");
+}
+Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {
+  return error("E6006", span, fmt::format("`{}` cannot be `{}`", option, given),
+               guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or"))));
+}
+Diagnostic backend_missing(ast::Task const& task, Names const& known) {
+  return error("E6007", task.verb.span, "this fit does not say with what",
+               fmt::format("add `with mh(samples = 25000)`; back ends: {}", quoted(known)));
+}
+Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
+  return error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
+               guess_or(name.text, known, fmt::format("back ends: {}", quoted(known))));
+}
+Diagnostic data_missing(ast::Task const& task, std::string const& preposition) {
+  return error("E6009", task.verb.span, fmt::format("this {} names no data", task.verb.text),
+               fmt::format("add `{} DATA` or `{} DATA.PART`", preposition, preposition));
+}
+Diagnostic not_a_fit(ast::Name const& name) {
+  return error("E6010", name.span, fmt::format("`{}` is not a fit", name.text), "predict needs the name of a fit task");
+}
+Diagnostic value_missing(Span span, Names const& parameters) {
+  return error("E6011", span, fmt::format("simulating needs a value for {}", quoted(parameters)),
+               fmt::format("write `values({} = ..., ...)`", parameters.front()));
+}
+Diagnostic task_too_late(ast::Name const& name) {
+  return error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text), "tasks run in order: move it up");
+}
+
+}  // namespace sysid::errors

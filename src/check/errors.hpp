@@ -1,0 +1,88 @@
+// Every message of the checker, one named constructor per mistake; wording lives in errors.cpp alone.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid::errors {
+
+using Names = std::vector<std::string>;
+
+// names, functions, units (E20)
+Diagnostic unknown_name(ast::Name const& name, Names const& known);
+Diagnostic duplicate_name(ast::Name const& name, Span first);
+Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity);
+Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most);
+Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function);
+Diagnostic definition_cycle(Span span, Names const& loop);
+Diagnostic primes_on(ast::Reference const& reference, std::string const& what);
+Diagnostic second_input_derivative(ast::Reference const& reference);
+Diagnostic not_a_number(Span span, std::string const& what);
+Diagnostic constant_needed(Span span, std::string const& what);
+Diagnostic unknown_unit(ast::Name const& name);
+Diagnostic unit_exponent(Span span);
+Diagnostic list_here(Span span);
+
+// distributions (E21)
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known);
+Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known);
+Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other);
+Diagnostic argument_missing(ast::Call const& call, Names const& spellings);
+Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings);
+Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature);
+Diagnostic not_a_noise(ast::Call const& call, Names const& known);
+Diagnostic cannot_truncate(Span span, std::string const& distribution);
+Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
+Diagnostic prior_cycle(Span span, Names const& loop);
+Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason);
+Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter);
+
+// structure of a model (E30)
+Diagnostic state_without_equation(Span declaration, std::string const& state, std::string const& highest);
+Diagnostic algebraic_state(Span declaration, std::string const& state);
+Diagnostic surplus_equation(ast::Equation const& equation, Names const& states);
+Diagnostic nonlinear_in_highest(ast::Equation const& equation, std::string const& unknown);
+Diagnostic undetermined(Span declaration, std::string const& unknown);
+Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order);
+Diagnostic initial_missing(Span declaration, std::string const& component);
+Diagnostic initial_twice(Span second, Span first, std::string const& component);
+Diagnostic initial_moves(Span span);
+Diagnostic not_a_state(ast::Name const& name, Names const& states);
+Diagnostic channel_twice(ast::Name const& name, Span first);
+Diagnostic nothing_observed(ast::Name const& model);
+Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first);
+Diagnostic time_twice(Span second, Span first);
+
+// data blocks (E40; the file's own contents: data/errors.hpp)
+Diagnostic no_file(ast::Name const& block);
+Diagnostic no_time(ast::Name const& block);
+Diagnostic time_and_rate(Span second, Span first);
+Diagnostic stated_twice(Span second, Span first, std::string const& what);
+Diagnostic rule_missing(ast::DataInput const& input);
+Diagnostic unknown_rule(ast::Name const& rule);
+Diagnostic rate_not_positive(Span span);
+Diagnostic bad_rows(Span span);
+Diagnostic input_not_bound(Span span, std::string const& input, std::string const& model, std::string const& data);
+Diagnostic no_channel_bound(Span span, std::string const& model, std::string const& data, Names const& channels);
+Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& model, Names const& channels);
+Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input);
+Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit);
+
+// tasks (E60)
+Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
+Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);
+Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
+Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted);
+Diagnostic option_range(Span span, std::string const& option, double least, double most);
+Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices);
+Diagnostic backend_missing(ast::Task const& task, Names const& known);
+Diagnostic unknown_backend(ast::Name const& name, Names const& known);
+Diagnostic data_missing(ast::Task const& task, std::string const& preposition);
+Diagnostic not_a_fit(ast::Name const& name);
+Diagnostic value_missing(Span span, Names const& parameters);
+Diagnostic task_too_late(ast::Name const& name);
+
+}  // namespace sysid::errors

@@ -1,0 +1,450 @@
+// A model in passes: declare names, find the order of each state, write residuals, solve for the highest derivatives, then priors,
+// channels and derived quantities, all in the first-order system's leaves.
+#include "check/model.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "check/distributions.hpp"
+#include "check/errors.hpp"
+#include "check/scope.hpp"
+#include "check/units.hpp"
+#include "model/reduction.hpp"
+
+namespace sysid {
+namespace {
+
+// Calls visit(reference) for every name in an expression.
+template <class Visit>
+void each_reference(ast::Expression const& tree, Visit const& visit) {
+  std::visit(
+      [&](auto const& node) {
+        using Node = std::decay_t<decltype(node)>;
+        if constexpr (std::is_same_v<Node, ast::Reference>) {
+          visit(node);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Unary>>) {
+          each_reference(*node->operand, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Binary>>) {
+          each_reference(*node->left, visit);
+          each_reference(*node->right, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Call>>) {
+          for (auto const& argument : node->arguments) each_reference(argument.value, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Conditional>>) {
+          each_reference(*node->condition, visit);
+          each_reference(*node->then, visit);
+          each_reference(*node->otherwise, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::List>>) {
+          for (auto const& item : node->items) each_reference(item, visit);
+        }
+      },
+      tree.node);
+}
+
+bool is_leaf(Node const& node, LeafKind kind) { return node.operation == Operation::leaf && node.leaf_kind == kind; }
+
+// What an expression reads that it may not, in words; empty when it reads constants and parameters only.
+std::string moving_part(Graph const& graph, NodeId root) {
+  auto const reads = [&](LeafKind kind) { return graph.depends(root, [&](Node const& node) { return is_leaf(node, kind); }); };
+  if (reads(LeafKind::state) || reads(LeafKind::unknown)) return "a state";
+  if (reads(LeafKind::input) || reads(LeafKind::input_rate)) return "an input";
+  if (reads(LeafKind::time)) return "time";
+  return {};
+}
+
+class ModelChecker {
+ public:
+  ModelChecker(ast::Model const& tree, std::vector<ast::FunctionDefinition const*> const& shared, Diagnostics& diagnostics)
+      : tree_(tree), diagnostics_(diagnostics), before_(diagnostics.all().size()), scope_(model_.graph, diagnostics, shared) {}
+
+  std::optional<Model> run() {
+    model_.name = tree_.name.text;
+    if (tree_.title) model_.title = tree_.title->value;
+    declare();
+    find_orders();
+    lay_out_states();
+    equations();
+    initial_values();
+    parameters();
+    channels();
+    derived();
+    if (!failed()) order_priors();
+    if (failed()) return std::nullopt;
+    return std::move(model_);
+  }
+
+ private:
+  struct StateInfo {
+    ast::Declared const* declaration = nullptr;
+    int order = 0;
+    int first = 0;
+    int equations = 0;  // in how many equations its highest derivative stands
+  };
+
+  bool failed() const {
+    return std::any_of(diagnostics_.all().begin() + static_cast<std::ptrdiff_t>(before_), diagnostics_.all().end(),
+                       [](Diagnostic const& each) { return each.severity == Severity::error; });
+  }
+
+  template <class Statement, class Visit>
+  void each(Visit const& visit) {
+    for (ast::ModelStatement const& statement : tree_.statements)
+      if (auto const* one = std::get_if<Statement>(&statement)) visit(*one);
+  }
+
+  void declare() {
+    ast::TimeDeclaration const* first_time = nullptr;
+    for (ast::ModelStatement const& statement : tree_.statements) {
+      if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement)) {
+        if (first_time != nullptr) diagnostics_.add(errors::time_twice(time->span, first_time->span));
+        if (first_time == nullptr)
+          scope_.declare(time->time.name, {TimeSymbol{}, check_unit(time->time.unit, diagnostics_), time->time.name.span});
+        first_time = first_time == nullptr ? time : first_time;
+      } else if (auto const* inputs = std::get_if<ast::InputDeclaration>(&statement)) {
+        for (ast::Declared const& input : inputs->names) {
+          auto const unit = check_unit(input.unit, diagnostics_);
+          if (scope_.declare(input.name, {InputSymbol{static_cast<int>(model_.inputs.size())}, unit, input.name.span}))
+            model_.inputs.push_back({input.name.text, unit, input.name.span});
+        }
+      } else if (auto const* states = std::get_if<ast::StateDeclaration>(&statement)) {
+        for (ast::Declared const& state : states->names)
+          if (scope_.declare(state.name, {StateSymbol{}, check_unit(state.unit, diagnostics_), state.name.span}))
+            states_.push_back({state.name.text, StateInfo{&state}});
+      } else if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) {
+        auto const unit = check_unit(parameter->name.unit, diagnostics_);
+        int const index = static_cast<int>(model_.parameters.size());
+        if (scope_.declare(parameter->name.name, {ParameterSymbol{index}, unit, parameter->name.name.span})) {
+          Parameter declared;
+          declared.name = parameter->name.name.text;
+          declared.unit = unit;
+          declared.span = parameter->name.name.span;
+          model_.parameters.push_back(std::move(declared));
+          parameter_trees_.push_back(parameter);
+        }
+      } else if (auto const* definition = std::get_if<ast::Definition>(&statement)) {
+        scope_.declare(definition->name.name,
+                       {DefinitionSymbol{definition}, check_unit(definition->name.unit, diagnostics_), definition->name.name.span});
+      } else if (auto const* function = std::get_if<ast::FunctionDefinition>(&statement)) {
+        scope_.define_function(*function);
+      }
+    }
+  }
+
+  StateInfo* find_state(std::string const& name) {
+    for (auto& [each, info] : states_)
+      if (each == name) return &info;
+    return nullptr;
+  }
+  std::vector<std::string> state_names() const {
+    std::vector<std::string> names;
+    for (auto const& [name, info] : states_) names.push_back(name);
+    return names;
+  }
+
+  // The order of a state is the most primes it carries in an equation or in a definition an equation may use.
+  void find_orders() {
+    auto const raise = [&](ast::Reference const& reference) {
+      if (StateInfo* state = find_state(reference.name.text)) state->order = std::max(state->order, reference.primes);
+    };
+    each<ast::Equation>([&](ast::Equation const& equation) {
+      each_reference(equation.left, raise);
+      each_reference(equation.right, raise);
+    });
+  }
+
+  void lay_out_states() {
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      auto& [name, info] = states_[i];
+      Symbol* symbol = scope_.find(name);
+      info.first = static_cast<int>(model_.states.size());
+      symbol->what = StateSymbol{info.first, info.order, static_cast<int>(i)};
+      for (int k = 0; k < info.order; ++k) {
+        State component;
+        component.name = primed_name(name, k);
+        component.unit = rate_unit(symbol->unit, k);
+        component.span = info.declaration->name.span;
+        model_.states.push_back(std::move(component));
+      }
+    }
+  }
+
+  void equations() {
+    std::vector<ast::Equation const*> trees;
+    std::vector<NodeId> residuals;
+    bool good = true;
+    Graph& graph = model_.graph;
+    each<ast::Equation>([&](ast::Equation const& equation) {
+      auto left = scope_.expression(equation.left), right = scope_.expression(equation.right);
+      if (!left || !right) {
+        good = false;
+        return;
+      }
+      Typed sides[] = {*left, *right};
+      unify(graph, sides);
+      trees.push_back(&equation);
+      residuals.push_back(graph.subtract(sides[1].node, sides[0].node));
+      graph.set_span(residuals.back(), equation.span);
+    });
+    // Structure is judged even where an expression failed, as long as every equation was understood.
+    if (!good) return;
+    good = enough_equations(trees, residuals);
+    if (!good || failed()) return;
+    auto const solved = solve_for_unknowns(graph, residuals);
+    if (auto const* failure = std::get_if<ReductionFailure>(&solved)) {
+      auto const& [name, info] = states_[static_cast<std::size_t>(failure->unknown)];
+      std::string const unknown = primed_name(name, info.order);
+      diagnostics_.add(failure->kind == ReductionFailure::Kind::nonlinear
+                           ? errors::nonlinear_in_highest(*trees[static_cast<std::size_t>(failure->equation)], unknown)
+                           : errors::undetermined(info.declaration->name.span, unknown));
+      return;
+    }
+    highest_ = std::get<std::vector<NodeId>>(solved);
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      StateInfo const& info = states_[i].second;
+      for (int k = 0; k + 1 < info.order; ++k)
+        model_.states[static_cast<std::size_t>(info.first + k)].derivative = graph.leaf(LeafKind::state, info.first + k + 1);
+      model_.states[static_cast<std::size_t>(info.first + info.order - 1)].derivative = highest_[i];
+    }
+  }
+
+  // As many equations as states, each state with one that contains its highest derivative: said by name where it is not so.
+  bool enough_equations(std::vector<ast::Equation const*> const& trees, std::vector<NodeId> const& residuals) {
+    std::size_t const n = states_.size();
+    std::vector<std::vector<std::size_t>> unknowns(trees.size());
+    for (std::size_t i = 0; i < trees.size(); ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        if (model_.graph.depends(residuals[i], [&](Node const& node) {
+              return is_leaf(node, LeafKind::unknown) && node.index == static_cast<int>(j);
+            }) && states_[j].second.order > 0)
+          unknowns[i].push_back(j);
+    // Kuhn's matching of equations to states, in the user's order, so that the surplus equation is the last one that finds no place.
+    std::vector<int> equation_of(n, -1);
+    std::vector<std::size_t> surplus;
+    for (std::size_t i = 0; i < trees.size(); ++i) {
+      std::vector<bool> seen(n, false);
+      auto const place = [&](auto const& self, std::size_t equation) -> bool {
+        for (std::size_t const j : unknowns[equation]) {
+          if (seen[j]) continue;
+          seen[j] = true;
+          if (equation_of[j] < 0 || self(self, static_cast<std::size_t>(equation_of[j]))) {
+            equation_of[j] = static_cast<int>(equation);
+            return true;
+          }
+        }
+        return false;
+      };
+      if (!place(place, i)) surplus.push_back(i);
+    }
+    bool good = true;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (equation_of[j] >= 0) continue;
+      auto const& [name, info] = states_[j];
+      bool const mentioned = std::any_of(trees.begin(), trees.end(), [&, &state_name = name](ast::Equation const* equation) {
+        bool found = false;
+        auto const look = [&](ast::Reference const& reference) { found = found || reference.name.text == state_name; };
+        each_reference(equation->left, look);
+        each_reference(equation->right, look);
+        return found;
+      });
+      diagnostics_.add(mentioned && info.order == 0
+                           ? errors::algebraic_state(info.declaration->name.span, name)
+                           : errors::state_without_equation(info.declaration->name.span, name,
+                                                            info.order == 0 ? "`" + name + "'` or `" + name + "''`"
+                                                                            : "`" + primed_name(name, info.order) + "`"));
+      good = false;
+    }
+    if (good)
+      for (std::size_t const i : surplus) {
+        diagnostics_.add(errors::surplus_equation(*trees[i], state_names()));
+        good = false;
+      }
+    return good;
+  }
+
+  // In channels and derived quantities a highest derivative (an acceleration) stands for its solution.
+  NodeId solved(NodeId node) {
+    return model_.graph.substitute(node, [&](NodeId leaf) -> std::optional<NodeId> {
+      Node const& what = model_.graph[leaf];
+      if (what.leaf_kind != LeafKind::unknown || highest_.empty()) return std::nullopt;
+      return highest_[static_cast<std::size_t>(what.index)];
+    });
+  }
+
+  void initial_values() {
+    std::map<int, Span> given;
+    each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
+      for (ast::InitialValue const& initial : declaration.values) {
+        StateInfo const* info = find_state(initial.state.name.text);
+        if (info == nullptr) {
+          diagnostics_.add(errors::not_a_state(initial.state.name, state_names()));
+          continue;
+        }
+        if (info->order == 0) continue;  // reported with the equations
+        if (initial.state.primes >= info->order) {
+          diagnostics_.add(errors::initial_of_highest(initial.state, initial.state.name.text, info->order));
+          continue;
+        }
+        int const component = info->first + initial.state.primes;
+        State& state = model_.states[static_cast<std::size_t>(component)];
+        if (auto const [place, fresh] = given.emplace(component, initial.span); !fresh) {
+          diagnostics_.add(errors::initial_twice(initial.span, place->second, state.name));
+          continue;
+        }
+        auto const value = scope_.expression(initial.value);
+        if (!value) continue;
+        if (!moving_part(model_.graph, value->node).empty()) {
+          diagnostics_.add(errors::initial_moves(initial.value.span));
+          continue;
+        }
+        state.initial = adapt(model_.graph, *value, state.unit);
+        state.initial_given = true;
+      }
+    });
+    for (std::size_t i = 0; i < model_.states.size(); ++i)
+      if (!given.contains(static_cast<int>(i)))
+        diagnostics_.add(errors::initial_missing(model_.states[i].span, model_.states[i].name));
+  }
+
+  void parameters() {
+    for (std::size_t i = 0; i < model_.parameters.size(); ++i) {
+      ast::ParameterDeclaration const& tree = *parameter_trees_[i];
+      Parameter& parameter = model_.parameters[i];
+      if (tree.value) {
+        auto const value = scope_.expression(*tree.value);
+        if (!value) continue;
+        NodeId const node = adapt(model_.graph, *value, parameter.unit);
+        if (!model_.graph.constant_value(node)) {
+          diagnostics_.add(errors::constant_needed(tree.value->span, "the value of a parameter"));
+          continue;
+        }
+        parameter.value = node;
+      } else if (tree.prior) {
+        auto use = check_distribution(scope_, *tree.prior, parameter.unit);
+        if (!use) continue;
+        std::vector<NodeId> parts = use->arguments;
+        if (use->lower) parts.push_back(*use->lower);
+        if (use->upper) parts.push_back(*use->upper);
+        bool good = true;
+        for (NodeId const part : parts)
+          if (std::string const what = moving_part(model_.graph, part); !what.empty() && good) {
+            diagnostics_.add(errors::prior_reads(tree.prior->span, parameter.name, what));
+            good = false;
+          }
+        if (good) parameter.prior = std::move(use);
+      } else {
+        diagnostics_.add(errors::no_prior_or_value(tree));
+      }
+    }
+  }
+
+  // Each sampled parameter after those its prior refers to.
+  void order_priors() {
+    enum class Mark { none, open, done };
+    std::vector<Mark> marks(model_.parameters.size(), Mark::none);
+    std::vector<std::string> path;
+    auto const visit = [&](auto const& self, int index) -> bool {
+      Parameter const& parameter = model_.parameters[static_cast<std::size_t>(index)];
+      if (marks[static_cast<std::size_t>(index)] == Mark::done || !parameter.prior) return true;
+      path.push_back(parameter.name);
+      if (marks[static_cast<std::size_t>(index)] == Mark::open) {
+        auto const begin = std::find(path.begin(), path.end(), parameter.name);
+        diagnostics_.add(errors::prior_cycle(parameter.span, std::vector<std::string>(begin, path.end())));
+        return false;
+      }
+      marks[static_cast<std::size_t>(index)] = Mark::open;
+      std::vector<NodeId> roots = parameter.prior->arguments;
+      if (parameter.prior->lower) roots.push_back(*parameter.prior->lower);
+      if (parameter.prior->upper) roots.push_back(*parameter.prior->upper);
+      for (NodeId const node : model_.graph.reachable(roots))
+        if (is_leaf(model_.graph[node], LeafKind::parameter) && !self(self, model_.graph[node].index)) return false;
+      marks[static_cast<std::size_t>(index)] = Mark::done;
+      path.pop_back();
+      model_.sampling_order.push_back(index);
+      return true;
+    };
+    for (std::size_t i = 0; i < model_.parameters.size(); ++i)
+      if (!visit(visit, static_cast<int>(i))) return;
+  }
+
+  void channels() {
+    std::map<std::string, Span> seen;
+    bool any = false;
+    each<ast::Observation>([&](ast::Observation const& observation) {
+      any = true;
+      ast::Name const& name = observation.channel.name;
+      if (auto const [place, fresh] = seen.emplace(name.text, name.span); !fresh) {
+        diagnostics_.add(errors::channel_twice(name, place->second));
+        return;
+      }
+      Channel channel;
+      channel.name = name.text;
+      channel.span = name.span;
+      channel.unit = check_unit(observation.channel.unit, diagnostics_);
+      if (!channel.unit) channel.unit = location_unit(observation.noise);
+      auto use = check_distribution(scope_, observation.noise, channel.unit);
+      if (!use) return;
+      if (!use->row->noise) {
+        std::vector<std::string> known;
+        for (DistributionRow const& row : distributions())
+          if (row.noise) known.emplace_back(row.name);
+        diagnostics_.add(errors::not_a_noise(observation.noise, known));
+        return;
+      }
+      for (NodeId& argument : use->arguments) argument = solved(argument);
+      if (use->lower) use->lower = solved(*use->lower);
+      if (use->upper) use->upper = solved(*use->upper);
+      channel.noise = std::move(*use);
+      model_.channels.push_back(std::move(channel));
+    });
+    if (!any) diagnostics_.add(errors::nothing_observed(tree_.name));
+  }
+
+  // The unit of what the noise is centred on, when it is known; a failing expression is reported by the caller's second look.
+  std::optional<Unit> location_unit(ast::Call const& noise) {
+    ast::Expression const* location = location_argument(noise);
+    if (location == nullptr) return std::nullopt;
+    Diagnostics ignored;
+    Scope quiet = scope_.with(ignored);
+    auto const value = quiet.expression(*location);
+    if (!value || value->kind != Typed::Kind::known) return std::nullopt;
+    return value->unit;
+  }
+
+  void derived() {
+    each<ast::Definition>([&](ast::Definition const& definition) {
+      auto const value = scope_.definition(definition);  // every definition is looked at, used or not
+      if (!value || definition.kind == ast::DefinitionKind::local) return;
+      std::string const moving = moving_part(model_.graph, value->node);
+      if (definition.kind == ast::DefinitionKind::constant) {
+        if (!model_.graph.constant_value(value->node))
+          diagnostics_.add(errors::constant_needed(definition.value.span, "the value of a constant"));
+        return;
+      }
+      Derived quantity;
+      quantity.name = definition.name.name.text;
+      quantity.unit = value->kind == Typed::Kind::known ? std::optional(value->unit) : std::nullopt;
+      quantity.span = definition.name.name.span;
+      quantity.value = solved(value->node);
+      quantity.per_sample = !moving.empty();
+      model_.derived.push_back(std::move(quantity));
+    });
+  }
+
+  ast::Model const& tree_;
+  Diagnostics& diagnostics_;
+  std::size_t before_;
+  Model model_;
+  Scope scope_;
+  std::vector<std::pair<std::string, StateInfo>> states_;
+  std::vector<ast::ParameterDeclaration const*> parameter_trees_;
+  std::vector<NodeId> highest_;
+};
+
+}  // namespace
+
+std::optional<Model> check_model(ast::Model const& tree, std::vector<ast::FunctionDefinition const*> const& shared,
+                                 Diagnostics& diagnostics) {
+  return ModelChecker(tree, shared, diagnostics).run();
+}
+
+}  // namespace sysid

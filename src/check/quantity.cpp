@@ -1,0 +1,157 @@
+// The algebra of expressions with units: one rule per operation, literals adapting as design asks.
+#include "check/quantity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sysid {
+namespace {
+
+using Kind = Typed::Kind;
+
+Span cover_all(std::span<Typed const> operands) {
+  Span span = operands.front().span;
+  for (Typed const& operand : operands) span = cover(span, operand.span);
+  return span;
+}
+
+}  // namespace
+
+Typed literal(Graph& graph, double value, Span span) { return {graph.constant(value), Kind::literal, {}, span}; }
+
+Typed tagged(Graph& graph, double value, Unit const& unit, Span span) {
+  return {graph.constant(value * unit.scale), Kind::known, unit, span};
+}
+
+Typed with_unit(NodeId node, std::optional<Unit> const& unit, Span span) {
+  return {node, unit ? Kind::known : Kind::unknown, unit.value_or(Unit{}), span};
+}
+
+NodeId adapt(Graph& graph, Typed const& typed, std::optional<Unit> const& unit) {
+  if (!unit) return typed.node;
+  if (typed.kind == Kind::literal) return graph.multiply(graph.constant(unit->scale), typed.node);
+  if (typed.kind == Kind::known && typed.unit.offset != unit->offset && typed.unit.dimension == unit->dimension)
+    return graph.add(typed.node, graph.constant(typed.unit.offset - unit->offset));
+  return typed.node;
+}
+
+std::optional<Unit> unify(Graph& graph, std::span<Typed> operands) {
+  auto const known = std::find_if(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::known; });
+  if (known == operands.end()) return std::nullopt;
+  Unit const unit = known->unit;
+  for (Typed& operand : operands) operand.node = adapt(graph, operand, unit);
+  return unit;
+}
+
+namespace {
+
+// The kind of a result whose operands share one unit.
+Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> const& unit) {
+  Typed result{node, Kind::unknown, {}, cover_all(operands)};
+  if (unit) {
+    result.kind = Kind::known;
+    result.unit = *unit;
+  } else if (std::all_of(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::literal; })) {
+    result.kind = Kind::literal;
+  }
+  return result;
+}
+
+}  // namespace
+
+Typed add(Graph& graph, Typed a, Typed b, bool subtract) {
+  Typed operands[] = {std::move(a), std::move(b)};
+  auto const unit = unify(graph, operands);
+  NodeId const node =
+      subtract ? graph.subtract(operands[0].node, operands[1].node) : graph.add(operands[0].node, operands[1].node);
+  return shared(node, operands, unit);
+}
+
+Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
+  Typed result{graph.multiply(a.node, b.node), Kind::unknown, {}, cover(a.span, b.span)};
+  if (a.kind == Kind::literal && b.kind == Kind::literal) {
+    result.kind = Kind::literal;
+  } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
+    result.kind = Kind::known;
+    result.unit = a.kind == Kind::literal ? b.unit : b.kind == Kind::literal ? a.unit : sysid::multiply(a.unit, b.unit);
+  }
+  return result;
+}
+
+Typed divide(Graph& graph, Typed const& a, Typed const& b) {
+  Typed result{graph.divide(a.node, b.node), Kind::unknown, {}, cover(a.span, b.span)};
+  if (a.kind == Kind::literal && b.kind == Kind::literal) {
+    result.kind = Kind::literal;
+  } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
+    result.kind = Kind::known;
+    Unit const one;
+    result.unit = sysid::divide(a.kind == Kind::literal ? one : a.unit, b.kind == Kind::literal ? one : b.unit);
+  }
+  return result;
+}
+
+Typed power(Graph& graph, Typed const& a, Typed const& b) {
+  Typed result{graph.power(a.node, b.node), Kind::unknown, {}, cover(a.span, b.span)};
+  if (a.kind == Kind::literal && b.kind == Kind::literal) {
+    result.kind = Kind::literal;
+  } else if (a.kind == Kind::known) {
+    auto const exponent = graph.constant_value(b.node);
+    auto const rational = exponent ? to_rational(*exponent) : std::nullopt;
+    if (a.unit.dimensionless()) {
+      result.kind = Kind::known;
+    } else if (rational) {
+      result.kind = Kind::known;
+      result.unit = sysid::power(a.unit, *rational);
+    }
+  }
+  return result;
+}
+
+Typed negate(Graph& graph, Typed const& a) {
+  Typed result = a;
+  result.node = graph.negate(a.node);
+  return result;
+}
+
+Typed compare(Graph& graph, Operation operation, Typed a, Typed b) {
+  Typed operands[] = {std::move(a), std::move(b)};
+  unify(graph, operands);
+  return {graph.binary(operation, operands[0].node, operands[1].node), Kind::known, {}, cover_all(operands)};
+}
+
+Typed select(Graph& graph, Typed const& condition, Typed a, Typed b) {
+  Typed operands[] = {std::move(a), std::move(b)};
+  auto const unit = unify(graph, operands);
+  Typed result = shared(graph.select(condition.node, operands[0].node, operands[1].node), operands, unit);
+  result.span = cover(condition.span, result.span);
+  return result;
+}
+
+Typed call(Graph& graph, FunctionRow const& row, std::vector<Typed> arguments) {
+  std::optional<Unit> unit;
+  if (row.unit_rule == UnitRule::same || row.unit_rule == UnitRule::ratio) unit = unify(graph, arguments);
+  std::vector<NodeId> nodes;
+  for (Typed const& argument : arguments) nodes.push_back(argument.node);
+  NodeId const node = row.build(graph, nodes);
+  Typed result = shared(node, arguments, unit);
+  switch (row.unit_rule) {
+    case UnitRule::same: break;
+    case UnitRule::root:
+      if (arguments[0].kind == Kind::known) {
+        result.kind = Kind::known;
+        result.unit = sysid::power(arguments[0].unit, {1, 2});
+      }
+      break;
+    case UnitRule::dimensionless:
+    case UnitRule::none:
+    case UnitRule::ratio:
+      if (result.kind != Kind::literal) {
+        result.kind = Kind::known;
+        result.unit = Unit{};
+      }
+      break;
+  }
+  return result;
+}
+
+}  // namespace sysid

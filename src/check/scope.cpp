@@ -1,0 +1,263 @@
+// Names to nodes: states become leaves of the first-order system, definitions and functions are expanded in place.
+#include "check/scope.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "check/errors.hpp"
+#include "check/units.hpp"
+#include "function/table.hpp"
+
+namespace sysid {
+
+std::string primed_name(std::string const& name, int primes) { return name + std::string(static_cast<std::size_t>(primes), '\''); }
+
+std::optional<Unit> rate_unit(std::optional<Unit> const& unit, int primes) {
+  if (!unit || primes == 0) return unit;
+  Unit second;
+  second.dimension[2] = {1, 1};
+  Unit result = divide(*unit, power(second, {primes, 1}));
+  if (!unit->text.empty()) result.text = unit->text + (primes == 1 ? "/s" : "/s^" + std::to_string(primes));
+  return result;
+}
+
+Scope::Scope(Graph& graph, Diagnostics& diagnostics, std::vector<ast::FunctionDefinition const*> shared_functions)
+    : graph_(graph), diagnostics_(diagnostics) {
+  for (auto const* function : shared_functions) functions_.emplace(function->name.text, function);
+}
+
+bool Scope::declare(ast::Name const& name, Symbol symbol) {
+  auto const [place, fresh] = symbols_.emplace(name.text, std::move(symbol));
+  if (!fresh) diagnostics_.add(errors::duplicate_name(name, place->second.span));
+  return fresh;
+}
+
+bool Scope::define_function(ast::FunctionDefinition const& function) {
+  auto const [place, fresh] = functions_.emplace(function.name.text, &function);
+  if (!fresh) diagnostics_.add(errors::duplicate_name(function.name, place->second->name.span));
+  return fresh;
+}
+
+Symbol const* Scope::find(std::string const& name) const {
+  auto const place = symbols_.find(name);
+  return place == symbols_.end() ? nullptr : &place->second;
+}
+Symbol* Scope::find(std::string const& name) {
+  auto const place = symbols_.find(name);
+  return place == symbols_.end() ? nullptr : &place->second;
+}
+
+std::vector<std::string> Scope::names() const {
+  std::vector<std::string> names;
+  for (auto const& [name, symbol] : symbols_) names.push_back(name);
+  if (arguments_)
+    for (auto const& [name, value] : *arguments_) names.push_back(name);
+  return names;
+}
+
+std::optional<Typed> Scope::definition(ast::Definition const& definition) {
+  if (auto const known = resolved_.find(&definition); known != resolved_.end()) return known->second;
+  std::string const& name = definition.name.name.text;
+  if (auto const begin = std::find(resolving_.begin(), resolving_.end(), name); begin != resolving_.end()) {
+    std::vector<std::string> loop(begin, resolving_.end());
+    loop.push_back(name);
+    diagnostics_.add(errors::definition_cycle(definition.name.span, loop));
+    return resolved_[&definition] = std::nullopt;
+  }
+  resolving_.push_back(name);
+  auto const* outer = std::exchange(arguments_, nullptr);
+  auto const unit = check_unit(definition.name.unit, diagnostics_);
+  std::optional<Typed> value = expression(definition.value);
+  arguments_ = outer;
+  resolving_.pop_back();
+  if (auto const known = resolved_.find(&definition); known != resolved_.end()) return known->second;  // a loop through itself
+  if (value && unit) {
+    value->node = adapt(graph_, *value, unit);
+    value->kind = Typed::Kind::known;
+    value->unit = *unit;
+  } else if (value && value->kind == Typed::Kind::literal) {
+    value->kind = Typed::Kind::unknown;  // a named number is no longer a literal that adapts
+  }
+  return resolved_[&definition] = value;
+}
+
+std::optional<Typed> Scope::reference(ast::Reference const& reference) {
+  std::string const& name = reference.name.text;
+  Span const span = reference.span;
+  if (arguments_) {
+    if (auto const argument = arguments_->find(name); argument != arguments_->end()) {
+      if (reference.primes > 0) {
+        diagnostics_.add(errors::primes_on(reference, "an argument of this function"));
+        return std::nullopt;
+      }
+      Typed value = argument->second;
+      value.span = span;
+      return value;
+    }
+  }
+  Symbol const* symbol = find(name);
+  if (symbol == nullptr) {
+    if (reference.primes == 0) {
+      if (name == "pi") return literal(graph_, std::numbers::pi, span);
+      if (name == "inf") return literal(graph_, std::numeric_limits<double>::infinity(), span);
+    }
+    diagnostics_.add(errors::unknown_name(reference.name, names()));
+    return std::nullopt;
+  }
+  auto const no_primes = [&](std::string const& what) {
+    if (reference.primes == 0) return true;
+    diagnostics_.add(errors::primes_on(reference, what));
+    return false;
+  };
+  if (auto const* state = std::get_if<StateSymbol>(&symbol->what)) {
+    // The order of a state is the most primes its name carries anywhere in an equation, so `observe` may not ask for more.
+    if (reference.primes > state->order) {
+      diagnostics_.add(errors::primes_on(reference, "beyond the highest derivative in the equations"));
+      return std::nullopt;
+    }
+    NodeId const node = reference.primes == state->order ? graph_.leaf(LeafKind::unknown, state->unknown)
+                                                         : graph_.leaf(LeafKind::state, state->first + reference.primes);
+    return with_unit(node, rate_unit(symbol->unit, reference.primes), span);
+  }
+  if (auto const* input = std::get_if<InputSymbol>(&symbol->what)) {
+    if (reference.primes > 1) {
+      diagnostics_.add(errors::second_input_derivative(reference));
+      return std::nullopt;
+    }
+    NodeId const node = graph_.leaf(reference.primes == 0 ? LeafKind::input : LeafKind::input_rate, input->index);
+    graph_.set_span(node, span);
+    return with_unit(node, rate_unit(symbol->unit, reference.primes), span);
+  }
+  if (auto const* parameter = std::get_if<ParameterSymbol>(&symbol->what))
+    return no_primes("a parameter") ? std::optional(with_unit(graph_.leaf(LeafKind::parameter, parameter->index), symbol->unit, span))
+                                    : std::nullopt;
+  if (std::holds_alternative<TimeSymbol>(symbol->what))
+    return no_primes("time") ? std::optional(with_unit(graph_.leaf(LeafKind::time), symbol->unit, span)) : std::nullopt;
+  auto const& definition_symbol = std::get<DefinitionSymbol>(symbol->what);
+  if (!no_primes("a definition")) return std::nullopt;
+  auto value = definition(*definition_symbol.definition);
+  if (value) value->span = span;
+  return value;
+}
+
+std::optional<Typed> Scope::binary(ast::Binary const& binary) {
+  auto left = expression(*binary.left), right = expression(*binary.right);
+  if (!left || !right) return std::nullopt;
+  std::string const& symbol = binary.symbol;
+  if (symbol == "+" || symbol == "-") return add(graph_, *left, *right, symbol == "-");
+  if (symbol == "*") return multiply(graph_, *left, *right);
+  if (symbol == "/") return divide(graph_, *left, *right);
+  if (symbol == "^") return power(graph_, *left, *right);
+  if (symbol == "<") return compare(graph_, Operation::less, *left, *right);
+  if (symbol == "<=") return compare(graph_, Operation::less_equal, *left, *right);
+  if (symbol == ">") return compare(graph_, Operation::less, *right, *left);
+  if (symbol == ">=") return compare(graph_, Operation::less_equal, *right, *left);
+  if (symbol == "==") return compare(graph_, Operation::equal, *left, *right);
+  if (symbol == "!=") {
+    Typed result = compare(graph_, Operation::equal, *left, *right);
+    result.node = graph_.unary(Operation::negation, result.node);
+    return result;
+  }
+  if (symbol == "and") return compare(graph_, Operation::conjunction, *left, *right);
+  if (symbol == "or") return compare(graph_, Operation::disjunction, *left, *right);
+  throw InternalError("operator " + symbol + " in an expression");
+}
+
+std::optional<Typed> Scope::function_call(ast::Call const& call) {
+  std::string const& name = call.function.text;
+  bool good = true;
+  std::vector<Typed> arguments;
+  for (ast::Argument const& argument : call.arguments) {
+    if (argument.name) {
+      diagnostics_.add(errors::named_argument_of_function(*argument.name, name));
+      good = false;
+    }
+    auto value = expression(argument.value);
+    good = good && value;
+    if (value) arguments.push_back(*value);
+  }
+  auto const user = functions_.find(name);
+  if (user != functions_.end()) {
+    ast::FunctionDefinition const& function = *user->second;
+    if (call.arguments.size() != function.parameters.size()) {
+      diagnostics_.add(
+          errors::argument_count(call.function, call.arguments.size(), function.parameters.size(), function.parameters.size()));
+      return std::nullopt;
+    }
+    if (!good) return std::nullopt;
+    std::string const key = name + "()";
+    if (auto const begin = std::find(resolving_.begin(), resolving_.end(), key); begin != resolving_.end()) {
+      std::vector<std::string> loop(begin, resolving_.end());
+      loop.push_back(key);
+      diagnostics_.add(errors::definition_cycle(call.span, loop));
+      return std::nullopt;
+    }
+    Arguments local;
+    for (std::size_t i = 0; i < arguments.size(); ++i) local.emplace(function.parameters[i].text, arguments[i]);
+    resolving_.push_back(key);
+    auto const* outer = std::exchange(arguments_, &local);
+    auto value = expression(function.value);
+    arguments_ = outer;
+    resolving_.pop_back();
+    if (value) value->span = call.span;
+    return value;
+  }
+  FunctionRow const* row = find_function(name);
+  if (row == nullptr) {
+    std::vector<std::string> known;
+    for (FunctionRow const& each : functions()) known.emplace_back(each.name);
+    for (auto const& [each, definition] : functions_) known.push_back(each);
+    diagnostics_.add(errors::unknown_function(call.function, known, find(name) != nullptr));
+    return std::nullopt;
+  }
+  auto const count = call.arguments.size();
+  if (count < static_cast<std::size_t>(row->minimum_arguments) || count > static_cast<std::size_t>(row->maximum_arguments)) {
+    diagnostics_.add(errors::argument_count(call.function, count, static_cast<std::size_t>(row->minimum_arguments),
+                                            static_cast<std::size_t>(row->maximum_arguments)));
+    return std::nullopt;
+  }
+  if (!good) return std::nullopt;
+  return sysid::call(graph_, *row, std::move(arguments));
+}
+
+std::optional<Typed> Scope::expression(ast::Expression const& tree) {
+  std::optional<Typed> value;
+  if (auto const* number = std::get_if<ast::Number>(&tree.node)) {
+    if (!number->unit) {
+      value = literal(graph_, number->value, tree.span);
+    } else if (auto const unit = check_unit(number->unit, diagnostics_)) {
+      value = tagged(graph_, number->value, *unit, tree.span);
+    }
+  } else if (auto const* text = std::get_if<ast::Text>(&tree.node)) {
+    diagnostics_.add(errors::not_a_number(text->span, "a text"));
+  } else if (auto const* name = std::get_if<ast::Reference>(&tree.node)) {
+    value = reference(*name);
+  } else if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) {
+    auto operand = expression(*(*unary)->operand);
+    if (operand && (*unary)->symbol == "-") {
+      value = negate(graph_, *operand);
+    } else if (operand) {
+      value = *operand;
+      value->node = graph_.unary(Operation::negation, operand->node);
+    }
+  } else if (auto const* operation = std::get_if<ast::Box<ast::Binary>>(&tree.node)) {
+    value = binary(**operation);
+  } else if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
+    value = function_call(**call);
+  } else if (auto const* conditional = std::get_if<ast::Box<ast::Conditional>>(&tree.node)) {
+    auto condition = expression(*(*conditional)->condition);
+    auto then = expression(*(*conditional)->then), otherwise = expression(*(*conditional)->otherwise);
+    if (condition && then && otherwise) value = select(graph_, *condition, *then, *otherwise);
+  } else {
+    diagnostics_.add(errors::list_here(tree.span));
+  }
+  if (value) {
+    value->span = tree.span;
+    graph_.set_span(value->node, tree.span);
+  }
+  return value;
+}
+
+}  // namespace sysid

@@ -1,0 +1,85 @@
+// The names of one model and how an expression that uses them becomes nodes of the model's graph.
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "check/quantity.hpp"
+#include "core/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+struct StateSymbol {
+  int first = 0;    // leaf state(first) is y, first + 1 is y', ...
+  int order = 0;    // y^(order) is solved for
+  int unknown = 0;  // leaf unknown(unknown) is the highest derivative
+};
+struct InputSymbol {
+  int index = 0;
+};
+struct ParameterSymbol {
+  int index = 0;
+};
+struct TimeSymbol {};
+/// constant, let or derive: an expression under a name, turned into a node when first used.
+struct DefinitionSymbol {
+  ast::Definition const* definition = nullptr;
+};
+
+struct Symbol {
+  std::variant<StateSymbol, InputSymbol, ParameterSymbol, TimeSymbol, DefinitionSymbol> what;
+  std::optional<Unit> unit;
+  Span span;
+};
+
+/// Order-free: definitions are resolved on use, loops are reported with the loop written out. One Scope per model.
+class Scope {
+ public:
+  Scope(Graph& graph, Diagnostics& diagnostics, std::vector<ast::FunctionDefinition const*> shared_functions);
+
+  /// The same names, reporting elsewhere: for a look that may fail without being the user's mistake.
+  Scope with(Diagnostics& diagnostics) const { return Scope(*this, diagnostics); }
+
+  /// False, with a diagnostic, when the name is taken.
+  bool declare(ast::Name const& name, Symbol symbol);
+  bool define_function(ast::FunctionDefinition const& function);
+  Symbol const* find(std::string const& name) const;
+  Symbol* find(std::string const& name);
+
+  /// Nothing when a diagnostic was added.
+  std::optional<Typed> expression(ast::Expression const& expression);
+  /// A definition's value in its declared unit.
+  std::optional<Typed> definition(ast::Definition const& definition);
+
+  Graph& graph() { return graph_; }
+  Diagnostics& diagnostics() { return diagnostics_; }
+  std::vector<std::string> names() const;
+
+ private:
+  Scope(Scope const& other, Diagnostics& diagnostics)
+      : graph_(other.graph_), diagnostics_(diagnostics), symbols_(other.symbols_), functions_(other.functions_) {}
+  std::optional<Typed> reference(ast::Reference const& reference);
+  std::optional<Typed> binary(ast::Binary const& binary);
+  std::optional<Typed> function_call(ast::Call const& call);
+
+  using Arguments = std::map<std::string, Typed>;  // names that hide the others while a function is expanded
+  Graph& graph_;
+  Diagnostics& diagnostics_;
+  std::map<std::string, Symbol> symbols_;
+  std::map<std::string, ast::FunctionDefinition const*> functions_;
+  std::map<ast::Definition const*, std::optional<Typed>> resolved_;
+  std::vector<std::string> resolving_;
+  Arguments const* arguments_ = nullptr;
+};
+
+/// y, y', y'', ... as text.
+std::string primed_name(std::string const& name, int primes);
+/// unit(y)/s^primes, absent where y has none.
+std::optional<Unit> rate_unit(std::optional<Unit> const& unit, int primes);
+
+}  // namespace sysid

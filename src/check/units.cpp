@@ -1,0 +1,80 @@
+// Unit expressions: products of atoms and groups with constant rational exponents.
+#include "check/units.hpp"
+
+#include <cmath>
+
+#include "check/errors.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+std::optional<double> constant_exponent(ast::Expression const& expression) {
+  if (auto const* number = std::get_if<ast::Number>(&expression.node)) return number->unit ? std::nullopt : std::optional(number->value);
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&expression.node)) {
+    auto const operand = constant_exponent(*(*unary)->operand);
+    if (!operand || (*unary)->symbol != "-") return std::nullopt;
+    return -*operand;
+  }
+  if (auto const* binary = std::get_if<ast::Box<ast::Binary>>(&expression.node)) {
+    auto const a = constant_exponent(*(*binary)->left), b = constant_exponent(*(*binary)->right);
+    if (!a || !b) return std::nullopt;
+    std::string const& symbol = (*binary)->symbol;
+    if (symbol == "+") return *a + *b;
+    if (symbol == "-") return *a - *b;
+    if (symbol == "*") return *a * *b;
+    if (symbol == "/") return *a / *b;
+  }
+  return std::nullopt;
+}
+
+std::optional<Unit> product(ast::UnitExpression const& expression, Diagnostics& diagnostics) {
+  Unit result;
+  bool good = true;
+  bool const alone = expression.factors.size() == 1;
+  for (ast::UnitFactor const& factor : expression.factors) {
+    std::optional<Unit> base;
+    if (auto const* name = std::get_if<ast::Name>(&factor.base)) {
+      base = unit_atom(name->text);
+      if (!base) diagnostics.add(errors::unknown_unit(*name));
+    } else {
+      base = product(*std::get<ast::Box<ast::UnitExpression>>(factor.base), diagnostics);
+    }
+    if (!base) {
+      good = false;
+      continue;
+    }
+    if (factor.exponent) {
+      auto const exponent = constant_exponent(**factor.exponent);
+      auto const rational = exponent ? to_rational(*exponent) : std::nullopt;
+      if (!rational) {
+        diagnostics.add(errors::unit_exponent((*factor.exponent)->span));
+        good = false;
+        continue;
+      }
+      base = power(*base, *rational);
+    }
+    // A temperature keeps its zero only when it stands alone; in a product it is a difference.
+    if (alone && !factor.exponent && !factor.reciprocal)
+      result = *base;
+    else
+      result = factor.reciprocal ? divide(result, *base) : multiply(result, *base);
+  }
+  if (!good) return std::nullopt;
+  return result;
+}
+
+}  // namespace
+
+std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics) {
+  std::optional<Unit> unit = product(expression, diagnostics);
+  if (unit) unit->text = unparse(expression);
+  if (unit && unit->text.size() > 1 && unit->text.front() == '[') unit->text = unit->text.substr(1, unit->text.size() - 2);
+  return unit;
+}
+
+std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics) {
+  return expression ? check_unit(*expression, diagnostics) : std::nullopt;
+}
+
+}  // namespace sysid

@@ -1,0 +1,16 @@
+// Unit expressions of the syntax tree to units; and what the checker knows of the unit of an expression.
+#pragma once
+#include <optional>
+
+#include "core/diagnostic.hpp"
+#include "core/unit.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// The unit written between brackets, with its text as the user wrote it; nothing (and a diagnostic) for an unknown atom or a
+/// non-constant exponent.
+std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics);
+std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics);
+
+}  // namespace sysid
