@@ -1,6 +1,8 @@
 // One recorded experiment as simulation sees it: times, inputs as piecewise polynomials, measured channels, which rows are scored.
 #pragma once
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,35 +10,69 @@ namespace sysid {
 
 enum class InputRule { zero_order, linear, cubic, band_limited };
 
-/// An input between its samples: on interval i, [t_i, t_(i+1)], a polynomial in s = (t - t_i)/(t_(i+1) - t_i), coefficients c_0 ... c_degree.
-/// Every rule has this form, so any solver may read it at any time.
+/// An input between its samples: on interval i, [t_i, t_(i+1)], a polynomial in s = (t - t_i)/(t_(i+1) - t_i), coefficients
+/// c_0 ... c_degree. Every rule has this form, so any solver may read it at any time.
+///
+///   zero_order    the sample holds until the next one                                        degree 0
+///   linear        straight lines through the samples                                         degree 1
+///   cubic         the C2 interpolating spline with not-a-knot ends, O(h^4) up to the ends;   degree 3
+///                 2 samples: the line, 3: the parabola
+///   band_limited  the record taken as samples of a signal without content above Nyquist:     degree 7
+///                 a sinc interpolator with a Kaiser window (40 samples to either side, beta 12: content up to 0.45 of the sampling
+///                 rate to 1e-5), on each interval interpolated at 8 Chebyshev-Lobatto points, both samples among them. Beyond its
+///                 ends the record continues by reflection in its end points, x(-t) = 2 x(0) - x(t): value and slope are
+///                 continuous there, but within 40 samples of an end the result is a guess to that extent.
+///
+/// Copies share the record: a copy or a view is cheap.
 class InputSignal {
  public:
-  /// samples: [N], finite; time: [N], strictly increasing, N >= 2. band_limited needs equal steps (to 1e-6 relative): UserError otherwise.
+  /// samples: [N], finite; time: [N], strictly increasing, N >= 2. band_limited needs equal steps (to 1e-6 relative): UserError
+  /// otherwise.
   InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples);
 
-  InputRule rule() const { return rule_; }
+  InputRule rule() const { return record_->rule; }
+  /// Degree of the polynomials.
+  int degree() const { return record_->degree; }
+  /// Number of samples seen.
+  int rows() const { return rows_; }
   /// The sample itself.
-  double sample(int row) const { return samples_[static_cast<std::size_t>(row)]; }
-  /// Value at s in [0, 1] of interval i in [0, N - 2]; at s = 1 the limit from the left.
+  double sample(int row) const { return record_->samples[static_cast<std::size_t>(first_ + row)]; }
+  /// c_0 ... c_degree of interval i in [0, rows() - 2].
+  std::span<double const> coefficients(int interval) const;
+  /// Value at s in [0, 1] of interval i in [0, rows() - 2]; at s = 1 the limit from the left.
   double value(int interval, double s) const;
-  /// Time derivative there; under zero_order it does not exist (the checker refuses its use).
+  /// Time derivative there; under zero_order it does not exist (the checker refuses its use) and reads 0.
   double rate(int interval, double s) const;
 
+  /// Rows [first, first + count), counted from 0, of the same curve: the rest of the record still shapes it near their ends.
+  InputSignal view(int first, int count) const;
+  /// The signal `samples` sampling steps later (negative: earlier), as samples under the same rule: what the input would be had it
+  /// been recorded that much out of step. New sample i is the old curve at t_i - samples (t_i - t_(i-1)). A zero_order curve is
+  /// replaced by its average over the shifted step, read as the line between neighbours: half a sample gives the mean of two.
+  /// Beyond its ends the record holds its end samples.
+  InputSignal shifted(double samples) const;
+
  private:
-  InputRule rule_;
-  int degree_ = 0;
-  std::vector<double> time_, samples_, coefficients_;
+  struct Record {
+    InputRule rule;
+    int degree;
+    std::vector<double> time, samples, coefficients;  // [N], [N], [N - 1 x degree + 1]
+  };
+
+  std::shared_ptr<Record const> record_;
+  int first_ = 0;
+  int rows_ = 0;
 };
 
-/// Numbers are coherent SI (temperatures in degrees above 0 of their declared unit), columns in the order of the model's inputs and channels.
+/// Numbers are coherent SI (temperatures in degrees above 0 of their declared unit), columns in the order of the model's inputs and
+/// channels.
 struct Experiment {
-  std::string name;                               // "bench", as declared
-  std::vector<double> time;                       // [N] s, strictly increasing
-  std::vector<InputSignal> inputs;                // one per model input
-  std::vector<std::vector<double>> measured;      // one per model channel, each [N]; NaN: missing; empty: channel not in this data
-  std::vector<std::uint8_t> scored;               // [N], 1: in the split; simulation runs over all rows from the first one needed
-  int first_row = 1;                              // row of the file that is index 0 (rows count from 1)
+  std::string name;                           // "bench", as declared
+  std::vector<double> time;                   // [N] s, strictly increasing
+  std::vector<InputSignal> inputs;            // one per model input
+  std::vector<std::vector<double>> measured;  // one per model channel, each [N]; NaN: missing; empty: channel not in this data
+  std::vector<std::uint8_t> scored;           // [N], 1: in the split; simulation runs over all rows from the first one needed
+  int first_row = 1;                          // row of the file that is index 0 (rows count from 1)
 };
 
 }  // namespace sysid

@@ -1,0 +1,11 @@
+// The SHA-256 digest of a data file: results say which bytes they were computed from.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace sysid {
+
+/// FIPS 180-4, as 64 hexadecimal digits in lower case.
+std::string sha256(std::string_view bytes);
+
+}  // namespace sysid

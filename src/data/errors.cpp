@@ -1,0 +1,154 @@
+// The wording of data errors. Messages are lower case without a full stop; `help` says what to do.
+#include "data/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sysid::data_errors {
+namespace {
+
+Diagnostic error(std::string code, Mention mention, std::string message, std::string help) {
+  Diagnostic result{Severity::error, std::move(code), std::move(message), {}, {}, std::move(help)};
+  if (mention) result.primary = Label{*mention, {}};
+  return result;
+}
+
+std::string place(std::string const& file, int row, int line) { return fmt::format("`{}` row {} (line {})", file, row, line); }
+
+std::string place(Cell const& cell) { return fmt::format("{}, column `{}`", place(cell.file, cell.row, cell.line), cell.column); }
+
+/// A cell may hold anything: shown without control characters and not at any length.
+std::string shown(std::string_view text) {
+  constexpr std::size_t longest = 40;
+  std::string result;
+  for (char const c : text.substr(0, longest)) result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  // Never half a UTF-8 character.
+  if (text.size() > longest) {
+    while (!result.empty() && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80) result.pop_back();
+    if (!result.empty() && static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
+    result += "...";
+  }
+  return result;
+}
+
+std::string count(int number, std::string const& noun) {
+  return number == 1 ? fmt::format("1 {}", noun) : fmt::format("{} {}s", number, noun);
+}
+
+std::string listed(std::vector<std::string> const& names) {
+  constexpr std::size_t most = 20;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += fmt::format("{}`{}`", i == 0 ? "" : ", ", shown(names[i]));
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return text;
+}
+
+}  // namespace
+
+Diagnostic no_header(std::string const& file, Mention mention) {
+  return error("E4001", mention, fmt::format("`{}` is empty", file),
+               "the first line must name the columns, for example `t,force,y`");
+}
+
+Diagnostic header_of_numbers(std::string const& file, int line, std::string_view first_name, bool after_comment, Mention mention) {
+  return error(
+      "E4002", mention,
+      fmt::format("line {} of `{}` should name the columns but begins with the number `{}`", line, file, shown(first_name)),
+      after_comment ? "lines that begin with `#` are comments: name the columns on a line without `#`"
+                    : "put a line with the names of the columns above the numbers");
+}
+
+Diagnostic not_text(std::string const& file, Mention mention) {
+  return error("E4003", mention, fmt::format("`{}` is not UTF-8 text", file),
+               "save the record as CSV in UTF-8; spreadsheets and .mat files are not read");
+}
+
+Diagnostic open_quote(std::string const& file, int line, Mention mention) {
+  return error("E4004", mention, fmt::format("a quoted cell does not end as it should on line {} of `{}`", line, file),
+               "close it with `\"` on the same line, followed by a separator; a quote inside is written `\"\"`");
+}
+
+Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention) {
+  return error(
+      "E4005", mention,
+      fmt::format("{} has {}, but the header names {}", place(file, row, line), count(cells, "cell"), count(columns, "column")),
+      "a missing value is an empty cell between separators; a decimal comma needs another separator than the comma");
+}
+
+Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention) {
+  return error("E4006", mention, fmt::format("{} is a comment", place(file, row, line)), "comments stand only above the header");
+}
+
+Diagnostic too_few_rows(std::string const& file, int rows, Mention mention) {
+  return error("E4007", mention, fmt::format("`{}` has {}", file, rows == 0 ? "no rows" : count(rows, "row")),
+               "a record needs at least 2 rows");
+}
+
+Diagnostic missing_column(std::string const& file, std::string const& column, std::vector<std::string> const& known,
+                          Mention mention) {
+  std::string help = did_you_mean(column, known);
+  if (help.empty() && known.size() == 1 && known[0].find(' ') != std::string::npos)
+    help = "columns are separated by commas, semicolons or tabs, not by blanks";
+  if (!help.empty()) help += help.back() == '?' ? " " : "; ";
+  return error("E4008", mention, fmt::format("`{}` has no column `{}`", file, column),
+               help + fmt::format("its {} {}", known.size() == 1 ? "only column is" : "columns are", listed(known)));
+}
+
+Diagnostic repeated_column(std::string const& file, std::string const& column, Mention mention) {
+  return error("E4009", mention, fmt::format("`{}` has more than one column `{}`", file, column),
+               "give the columns different names");
+}
+
+Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention) {
+  bool const decimal_comma =
+      std::count(text.begin(), text.end(), ',') == 1 && text.find_first_not_of("0123456789+-eE,") == std::string_view::npos;
+  return error("E4010", mention, fmt::format("{}: `{}` is not a number", place(cell), shown(text)),
+               decimal_comma ? "write a decimal point instead of the comma" : "a missing sample is an empty cell or NA");
+}
+
+Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention) {
+  return error("E4011", mention, fmt::format("{} holds `{}`", place(cell), shown(text)),
+               "if the sample is missing, leave the cell empty or write NA; otherwise find out what produced it");
+}
+
+Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention) {
+  return error("E4012", mention, fmt::format("{}: `{}` is beyond the range of floating-point numbers", place(cell), shown(text)),
+               "correct the number");
+}
+
+Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention) {
+  return error("E4013", mention, fmt::format("{} has no value, and {} needs one in every row", place(cell), what),
+               "only measured columns may miss samples: fill the gap, or cut the record there");
+}
+
+Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention) {
+  return error("E4014", mention, fmt::format("{}: time does not increase, {} comes after {}", place(cell), now, before),
+               "sort the rows and remove repeated ones; two runs in one file need two files");
+}
+
+Diagnostic unequal_steps(int row, double step, double usual, Mention mention) {
+  return error(
+      "E4015", mention,
+      fmt::format(
+          "`band_limited` needs equal time steps, but row {} comes {:.9g} s after the one before, on average it is {:.9g} s", row,
+          step, usual),
+      "if the sampling was regular and the printed times are rounded, give `rate` instead of the time column; otherwise use "
+      "`cubic` or `linear`");
+}
+
+Diagnostic rows_outside(std::string const& file, std::string const& what, int first, int last, int rows, Mention mention) {
+  return error("E4016", mention, fmt::format("{} wants rows {}..{}, but `{}` has {}", what, first, last, file, count(rows, "row")),
+               fmt::format("rows count from 1 below the header; the last is {}", rows));
+}
+
+Diagnostic cycles_against_radians(std::string const& column, std::string const& column_unit, std::string const& declared_unit,
+                                  Mention mention) {
+  return error(
+      "E4017", mention,
+      fmt::format("column `{}` is in [{}], the model declares it in [{}]: one counts cycles, the other radians, 2 pi apart", column,
+                  column_unit, declared_unit),
+      "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
+}
+
+}  // namespace sysid::data_errors

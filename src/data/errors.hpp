@@ -1,0 +1,50 @@
+// Every message about a data file's contents (E40), one named constructor per mistake; wording lives in errors.cpp alone.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostic.hpp"
+
+namespace sysid::data_errors {
+
+/// Where the user's text mentions the column, file or split; nothing when no text does.
+using Mention = std::optional<Span>;
+
+/// A cell of a data file. Rows count from 1 below the header, lines from 1 at the top of the file.
+struct Cell {
+  std::string file;
+  int row = 0;
+  int line = 0;
+  std::string column;
+};
+
+// the file as a table
+Diagnostic no_header(std::string const& file, Mention mention);
+Diagnostic header_of_numbers(std::string const& file, int line, std::string_view first_name, bool after_comment, Mention mention);
+Diagnostic not_text(std::string const& file, Mention mention);
+Diagnostic open_quote(std::string const& file, int line, Mention mention);
+Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
+Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention);
+Diagnostic too_few_rows(std::string const& file, int rows, Mention mention);
+
+// columns and cells
+Diagnostic missing_column(std::string const& file, std::string const& column, std::vector<std::string> const& known,
+                          Mention mention);
+Diagnostic repeated_column(std::string const& file, std::string const& column, Mention mention);
+Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention);
+Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention);
+Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention);
+/// what: "an input" or "the time".
+Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention);
+
+// the columns as a record
+Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention);
+Diagnostic unequal_steps(int row, double step, double usual, Mention mention);
+/// what: "part `train`".
+Diagnostic rows_outside(std::string const& file, std::string const& what, int first, int last, int rows, Mention mention);
+Diagnostic cycles_against_radians(std::string const& column, std::string const& column_unit, std::string const& declared_unit,
+                                  Mention mention);
+
+}  // namespace sysid::data_errors

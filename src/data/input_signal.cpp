@@ -1,0 +1,105 @@
+// An input record under its rule: builds the polynomials, reads them, and shifts the record for the "half a sample" question.
+#include <algorithm>
+#include <cmath>
+
+#include "core/diagnostic.hpp"
+#include "data/errors.hpp"
+#include "data/experiment.hpp"
+#include "data/spline.hpp"
+
+namespace sysid {
+namespace {
+
+void require_equal_steps(std::vector<double> const& time) {
+  constexpr double tolerance = 1e-6;
+  double const usual = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    double const step = time[i] - time[i - 1];
+    if (!(std::fabs(step - usual) <= tolerance * usual))
+      throw UserError(data_errors::unequal_steps(static_cast<int>(i) + 1, step, usual, std::nullopt));
+  }
+}
+
+}  // namespace
+
+InputSignal::InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples) {
+  if (time.size() < 2 || time.size() != samples.size()) throw InternalError("an input signal needs two samples, each with a time");
+  if (rule == InputRule::band_limited) require_equal_steps(time);
+  auto record = std::make_shared<Record>();
+  record->rule = rule;
+  switch (rule) {
+    case InputRule::zero_order:
+      record->degree = 0;
+      record->coefficients.assign(samples.begin(), samples.end() - 1);
+      break;
+    case InputRule::linear:
+      record->degree = 1;
+      record->coefficients = linear_coefficients(samples);
+      break;
+    case InputRule::cubic:
+      record->degree = 3;
+      record->coefficients = cubic_coefficients(time, samples);
+      break;
+    case InputRule::band_limited:
+      record->degree = band_limited_degree;
+      record->coefficients = band_limited_coefficients(samples);
+      break;
+  }
+  record->time = std::move(time);
+  record->samples = std::move(samples);
+  rows_ = static_cast<int>(record->samples.size());
+  record_ = std::move(record);
+}
+
+std::span<double const> InputSignal::coefficients(int interval) const {
+  auto const count = static_cast<std::size_t>(record_->degree + 1);
+  return std::span(record_->coefficients).subspan(static_cast<std::size_t>(first_ + interval) * count, count);
+}
+
+double InputSignal::value(int interval, double s) const {
+  // The next sample itself, not the sum of the coefficients, which is off in the last bit.
+  if (s == 1 && record_->degree > 0) return sample(interval + 1);
+  std::span<double const> const c = coefficients(interval);
+  double result = c.back();
+  for (std::size_t p = c.size() - 1; p-- > 0;) result = result * s + c[p];
+  return result;
+}
+
+double InputSignal::rate(int interval, double s) const {
+  std::span<double const> const c = coefficients(interval);
+  double result = 0;
+  for (std::size_t p = c.size(); p-- > 1;) result = result * s + static_cast<double>(p) * c[p];
+  auto const i = static_cast<std::size_t>(first_ + interval);
+  return result / (record_->time[i + 1] - record_->time[i]);
+}
+
+InputSignal InputSignal::view(int first, int count) const {
+  if (first < 0 || count < 1 || first + count > rows_) throw InternalError("a view of an input signal goes beyond it");
+  InputSignal result = *this;
+  result.first_ += first;
+  result.rows_ = count;
+  return result;
+}
+
+InputSignal InputSignal::shifted(double samples) const {
+  std::vector<double> const& time = record_->time;
+  std::vector<double> const& old = record_->samples;
+  std::size_t const n = old.size();
+  InputSignal whole = *this;
+  whole.first_ = 0;
+  std::vector<double> moved(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    double const t = time[i] - samples * (i == 0 ? time[1] - time[0] : time[i] - time[i - 1]);
+    auto const after = static_cast<std::size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin());
+    if (after == 0 || after == n) {
+      moved[i] = after == 0 ? old.front() : old.back();
+      continue;
+    }
+    double const s = (t - time[after - 1]) / (time[after] - time[after - 1]);
+    bool const held = record_->rule == InputRule::zero_order;
+    moved[i] = held ? old[after - 1] + s * (old[after] - old[after - 1]) : whole.value(static_cast<int>(after) - 1, s);
+  }
+  return InputSignal(record_->rule, time, std::move(moved)).view(first_, rows_);
+}
+
+}  // namespace sysid

@@ -1,0 +1,152 @@
+// Columns to SI numbers, with every doubt an error that names its row; and the cutting of experiments.
+#include "data/record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/errors.hpp"
+#include "data/table.hpp"
+
+namespace sysid {
+namespace {
+
+void to_si(std::vector<double>& values, ColumnRequest const& request) {
+  std::optional<Unit> const& declared = request.declared ? request.declared : request.unit;
+  if (!declared) return;
+  Unit const& unit = request.unit ? *request.unit : *declared;
+  if (unit.dimension != declared->dimension)
+    throw InternalError(
+        fmt::format("column `{}` in [{}] was let through for a quantity in [{}]", request.column, unit.text, declared->text));
+  if (cycles_against_radians(unit, *declared))
+    throw UserError(data_errors::cycles_against_radians(request.column, unit.text, declared->text, request.mention));
+  // convert applies the offset; a declared degC stays degrees above 0 degC in the equations.
+  for (double& value : values) value = convert(value, unit, *declared) * declared->scale;
+}
+
+data_errors::Cell cell(Table const& table, std::size_t index, std::string const& column) {
+  int const row = static_cast<int>(index) + 1;
+  return {table.name(), row, table.line(row), column};
+}
+
+/// A column without gaps; what: "an input", "the time".
+std::vector<double> complete(Table const& table, ColumnRequest const& request, std::string const& what) {
+  std::vector<double> values = table.numbers(request.column, request.mention);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::isnan(values[i])) throw UserError(data_errors::missing_value(cell(table, i, request.column), what, request.mention));
+  to_si(values, request);
+  return values;
+}
+
+std::vector<double> times(Table const& table, RecordRequest const& request) {
+  if (!request.time) {
+    std::vector<double> time(static_cast<std::size_t>(table.rows()));
+    for (std::size_t i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) * request.step;  // a running sum would drift
+    return time;
+  }
+  std::vector<double> time = complete(table, *request.time, "the time");
+  for (std::size_t i = 1; i < time.size(); ++i)
+    if (!(time[i] > time[i - 1]))
+      throw UserError(
+          data_errors::time_not_increasing(cell(table, i, request.time->column), time[i - 1], time[i], request.time->mention));
+  return time;
+}
+
+/// The diagnostic of a UserError, pointing to `mention` when it points nowhere yet.
+Diagnostic at(UserError const& error, std::optional<Span> mention) {
+  Diagnostic diagnostic = error.diagnostic();
+  if (!diagnostic.primary && mention) diagnostic.primary = Label{*mention, {}};
+  return diagnostic;
+}
+
+/// Runs `read`; a UserError becomes a diagnostic, so that one wrong column does not hide the next.
+template <class Read>
+auto collect(Diagnostics& diagnostics, std::optional<Span> mention, Read read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (UserError const& error) {
+    diagnostics.add(at(error, mention));
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
+  if (!request.time && !(request.step > 0)) throw InternalError("a record without a time column needs a step");
+  std::optional<Table> const table = collect(diagnostics, request.mention, [&] {
+    Table read = Table::read(request.path, request.mention);
+    if (read.rows() < 2) throw UserError(data_errors::too_few_rows(read.name(), read.rows(), request.mention));
+    return read;
+  });
+  if (!table) return std::nullopt;
+
+  bool complete_record = true;
+  Record record;
+  record.path = request.path;
+  record.digest = table->digest();
+  std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(*table, request); });
+  if (!time) complete_record = false;
+  for (InputRequest const& input : request.inputs) {
+    std::optional<std::vector<double>> samples =
+        collect(diagnostics, input.mention, [&] { return complete(*table, input, "an input"); });
+    std::optional<InputSignal> signal;
+    if (samples && time)
+      signal = collect(diagnostics, input.mention, [&] { return InputSignal(input.rule, *time, std::move(*samples)); });
+    if (signal)
+      record.inputs.push_back(std::move(*signal));
+    else
+      complete_record = false;
+  }
+  for (std::optional<ColumnRequest> const& channel : request.measured) {
+    std::optional<std::vector<double>> samples;
+    if (!channel)
+      samples.emplace();
+    else
+      samples = collect(diagnostics, channel->mention, [&] {
+        std::vector<double> values = table->numbers(channel->column, channel->mention);
+        to_si(values, *channel);
+        return values;
+      });
+    if (samples)
+      record.measured.push_back(std::move(*samples));
+    else
+      complete_record = false;
+  }
+  if (!complete_record) return std::nullopt;
+  record.time = std::move(*time);
+  return record;
+}
+
+std::optional<Diagnostic> check_rows(Record const& record, std::string const& what, RowRange rows, std::optional<Span> mention) {
+  int const last = rows.last == 0 ? record.rows() : rows.last;
+  if (rows.first >= 1 && rows.first <= last && last <= record.rows()) return std::nullopt;
+  return data_errors::rows_outside(record.path, what, rows.first, last, record.rows(), mention);
+}
+
+Experiment make_experiment(Record const& record, std::string name, int simulate_from, RowRange scored,
+                           std::optional<Span> mention) {
+  if (std::optional<Diagnostic> wrong = check_rows(record, fmt::format("`{}`", name), scored, mention))
+    throw UserError(std::move(*wrong));
+  if (simulate_from < 1 || simulate_from > scored.first)
+    throw InternalError("a simulation starts after the first row it is scored on");
+  int const last = scored.last == 0 ? record.rows() : scored.last;
+  int const begin = simulate_from - 1;
+  Experiment experiment;
+  experiment.name = std::move(name);
+  experiment.first_row = simulate_from;
+  experiment.time.assign(record.time.begin() + begin, record.time.begin() + last);
+  for (InputSignal const& input : record.inputs) experiment.inputs.push_back(input.view(begin, last - begin));
+  for (std::vector<double> const& channel : record.measured) {
+    if (channel.empty())
+      experiment.measured.emplace_back();
+    else
+      experiment.measured.emplace_back(channel.begin() + begin, channel.begin() + last);
+  }
+  experiment.scored.assign(static_cast<std::size_t>(last - begin), 0);
+  std::fill(experiment.scored.begin() + (scored.first - simulate_from), experiment.scored.end(), std::uint8_t{1});
+  return experiment;
+}
+
+}  // namespace sysid

@@ -1,0 +1,67 @@
+// A data file as the model sees it: time, inputs and measured channels in coherent SI units, and the experiments cut from it.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostic.hpp"
+#include "core/unit.hpp"
+#include "data/experiment.hpp"
+
+namespace sysid {
+
+/// A column and how its numbers become those of the model: converted from `unit` to `declared`, offsets applied, then scaled to SI.
+/// With one of the two given the numbers are in that unit; with neither they stay as they are. Dimensions agree (the checker has
+/// seen to it).
+struct ColumnRequest {
+  std::string column;
+  std::optional<Unit> unit;      // after the column in the data block
+  std::optional<Unit> declared;  // in the model
+  std::optional<Span> mention;   // where messages point to
+};
+
+struct InputRequest : ColumnRequest {
+  InputRule rule = InputRule::zero_order;
+};
+
+struct RecordRequest {
+  std::string path;
+  std::optional<Span> mention;
+  std::optional<ColumnRequest> time;                   // in seconds unless it has a unit
+  double step = 0;                                     // [s] > 0 when there is no time column; row 1 is then at time 0
+  std::vector<InputRequest> inputs;                    // in the order of the model's inputs
+  std::vector<std::optional<ColumnRequest>> measured;  // in the order of its channels; nothing: not in this data
+};
+
+struct Record {
+  std::string path;
+  std::string digest;                         // SHA-256 of the file
+  std::vector<double> time;                   // [N] s, strictly increasing, N >= 2
+  std::vector<InputSignal> inputs;            // over the whole record
+  std::vector<std::vector<double>> measured;  // [N] each, NaN where missing; empty: not in this data
+
+  int rows() const { return static_cast<int>(time.size()); }
+};
+
+/// Reads the file and everything asked for. What is wrong with it is added to `diagnostics`, one message per column at most;
+/// nothing is returned then. IoError when the file cannot be read.
+std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics);
+
+/// Rows of a record from 1, both included; last = 0 means its last row.
+struct RowRange {
+  int first = 1;
+  int last = 0;
+};
+
+/// What is wrong with asking for these rows, or nothing. what: "part `train`", for the message.
+std::optional<Diagnostic> check_rows(Record const& record, std::string const& what, RowRange rows,
+                                     std::optional<Span> mention = std::nullopt);
+
+/// Rows simulate_from..scored.last, of which `scored` count in the likelihood. simulate_from is 1 where simulation runs from the
+/// record's first row, scored.first for a start at rest, less than that where a start is estimated. Inputs keep the shape that the
+/// whole record gives them; times are those of the record. UserError when the rows are not in the record; simulate_from is
+/// in 1..scored.first.
+Experiment make_experiment(Record const& record, std::string name, int simulate_from, RowRange scored,
+                           std::optional<Span> mention = std::nullopt);
+
+}  // namespace sysid

@@ -1,0 +1,247 @@
+// Reads CSV strictly. One pass finds where every cell begins; numbers are parsed when a column is asked for.
+#include "data/table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/files.hpp"
+#include "data/digest.hpp"
+#include "data/errors.hpp"
+
+namespace sysid {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  std::size_t const begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+bool is_quoted(std::string_view trimmed_cell) {
+  return trimmed_cell.size() >= 2 && trimmed_cell.front() == '"' && trimmed_cell.back() == '"';
+}
+
+/// The text between the quotes, `""` read as one quote; an unquoted cell as it stands.
+std::string unquoted(std::string_view cell) {
+  cell = trimmed(cell);
+  if (!is_quoted(cell)) return std::string(cell);
+  std::string text;
+  for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
+    text += cell[i];
+    if (cell[i] == '"') ++i;
+  }
+  return std::string(trimmed(text));
+}
+
+/// Well-formed UTF-8 (Unicode 15, table 3-7) without NUL.
+bool is_utf8(std::string_view text) {
+  auto const* p = reinterpret_cast<unsigned char const*>(text.data());
+  auto const* const end = p + text.size();
+  auto const continues = [&](std::ptrdiff_t i, unsigned low = 0x80, unsigned high = 0xbf) {
+    return end - p > i && p[i] >= low && p[i] <= high;
+  };
+  while (p != end) {
+    unsigned const lead = *p;
+    if (lead == 0) return false;
+    if (lead < 0x80) {
+      p += 1;
+    } else if (lead >= 0xc2 && lead <= 0xdf && continues(1)) {
+      p += 2;
+    } else if ((lead & 0xf0) == 0xe0 && continues(1, lead == 0xe0 ? 0xa0 : 0x80, lead == 0xed ? 0x9f : 0xbf) && continues(2)) {
+      p += 3;
+    } else if (lead >= 0xf0 && lead <= 0xf4 && continues(1, lead == 0xf0 ? 0x90 : 0x80, lead == 0xf4 ? 0x8f : 0xbf) &&
+               continues(2) && continues(3)) {
+      p += 4;
+    } else {
+      return false;
+    }
+  }
+  return true;
+}
+
+enum class Kind { number, missing, text, not_finite, out_of_range };
+
+Kind parse_number(std::string_view cell, double& value) {
+  cell = trimmed(cell);
+  if (is_quoted(cell)) cell = trimmed(cell.substr(1, cell.size() - 2));
+  if (cell.empty() || cell == "NA") return Kind::missing;
+  if (cell.front() == '+') {
+    cell.remove_prefix(1);
+    if (cell.empty() || cell.front() == '-') return Kind::text;
+  }
+  char const* const end = cell.data() + cell.size();
+  auto const [stop, error] = std::from_chars(cell.data(), end, value);
+  if (error == std::errc::invalid_argument || stop != end) return Kind::text;
+  if (error == std::errc::result_out_of_range) {
+    // Too small for a double is zero to within one; too large is a mistake.
+    long double wide = 0;
+    if (std::from_chars(cell.data(), end, wide).ec != std::errc{} || std::fabs(wide) > 1) return Kind::out_of_range;
+    value = 0;
+  }
+  return std::isfinite(value) ? Kind::number : Kind::not_finite;
+}
+
+/// Calls cell(begin, end) for each cell of the line [begin, end) of `bytes`; false when a quoted cell does not end properly.
+template <class OnCell>
+bool split(std::string const& bytes, std::size_t begin, std::size_t end, char separator, OnCell on_cell) {
+  std::size_t cell = begin;
+  for (;;) {
+    std::size_t at = cell;
+    while (at < end && (bytes[at] == ' ' || bytes[at] == '\t') && bytes[at] != separator) ++at;
+    if (at < end && bytes[at] == '"') {
+      for (++at;; ++at) {
+        if (at >= end) return false;
+        if (bytes[at] != '"') continue;
+        if (at + 1 < end && bytes[at + 1] == '"') {
+          ++at;
+          continue;
+        }
+        break;
+      }
+      ++at;
+      while (at < end && (bytes[at] == ' ' || bytes[at] == '\t') && bytes[at] != separator) ++at;
+      if (at < end && bytes[at] != separator) return false;
+    } else {
+      while (at < end && bytes[at] != separator) ++at;
+    }
+    on_cell(cell, at);
+    if (at >= end) return true;
+    cell = at + 1;
+  }
+}
+
+/// Which of comma, semicolon and tab occurs most often outside quotes; the comma when none does.
+char find_separator(std::string_view header) {
+  std::size_t counts[3] = {};
+  constexpr std::string_view candidates = ",;\t";
+  bool quoted = false;
+  for (char const c : header) {
+    if (c == '"') quoted = !quoted;
+    std::size_t const which = candidates.find(c);
+    if (!quoted && which != std::string_view::npos) ++counts[which];
+  }
+  return candidates[static_cast<std::size_t>(std::max_element(counts, counts + 3) - counts)];
+}
+
+/// Walks the lines of a text; `\n`, or `\r` where there is no `\n`, ends one, a `\r` before it does not belong to it.
+class Lines {
+ public:
+  Lines(std::string const& bytes, std::size_t from)
+      : bytes_(bytes), next_(from), end_character_(bytes.find('\n') == std::string::npos ? '\r' : '\n') {}
+
+  bool next() {
+    if (next_ >= bytes_.size()) return false;
+    begin = next_;
+    void const* const found = std::memchr(bytes_.data() + begin, end_character_, bytes_.size() - begin);
+    end = found == nullptr ? bytes_.size() : static_cast<std::size_t>(static_cast<char const*>(found) - bytes_.data());
+    next_ = end + 1;
+    if (end > begin && bytes_[end - 1] == '\r') --end;
+    ++number;
+    return true;
+  }
+  std::string_view text() const { return std::string_view(bytes_).substr(begin, end - begin); }
+
+  std::size_t begin = 0, end = 0;
+  int number = 0;
+
+ private:
+  std::string const& bytes_;
+  std::size_t next_;
+  char end_character_;
+};
+
+bool all_numbers(std::vector<std::string> const& names) {
+  return std::all_of(names.begin(), names.end(), [](std::string const& name) {
+    double ignored = 0;
+    return parse_number(name, ignored) != Kind::text;
+  });
+}
+
+}  // namespace
+
+Table Table::read(std::string const& path, std::optional<Span> mention) { return parse(path, read_file(path), mention); }
+
+Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention) {
+  Table table;
+  table.name_ = std::move(name);
+  table.bytes_ = std::move(bytes);
+  table.digest_ = sha256(table.bytes_);
+  if (!is_utf8(table.bytes_)) throw UserError(data_errors::not_text(table.name_, mention));
+
+  Lines line(table.bytes_, table.bytes_.starts_with("\xef\xbb\xbf") ? 3 : 0);
+  bool header_found = false, comments = false;
+  while (!header_found && line.next()) {
+    std::string_view const text = trimmed(line.text());
+    if (text.starts_with('#')) comments = true;
+    header_found = !text.empty() && !text.starts_with('#');
+  }
+  if (!header_found) throw UserError(data_errors::no_header(table.name_, mention));
+  table.header_line_ = line.number;
+  char const separator = find_separator(line.text());
+  bool closed = split(table.bytes_, line.begin, line.end, separator, [&](std::size_t begin, std::size_t end) {
+    table.columns_.push_back(unquoted(std::string_view(table.bytes_).substr(begin, end - begin)));
+  });
+  if (!closed) throw UserError(data_errors::open_quote(table.name_, line.number, mention));
+  if (all_numbers(table.columns_))
+    throw UserError(data_errors::header_of_numbers(table.name_, line.number, table.columns_.front(), comments, mention));
+
+  int const columns = static_cast<int>(table.columns_.size());
+  int empty_lines = 0;  // not rows when they end the file
+  auto const add_row = [&](std::size_t begin, std::size_t end, int number) {
+    int cells = 0;
+    ++table.rows_;
+    closed = split(table.bytes_, begin, end, separator, [&](std::size_t cell_begin, std::size_t) {
+      if (++cells <= columns) table.cells_.push_back(cell_begin);
+    });
+    if (!closed) throw UserError(data_errors::open_quote(table.name_, number, mention));
+    if (cells != columns) throw UserError(data_errors::ragged_row(table.name_, table.rows_, number, cells, columns, mention));
+    table.cells_.push_back(end + 1);
+  };
+  while (line.next()) {
+    std::string_view const text = line.text();
+    if (separator == '\t' ? text.find_first_not_of(' ') == std::string_view::npos : trimmed(text).empty()) {
+      ++empty_lines;
+      continue;
+    }
+    for (; empty_lines > 0; --empty_lines) add_row(line.begin, line.begin, line.number - empty_lines);
+    if (trimmed(text).starts_with('#'))
+      throw UserError(data_errors::comment_in_data(table.name_, table.rows_ + 1, line.number, mention));
+    add_row(line.begin, line.end, line.number);
+  }
+  return table;
+}
+
+std::string_view Table::cell(int row, int column) const {
+  std::size_t const at = static_cast<std::size_t>(row - 1) * (columns_.size() + 1) + static_cast<std::size_t>(column);
+  return std::string_view(bytes_).substr(cells_[at], cells_[at + 1] - 1 - cells_[at]);
+}
+
+std::vector<double> Table::numbers(std::string const& column, std::optional<Span> mention) const {
+  auto const found = std::find(columns_.begin(), columns_.end(), column);
+  if (found == columns_.end() || column.empty()) throw UserError(data_errors::missing_column(name_, column, columns_, mention));
+  if (std::find(found + 1, columns_.end(), column) != columns_.end())
+    throw UserError(data_errors::repeated_column(name_, column, mention));
+  int const index = static_cast<int>(found - columns_.begin());
+  std::vector<double> values(static_cast<std::size_t>(rows_));
+  for (int row = 1; row <= rows_; ++row) {
+    double& value = values[static_cast<std::size_t>(row - 1)];
+    std::string_view const text = cell(row, index);
+    Kind const kind = parse_number(text, value);
+    if (kind == Kind::number) continue;
+    if (kind == Kind::missing) {
+      value = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    data_errors::Cell const place{name_, row, line(row), column};
+    std::string_view const shown = trimmed(text);
+    throw UserError(kind == Kind::not_finite     ? data_errors::not_finite(place, shown, mention)
+                    : kind == Kind::out_of_range ? data_errors::out_of_range(place, shown, mention)
+                                                 : data_errors::not_a_number(place, shown, mention));
+  }
+  return values;
+}
+
+}  // namespace sysid

@@ -1,0 +1,223 @@
+// Records: units at the boundary, times, gaps, and the experiments cut from them.
+#include "data/record.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "temporary_file.hpp"
+
+using namespace sysid;
+
+namespace {
+
+Unit atom(std::string_view name) { return unit_atom(name).value(); }
+
+ColumnRequest column(std::string name, std::optional<Unit> unit = {}, std::optional<Unit> declared = {}) {
+  return {std::move(name), std::move(unit), std::move(declared), std::nullopt};
+}
+
+InputRequest input(std::string name, InputRule rule) { return {column(std::move(name)), rule}; }
+
+/// Time column t, inputs and measured columns as they stand.
+RecordRequest request(std::string path, std::vector<InputRequest> inputs, std::vector<std::string> measured) {
+  RecordRequest result;
+  result.path = std::move(path);
+  result.time = column("t");
+  result.inputs = std::move(inputs);
+  for (std::string& name : measured) result.measured.push_back(column(std::move(name)));
+  return result;
+}
+
+Record loaded(RecordRequest const& request) {
+  Diagnostics diagnostics;
+  std::optional<Record> record = load(request, diagnostics);
+  for (Diagnostic const& diagnostic : diagnostics.all()) MESSAGE(diagnostic.message);
+  REQUIRE(record);
+  return std::move(*record);
+}
+
+std::vector<Diagnostic> errors(RecordRequest const& request) {
+  Diagnostics diagnostics;
+  CHECK_FALSE(load(request, diagnostics));
+  return diagnostics.all();
+}
+
+}  // namespace
+
+TEST_CASE("a record has time, inputs and channels in the order asked for") {
+  TemporaryFile const file("y2,t,x,y1\n10,0,1,20\n11,0.5,2,21\n12,2,3,22\n");
+  RecordRequest wanted = request(file.path(), {input("x", InputRule::linear)}, {"y1", "y2"});
+  wanted.measured.insert(wanted.measured.begin() + 1, std::nullopt);
+  Record const record = loaded(wanted);
+  CHECK(record.rows() == 3);
+  CHECK(record.time == std::vector<double>{0, 0.5, 2});
+  CHECK(record.inputs[0].value(1, 0.5) == 2.5);
+  CHECK(record.measured[0] == std::vector<double>{20, 21, 22});
+  CHECK(record.measured[1].empty());
+  CHECK(record.measured[2] == std::vector<double>{10, 11, 12});
+  CHECK(record.path == file.path());
+  CHECK(record.digest.size() == 64);
+}
+
+TEST_CASE("numbers are converted from the column's unit to the model's, then to SI") {
+  TemporaryFile const file("t,a\n0,100\n1000,200\n");
+  struct Row {
+    std::optional<Unit> unit, declared;
+    double first;
+  };
+  Unit const mm = atom("mm"), m = atom("m"), cm = atom("cm");
+  Row const rows[] = {{mm, m, 0.1},
+                      {mm, cm, 0.1},
+                      {std::nullopt, mm, 0.1},
+                      {mm, std::nullopt, 0.1},
+                      {std::nullopt, std::nullopt, 100},
+                      // Temperatures enter equations as degrees above the zero of the declared unit.
+                      {atom("degC"), atom("degC"), 100},
+                      {atom("degC"), atom("K"), 373.15},
+                      {atom("K"), atom("degC"), 100 - 273.15},
+                      {atom("degF"), atom("degC"), (100 - 32) / 1.8}};
+  for (Row const& row : rows) {
+    RecordRequest wanted;
+    wanted.path = file.path();
+    wanted.time = column("t", atom("ms"), atom("s"));
+    wanted.measured = {column("a", row.unit, row.declared)};
+    wanted.inputs = {InputRequest{column("a", row.unit, row.declared), InputRule::zero_order}};
+    Record const record = loaded(wanted);
+    CHECK(record.time[1] == 1);
+    CHECK(record.measured[0][0] == doctest::Approx(row.first).epsilon(1e-13));
+    CHECK(record.inputs[0].sample(0) == record.measured[0][0]);
+  }
+}
+
+TEST_CASE("hertz are not converted to radians per second") {
+  TemporaryFile const file("t,w\n0,1\n1,2\n");
+  RecordRequest wanted = request(file.path(), {}, {});
+  wanted.measured = {column("w", atom("Hz"), divide(atom("rad"), atom("s")))};
+  std::vector<Diagnostic> const found = errors(wanted);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].code == "E4017");
+}
+
+TEST_CASE("without a time column rows are equally spaced from zero, without drift") {
+  std::string text = "y\n";
+  for (int i = 0; i < 1001; ++i) text += "1\n";
+  TemporaryFile const file(text);
+  RecordRequest wanted;
+  wanted.path = file.path();
+  wanted.step = 0.1;
+  wanted.measured = {column("y")};
+  Record const record = loaded(wanted);
+  CHECK(record.time.front() == 0);
+  CHECK(record.time.back() == 1000 * 0.1);
+}
+
+TEST_CASE("time must increase from row to row") {
+  for (char const* third : {"1", "0.5"}) {
+    TemporaryFile const file(std::string("# lab\nt,y\n0,1\n1,1\n") + third + ",1\n");
+    std::vector<Diagnostic> const found = errors(request(file.path(), {}, {"y"}));
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].code == "E4014");
+    CHECK(found[0].message.find("row 3 (line 5), column `t`") != std::string::npos);
+  }
+}
+
+TEST_CASE("samples may be missing in measured columns only") {
+  TemporaryFile const file("t,x,y\n0,1,\n1,2,5\n2,NA,NA\n");
+  Record const record = loaded(request(file.path(), {}, {"y"}));
+  CHECK(std::isnan(record.measured[0][0]));
+  CHECK(record.measured[0][1] == 5);
+  CHECK(std::isnan(record.measured[0][2]));
+  std::vector<Diagnostic> const found = errors(request(file.path(), {input("x", InputRule::zero_order)}, {"y"}));
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].code == "E4013");
+  CHECK(found[0].message == "`" + file.path() + "` row 3 (line 4), column `x` has no value, and an input needs one in every row");
+  TemporaryFile const gap("t,y\n0,1\n,2\n");
+  CHECK(errors(request(gap.path(), {}, {"y"})).at(0).code == "E4013");
+}
+
+TEST_CASE("several wrong columns are reported together, each at its mention") {
+  TemporaryFile const file("t,x,y\n0,1,nan\n0,2,3\n");
+  RecordRequest wanted = request(file.path(), {input("force", InputRule::cubic)}, {"y", "z"});
+  wanted.time->mention = Span{1, 2};
+  wanted.inputs[0].mention = Span{3, 4};
+  wanted.measured[0]->mention = Span{5, 6};
+  wanted.measured[1]->mention = Span{7, 8};
+  std::vector<Diagnostic> const found = errors(wanted);
+  REQUIRE(found.size() == 4);
+  std::string codes;
+  for (Diagnostic const& diagnostic : found) codes += diagnostic.code + " ";
+  CHECK(codes == "E4014 E4008 E4011 E4008 ");
+  for (std::size_t i = 0; i < 4; ++i) CHECK(found[i].primary->span.begin == 2 * i + 1);
+}
+
+TEST_CASE("a mistake of the input rule points to the input") {
+  TemporaryFile const file("t,x\n0,1\n1,2\n3,4\n");
+  RecordRequest wanted = request(file.path(), {input("x", InputRule::band_limited)}, {});
+  wanted.inputs[0].mention = Span{3, 4};
+  std::vector<Diagnostic> const found = errors(wanted);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].code == "E4015");
+  CHECK(found[0].primary->span == Span{3, 4});
+}
+
+TEST_CASE("a record needs two rows") {
+  for (char const* text : {"t,y\n", "t,y\n0,1\n"}) {
+    TemporaryFile const file(text);
+    CHECK(errors(request(file.path(), {}, {"y"})).at(0).code == "E4007");
+  }
+}
+
+TEST_CASE("a missing file is an I/O error") {
+  Diagnostics diagnostics;
+  CHECK_THROWS_AS(load(request("/nonexistent/run.csv", {}, {}), diagnostics), IoError);
+}
+
+TEST_CASE("an experiment scores its rows and simulates from the row it is told to") {
+  TemporaryFile const file("t,x,y\n0,1,10\n1,4,11\n2,9,\n3,16,13\n4,25,14\n5,36,15\n");
+  Record const record = loaded(request(file.path(), {input("x", InputRule::cubic)}, {"y"}));
+
+  Experiment const whole = make_experiment(record, "bench", 1, {3, 5});
+  CHECK(whole.name == "bench");
+  CHECK(whole.first_row == 1);
+  CHECK(whole.time == std::vector<double>{0, 1, 2, 3, 4});
+  CHECK(whole.scored == std::vector<std::uint8_t>{0, 0, 1, 1, 1});
+  CHECK(whole.measured[0].size() == 5);
+  CHECK(std::isnan(whole.measured[0][2]));
+  CHECK(whole.inputs[0].rows() == 5);
+
+  Experiment const rest = make_experiment(record, "bench", 3, {3, 5});
+  CHECK(rest.first_row == 3);
+  CHECK(rest.time == std::vector<double>{2, 3, 4});
+  CHECK(rest.scored == std::vector<std::uint8_t>{1, 1, 1});
+  CHECK(rest.measured[0][1] == 13);
+  // The spline through the whole record, (t + 1)^2, not one that ends at the split.
+  CHECK(rest.inputs[0].value(0, 0.5) == doctest::Approx(3.5 * 3.5).epsilon(1e-14));
+
+  CHECK(make_experiment(record, "bench", 1, {}).scored.size() == 6);
+}
+
+TEST_CASE("rows outside the record are an error that names how many there are") {
+  TemporaryFile const file("t,y\n0,1\n1,2\n2,3\n");
+  Record const record = loaded(request(file.path(), {}, {"y"}));
+  CHECK_FALSE(check_rows(record, "part `train`", {1, 3}));
+  CHECK_FALSE(check_rows(record, "part `train`", {}));
+  std::optional<Diagnostic> const wrong = check_rows(record, "part `train`", {1, 4}, Span{1, 2});
+  REQUIRE(wrong);
+  CHECK(wrong->code == "E4016");
+  CHECK(wrong->message == "part `train` wants rows 1..4, but `" + file.path() + "` has 3 rows");
+  CHECK(wrong->primary->span == Span{1, 2});
+  CHECK(check_rows(record, "part `train`", {0, 2}));
+  CHECK(check_rows(record, "part `train`", {3, 2}));
+  CHECK_THROWS_AS(make_experiment(record, "bench", 1, {2, 4}), UserError);
+  CHECK_THROWS_AS(make_experiment(record, "bench", 3, {2, 3}), InternalError);
+}
+
+TEST_CASE("an experiment without the channel in its data has no samples of it") {
+  TemporaryFile const file("t,y\n0,1\n1,2\n");
+  RecordRequest wanted = request(file.path(), {}, {"y"});
+  wanted.measured.push_back(std::nullopt);
+  Experiment const experiment = make_experiment(loaded(wanted), "bench", 1, {});
+  CHECK(experiment.measured[0].size() == 2);
+  CHECK(experiment.measured[1].empty());
+}
