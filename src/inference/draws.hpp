@@ -8,17 +8,17 @@ namespace sysid {
 /// One chain after burn-in and thinning. values[d][p]: declared unit.
 struct Chain {
   std::vector<std::vector<double>> values;
-  std::vector<double> log_prior;        // on the declared scale, Jacobian left out
+  std::vector<double> log_prior;  // on the declared scale, Jacobian left out
   std::vector<double> log_likelihood;
-  std::vector<double> log_density;      // what the sampler saw: log prior on R^P + log likelihood ("lp__")
-  std::vector<double> acceptance;       // acceptance probability of the step that led here ("accept_stat__")
+  std::vector<double> log_density;  // what the sampler saw: log prior on R^P + log likelihood ("lp__")
+  std::vector<double> acceptance;   // acceptance probability of the step that led here ("accept_stat__")
 };
 
 struct Draws {
-  std::vector<std::string> names;       // parameters, then parameter-derived quantities
+  std::vector<std::string> names;  // parameters, then parameter-derived quantities
   std::vector<std::string> units;
   std::vector<Chain> chains;
-  int parameter_count = 0;              // the first names are sampled parameters, the rest derived
+  int parameter_count = 0;  // the first names are sampled parameters, the rest derived
 
   std::size_t total() const {
     std::size_t n = 0;

@@ -1,0 +1,53 @@
+// Random-walk Metropolis with a Gaussian proposal: W chains in lanes, one batch of likelihoods per iteration.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "core/lanes.hpp"
+#include "core/ledger.hpp"
+#include "core/random.hpp"
+#include "likelihood/target.hpp"
+
+namespace sysid::metropolis {
+
+/// x' = x + s L z with z ~ N(0, I). With probability `small_share` s is `small_scale` times `scale`: such moves get a chain out of
+/// narrow places that the full scale never leaves. Symmetric in x and x' either way, so its density cancels from the acceptance
+/// ratio.
+struct Proposal {
+  int dimension = 0;
+  std::vector<double> factor;  // L, lower triangle of [P x P] by rows
+  double scale = 1;
+  double small_share = 0;
+  double small_scale = 0.2;
+};
+
+/// (8.17): N(x, variance I).
+Proposal spherical(int dimension, double variance);
+
+/// What the next step needs, and a checkpoint holds.
+struct State {
+  LaneArray theta;                     // [P x W]
+  std::vector<double> log_prior;       // [W], density on R^P
+  std::vector<double> log_likelihood;  // [W]
+};
+
+/// What only adaptation and diagnostics need.
+struct Info {
+  std::vector<double> acceptance_probability;  // [W]; 0 where the proposal failed
+  std::vector<char> accepted;                  // [W]
+  std::vector<char> failed;                    // [W]: the proposal's density was not finite; such a move must not steer adaptation
+  std::vector<char> small;                     // [W]: the move was a small one
+};
+
+/// Evaluates theta [P x W].
+State init(Target const& target, LaneArray theta, Ledger& ledger);
+
+/// One iteration of every chain. Chain w of the block is chain key.index + w of the run, key.step is the iteration: its numbers,
+/// and so its path, do not depend on the other lanes. proposals: [W].
+///
+///   accept with probability min(1, p(x') / p(x))          the tutorial's Sec. 8.3 prints the ratio upside down; Hastings 1970
+///
+/// A state whose own density is not finite accepts any proposal whose density is.
+Info step(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, State& state, Ledger& ledger);
+
+}  // namespace sysid::metropolis

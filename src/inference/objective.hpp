@@ -1,0 +1,42 @@
+// What a search climbs: a posterior or a likelihood over the sampler's coordinates, with the prior's widths as its yardstick.
+#pragma once
+#include <Eigen/Dense>
+#include <vector>
+
+#include "core/ledger.hpp"
+#include "likelihood/target.hpp"
+
+namespace sysid {
+
+enum class Aim {
+  posterior,           // density on R^P, Jacobian included: what chains sample, so what modes and masses are about
+  declared_posterior,  // density of the declared parameters: `map`
+  likelihood,          // `ml`
+};
+
+struct Objective {
+  Target const& target;
+  Aim aim;
+  Eigen::VectorXd scale;  // [P] half the central 68 % of the prior draws, > 0
+  Eigen::VectorXd low,
+      high;  // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
+
+  int dimension() const { return static_cast<int>(scale.size()); }
+  /// The prior's part alone; 0 for `likelihood`.
+  std::vector<double> log_prior(ConstLanes theta) const;
+  /// -infinity wherever it is not finite.
+  std::vector<double> log_density(ConstLanes theta, Ledger& ledger) const;
+  Eigen::VectorXd clamp(Eigen::VectorXd theta) const { return theta.cwiseMax(low).cwiseMin(high); }
+};
+
+/// prior_draws [P x N] give the scales.
+Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws);
+
+/// The columns of a batch, from vectors.
+LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points);
+Eigen::VectorXd column(ConstLanes theta, int lane);
+
+/// Evaluates `density` over the columns in blocks of at most 512 lanes: enough to fill any machine, little enough to hold.
+std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger);
+
+}  // namespace sysid

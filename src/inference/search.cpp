@@ -1,0 +1,282 @@
+// From the prior to the modes.
+#include "inference/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/elementary.hpp"
+#include "inference/descent.hpp"
+#include "inference/laplace.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int draws_per_pass = 2048;
+constexpr std::size_t likeliest = 96, others = 32;
+constexpr int early_rounds = 6, late_rounds = 100;
+constexpr std::size_t finalists = 16;
+constexpr int most_passes = 4;
+constexpr double near = 0.05;      // prior widths: finalists closer than this search the same basin
+constexpr double negligible = 30;  // nats below the best optimum
+constexpr std::size_t most_modes = 12;
+constexpr double notable_share = 0.01;
+
+// Steps of Purpose::start: streams of different uses never meet.
+constexpr std::uint64_t search_step = 0, prior_start_step = 1, dispersal_step = 1'000'000;
+
+double gap(Objective const& objective, Eigen::VectorXd const& a, Eigen::VectorXd const& b) {
+  return (a - b).cwiseQuotient(objective.scale).cwiseAbs().maxCoeff();
+}
+
+void sort_best_first(std::vector<Climber>& climbers) {
+  std::stable_sort(climbers.begin(), climbers.end(),
+                   [](Climber const& a, Climber const& b) { return a.log_density > b.log_density; });
+}
+
+/// The draws worth a local search: the likeliest, and the first of the rest.
+std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Ledger& ledger) {
+  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger);
+  std::vector<int> order;
+  for (int w = 0; w < draws.width(); ++w)
+    if (std::isfinite(density[static_cast<std::size_t>(w)])) order.push_back(w);
+  std::size_t const best = std::min(likeliest, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(best), order.end(), [&](int a, int b) {
+    double const fa = density[static_cast<std::size_t>(a)], fb = density[static_cast<std::size_t>(b)];
+    return fa > fb || (fa == fb && a < b);
+  });
+  std::sort(order.begin() + static_cast<std::ptrdiff_t>(best), order.end());
+  order.resize(std::min(order.size(), best + others));
+  std::vector<Climber> starts;
+  for (int const w : order) starts.push_back(climber_at(column(draws, w), density[static_cast<std::size_t>(w)]));
+  return starts;
+}
+
+/// The best of `climbers` that lie apart, filled up with the next best.
+std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Climber> climbers) {
+  sort_best_first(climbers);
+  std::vector<Climber> chosen, rest;
+  for (Climber& climber : climbers) {
+    bool const apart = std::none_of(chosen.begin(), chosen.end(),
+                                    [&](Climber const& other) { return gap(objective, climber.theta, other.theta) < near; });
+    (apart && chosen.size() < finalists ? chosen : rest).push_back(std::move(climber));
+  }
+  for (Climber& climber : rest)
+    if (chosen.size() < finalists) chosen.push_back(std::move(climber));
+  return chosen;
+}
+
+/// One local search stands for all that ended in the same place, judged by the curvature there.
+struct Cluster {
+  Climber best;
+  int hits = 1;
+};
+
+std::vector<Cluster> cluster(std::vector<Climber> climbers) {
+  sort_best_first(climbers);
+  std::vector<Cluster> clusters;
+  for (Climber& climber : climbers) {
+    auto const same = [&](Cluster const& c) {
+      if (c.best.curvature.size() == 0) return false;
+      Eigen::VectorXd const apart = climber.theta - c.best.theta;
+      return apart.dot(c.best.curvature * apart) < 1;
+    };
+    auto const found = std::find_if(clusters.begin(), clusters.end(), same);
+    if (found != clusters.end())
+      ++found->hits;
+    else
+      clusters.push_back({std::move(climber)});
+  }
+  return clusters;
+}
+
+std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, RunContext& context) {
+  std::vector<Mode> modes;
+  for (Cluster const& c : cluster(std::move(climbers))) {
+    if (context.stop_requested() || modes.size() >= most_modes) break;
+    if (!modes.empty() && c.best.log_density < modes.front().log_density - negligible) break;
+    Eigen::MatrixXd const guess =
+        c.best.curvature.size() > 0 ? c.best.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
+    Mode mode = laplace_mode(objective, c.best.theta, guess, context.ledger);
+    mode.hits = c.hits;
+    auto const same = std::find_if(modes.begin(), modes.end(), [&](Mode const& other) { return distance(mode, other) < 0.5; });
+    if (same == modes.end()) {
+      modes.push_back(std::move(mode));
+    } else {
+      int const hits = same->hits + mode.hits;
+      if (mode.log_density > same->log_density) *same = std::move(mode);
+      same->hits = hits;
+    }
+  }
+  // A likelihood has no mass over coordinates, nor the density of declared parameters: those rank by height.
+  auto const rank = [&](Mode const& m) { return objective.aim == Aim::posterior ? m.log_mass : m.log_density; };
+  std::stable_sort(modes.begin(), modes.end(), [&](Mode const& a, Mode const& b) { return rank(a) > rank(b); });
+  double sum = 0;
+  for (Mode& mode : modes) sum += mode.share = elementary::exp(rank(mode) - rank(modes.front()));
+  for (Mode& mode : modes) mode.share /= sum;
+  return modes;
+}
+
+std::string describe(Target const& target, Mode const& mode) {
+  std::string text;
+  auto const parameters = target.parameters();
+  for (std::size_t p = 0; p < parameters.size() && p < 6; ++p)
+    text += fmt::format("{}{} = {:.4g}", p == 0 ? "" : ", ", parameters[p].name, mode.declared[p]);
+  return parameters.size() > 6 ? text + ", ..." : text;
+}
+
+void add_findings(Objective const& objective, SearchResult& result) {
+  std::vector<Mode> const& modes = result.modes;
+  for (std::size_t i = 1; i < modes.size() && objective.aim == Aim::posterior; ++i) {
+    if (modes[i].share <= notable_share) break;
+    result.findings.push_back(
+        {Severity::warning, "second_mode",
+         fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
+                     describe(objective.target, modes[i])),
+         "look at both solutions: add data or prior knowledge that tells them apart, or run more chains and report both"});
+  }
+  if (!modes.empty() && !modes.front().well_defined)
+    result.findings.push_back({Severity::warning, "flat_direction",
+                               "the data leave some combination of parameters undetermined; its width is the prior's",
+                               "fix one of the parameters, or give them narrower priors, or measure something more"});
+}
+
+LaneArray draw_prior(Target const& target, StreamKey key, int count) {
+  LaneArray draws(target.dimension(), count);
+  target.sample_prior(key, draws);
+  return draws;
+}
+
+}  // namespace
+
+SearchResult search(Target const& target, Aim aim, RunContext& context) {
+  SearchResult result;
+  auto const stop = [&] { return context.stop_requested(); };
+  context.progress.begin("searching the prior", most_passes);
+  StreamKey const key{context.seed, Purpose::start, 0, search_step};
+  std::optional<Objective> objective;
+  std::vector<Climber> ended;
+  for (int pass = 0; pass < most_passes && !stop(); ++pass) {
+    LaneArray const draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
+    if (!objective) objective.emplace(make_objective(target, aim, draws));
+    std::vector<Climber> starts = choose_starts(*objective, draws, context.ledger);
+    climb(*objective, starts, early_rounds, context.ledger, stop);
+    std::vector<Climber> last = choose_finalists(*objective, std::move(starts));
+    climb(*objective, last, late_rounds, context.ledger, stop);
+    ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
+    if (stop()) break;
+    context.progress.advance(static_cast<std::uint64_t>(pass + 1), "");
+    if (ended.empty()) continue;
+    result.modes = modes_of(*objective, ended, context);
+    if (result.modes.front().hits > 1 || ended.size() == 1) break;
+  }
+  context.progress.end();
+  if (stop()) {
+    result.interrupted = true;
+    result.modes.clear();
+    return result;
+  }
+  if (result.modes.empty()) {
+    result.failure = no_finite_start(context.ledger, most_passes * draws_per_pass);
+    return result;
+  }
+  add_findings(*objective, result);
+  return result;
+}
+
+std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains) {
+  std::vector<int> count(modes.size(), 0);
+  int left = chains;
+  for (std::size_t m = 0; m < modes.size() && left > 0; ++m) {
+    if (m > 0 && modes[m].share <= notable_share) continue;
+    ++count[m];
+    --left;
+  }
+  for (; left > 0; --left) {
+    std::size_t most_wanting = 0;
+    auto const want = [&](std::size_t m) { return modes[m].share * chains - count[m]; };
+    for (std::size_t m = 1; m < modes.size(); ++m)
+      if (want(m) > want(most_wanting)) most_wanting = m;
+    ++count[most_wanting];
+  }
+  std::vector<int> mode_of_chain;
+  for (std::size_t m = 0; m < modes.size(); ++m)
+    mode_of_chain.insert(mode_of_chain.end(), static_cast<std::size_t>(count[m]), static_cast<int>(m));
+  return mode_of_chain;
+}
+
+namespace {
+
+/// Redraws the columns of `starts` until the density is finite at each; `redraw(chain, attempt)` gives the next try. Returns the
+/// chains that never got one.
+template <class Redraw>
+std::vector<int> settle(Target const& target, LaneArray& starts, int attempts, Ledger& ledger, Redraw const& redraw) {
+  std::vector<int> open(static_cast<std::size_t>(starts.width()));
+  std::iota(open.begin(), open.end(), 0);
+  for (int attempt = 0; attempt < attempts && !open.empty(); ++attempt) {
+    std::vector<Eigen::VectorXd> points;
+    for (int const chain : open) points.push_back(redraw(chain, attempt));
+    LaneArray const theta = to_lanes(points);
+    std::vector<double> prior(open.size()), likelihood(open.size());
+    target.log_prior(theta, prior);
+    target.log_likelihood(theta, likelihood, ledger);
+    std::vector<int> still;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      for (int p = 0; p < starts.rows(); ++p) starts(p, open[i]) = theta(p, static_cast<int>(i));
+      if (!std::isfinite(prior[i] + likelihood[i])) still.push_back(open[i]);
+    }
+    open = std::move(still);
+  }
+  return open;
+}
+
+}  // namespace
+
+LaneArray overdispersed_starts(Target const& target, std::vector<Mode> const& modes, std::vector<int> const& mode_of_chain,
+                               RunContext& context) {
+  constexpr double inflation = 3;
+  LaneArray starts(target.dimension(), static_cast<int>(mode_of_chain.size()));
+  auto const mode_of = [&](int chain) -> Mode const& {
+    return modes[static_cast<std::size_t>(mode_of_chain[static_cast<std::size_t>(chain)])];
+  };
+  auto const redraw = [&](int chain, int attempt) -> Eigen::VectorXd {
+    Mode const& mode = mode_of(chain);
+    Stream stream(
+        {context.seed, Purpose::start, static_cast<std::uint64_t>(chain), dispersal_step + static_cast<std::uint64_t>(attempt)});
+    Eigen::VectorXd z(target.dimension());
+    for (double& v : z) v = stream.normal();
+    Eigen::VectorXd const move = covariance_of(mode).llt().matrixL() * z;
+    return theta_of(mode) + inflation * move;
+  };
+  for (int const chain : settle(target, starts, 100, context.ledger, redraw))
+    for (int p = 0; p < starts.rows(); ++p) starts(p, chain) = mode_of(chain).theta[static_cast<std::size_t>(p)];
+  return starts;
+}
+
+std::optional<LaneArray> prior_starts(Target const& target, int chains, RunContext& context) {
+  LaneArray starts(target.dimension(), chains);
+  auto const redraw = [&](int chain, int attempt) {
+    StreamKey const key{context.seed, Purpose::start, static_cast<std::uint64_t>(chain),
+                        prior_start_step + static_cast<std::uint64_t>(attempt)};
+    return column(draw_prior(target, key, 1), 0);
+  };
+  if (!settle(target, starts, 1000, context.ledger, redraw).empty()) return std::nullopt;
+  return starts;
+}
+
+Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
+  std::vector<Failure> failures = ledger.failures();
+  std::stable_sort(failures.begin(), failures.end(), [](Failure const& a, Failure const& b) { return a.count > b.count; });
+  std::string classes;
+  for (std::size_t i = 0; i < failures.size() && i < 3; ++i)
+    classes +=
+        fmt::format("{}{} in {} ({} times)", i == 0 ? ": " : ", ", name(failures[i].kind), failures[i].where, failures[i].count);
+  return {Severity::error, "no_finite_start",
+          fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, classes),
+          "narrow the priors towards values for which the model can be solved, or shorten the integration step"};
+}
+
+}  // namespace sysid
