@@ -23,9 +23,9 @@ inline constexpr int band_limited_reach = 40;
 ///   x(i + f) = sum_k x_(i+k) w(f - k) sinc(f - k) / sum_k w(f - k) sinc(f - k),   w(u) = I0(beta sqrt(1 - (u/H)^2)) / I0(beta)
 ///
 /// over the 2 H samples nearest to interval i, H = 40, beta = 12 (Kaiser 1974; the denominator keeps constants constant). Ends: odd
-/// reflection, x_(-k) = 2 x_0 - x_k. By Kaiser's formulas the stop band is
-/// 118 dB down and the transition 0.096 of the sampling rate wide; with the polynomial, a sine of amplitude 1 is met to 1.3e-6 at
-/// 0.33 of the sampling rate and to 7e-6 at 0.45, and lost from there to Nyquist.
+/// reflection, x_(-k) = 2 x_0 - x_k. By Kaiser's formulas the stop band is 118 dB down and the transition 0.096 of the sampling
+/// rate wide; with the polynomial, a sine of amplitude 1 is met to 1.3e-6 at 0.33 of the sampling rate and to 7e-6 at 0.45, and
+/// lost from there to Nyquist.
 std::vector<double> band_limited_coefficients(std::span<double const> samples);
 
 }  // namespace sysid

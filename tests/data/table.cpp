@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/diagnostic.hpp"
+#include "core/random.hpp"
 #include "temporary_file.hpp"
 
 using namespace sysid;
@@ -235,4 +236,26 @@ TEST_CASE("a file that cannot be read is an I/O error with path and reason") {
     CHECK(std::string(error.what()) == "cannot read `/nonexistent/run.csv`: no such file or directory");
   }
   CHECK_THROWS_AS(Table::read(std::filesystem::temp_directory_path().string()), IoError);
+}
+
+TEST_CASE("any bytes give a table or an error, and every number of a table is finite or missing") {
+  constexpr std::string_view alphabet = "01.-+eE,;\t \r\n\n\"#aNAn\xc3\xa4";
+  int tables = 0;
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    Stream stream({.seed = 1, .index = i});
+    std::string bytes = i % 2 == 0 ? "a,b\n" : "";
+    for (std::uint64_t length = stream.below(30); length > 0; --length) bytes += alphabet[stream.below(alphabet.size())];
+    try {
+      Table const table = parse(bytes);
+      ++tables;
+      for (std::string const& column : table.columns()) {
+        std::vector<double> const values = table.numbers(column);
+        CHECK(values.size() == static_cast<std::size_t>(table.rows()));
+        for (double const value : values) CHECK_FALSE(std::isinf(value));
+      }
+    } catch (UserError const& error) {
+      CHECK(error.diagnostic().code.starts_with("E40"));
+    }
+  }
+  CHECK(tables > 100);
 }
