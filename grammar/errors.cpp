@@ -1,0 +1,181 @@
+// The wording of the syntax stage.
+#include "grammar/errors.hpp"
+
+#include <fmt/format.h>
+
+#include "syntax/words.hpp"
+
+namespace sysid::grammar::errors {
+
+namespace {
+
+Diagnostic error(std::string code, Span where, std::string message, std::string help = "") {
+  Diagnostic diagnostic;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostic.primary = Label{where, ""};
+  diagnostic.help = std::move(help);
+  return diagnostic;
+}
+
+/// "`a`, `b` or `c`".
+std::string choice(std::span<std::string_view const> words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    out += fmt::format("{}`{}`", i == 0 ? "" : i + 1 == words.size() ? " or " : ", ", words[i]);
+  return out;
+}
+
+/// A guess when one is near, else everything there is.
+std::string guess_or(std::string_view word, std::vector<std::string> const& known, std::string all) {
+  std::string guess = did_you_mean(word, known);
+  return guess.empty() ? std::move(all) : guess;
+}
+
+std::string_view noun(std::string_view bracket) { return bracket == "{" ? "block" : bracket == "[" ? "unit" : "parenthesis"; }
+std::string_view closer(std::string_view opener) { return opener == "{" ? "}" : opener == "[" ? "]" : ")"; }
+
+}  // namespace
+
+Diagnostic expected(Span where, std::string_view wanted, std::string_view found) {
+  return error("E1101", where, fmt::format("expected {} but found {}", wanted, found));
+}
+
+Diagnostic unclosed(Token const& opener, Span noticed) {
+  Diagnostic out = error("E1102", noticed, fmt::format("the {} opened with `{}` is never closed", noun(opener.text), opener.text),
+                         fmt::format("close it with `{}`", closer(opener.text)));
+  out.primary->text = fmt::format("`{}` is missing before this", closer(opener.text));
+  out.secondary.push_back({opener.span, "opened here"});
+  return out;
+}
+
+Diagnostic unclosed_text(Span text) {
+  Diagnostic out = error("E1103", {text.end, text.end}, "the text is never closed", "end it with `\"` on the same line");
+  out.primary->text = "`\"` is missing here";
+  out.secondary.push_back({{text.begin, text.begin + 1}, "opened here"});
+  return out;
+}
+
+Diagnostic mismatched(Token const& opener, Token const& closing) {
+  Diagnostic out = error("E1104", closing.span, fmt::format("`{}` is closed by `{}`", opener.text, closing.text),
+                         fmt::format("close it with `{}`", closer(opener.text)));
+  out.secondary.push_back({opener.span, "opened here"});
+  return out;
+}
+
+Diagnostic no_operator_between(Token const& left, Token const& right) {
+  bool const simple = left.kind != TokenKind::symbol && right.kind != TokenKind::symbol;
+  std::string const product = simple ? fmt::format(": `{}*{}`", left.text, right.text) : "";
+  return error("E1105", cover(left.span, right.span),
+               fmt::format("there is no operator between `{}` and `{}`", left.text, right.text),
+               fmt::format("multiplication is written with `*`{}", product));
+}
+
+Diagnostic chained_comparison(Token const& first, Token const& second) {
+  Diagnostic out = error("E1106", second.span, "comparisons cannot be chained",
+                         fmt::format("compare twice and join with `and`: `a {} b and b {} c`", first.text, second.text));
+  out.secondary.push_back({first.span, "first comparison"});
+  return out;
+}
+
+Diagnostic dot_without_digits(Span number, std::string_view repaired) {
+  return error("E1107", number, "a number needs digits on both sides of its dot", fmt::format("write `{}`", repaired));
+}
+
+Diagnostic number_out_of_range(Span number, std::string_view text) {
+  return error("E1108", number, fmt::format("the number `{}` is outside the range of double precision", text),
+               "magnitudes from 1e-307 to 1e308 can be represented");
+}
+
+Diagnostic unknown_statement(Token const& word, std::string_view place, std::span<std::string_view const> known) {
+  return error("E1109", word.span, fmt::format("no statement of {} begins with `{}`", place, word.text),
+               guess_or(word.text, words::list(known), fmt::format("a statement begins with {}", choice(known))));
+}
+
+Diagnostic unknown_item(Token const& word) {
+  std::vector<std::string> known = words::list(words::items);
+  for (std::string_view const verb : words::verbs) known.emplace_back(verb);
+  return error(
+      "E1110", word.span, fmt::format("nothing in a file begins with `{}`", word.text),
+      guess_or(word.text, known,
+               fmt::format("a file holds {} blocks and tasks; a task begins with {}", choice(words::items), choice(words::verbs))));
+}
+
+Diagnostic unknown_verb(Token const& word) {
+  return error("E1111", word.span, fmt::format("`{}` is not a task", word.text),
+               guess_or(word.text, words::list(words::verbs), fmt::format("a task begins with {}", choice(words::verbs))));
+}
+
+Diagnostic double_equals(Span where) {
+  return error("E1112", where, "`==` compares; it does not equate or define", "write a single `=`");
+}
+
+Diagnostic tilde_missing(Span where, std::string_view keyword) {
+  return error("E1113", where, "`~` is missing before the distribution",
+               keyword == "observe" ? "an observation is written `observe channel ~ normal(model, sd = 1)`"
+                                    : "a prior is written `parameter name ~ normal(0, 1)`");
+}
+
+Diagnostic tilde_without_keyword(Span where) {
+  return error("E1114", where, "`~` stands in a statement that is neither a prior nor an observation",
+               "begin the statement with `parameter` for a prior, with `observe` for measured data");
+}
+
+Diagnostic stray_byte(Span where, unsigned char byte) {
+  if (byte >= 0x80U)
+    return error("E1115", where, fmt::format("the byte 0x{:02x} is not valid UTF-8", byte), "save the file as UTF-8");
+  std::string const name =
+      byte > 0x20U && byte < 0x7FU ? fmt::format("`{}`", static_cast<char>(byte)) : fmt::format("0x{:02x}", byte);
+  return error("E1115", where, fmt::format("the character {} has no meaning here", name), "remove it");
+}
+
+Diagnostic look_alike(Span where, std::string_view found, std::string_view meant) {
+  return error("E1116", where, fmt::format("the character `{}` is not part of the language", found),
+               fmt::format("write {}", meant));
+}
+
+Diagnostic foreign_operator(Span where, std::string_view found, std::string_view help) {
+  return error("E1117", where, fmt::format("`{}` is not an operator", found), std::string(help));
+}
+
+Diagnostic bracket_out_of_place(Span where) {
+  return error(
+      "E1118", where, "a unit cannot stand here",
+      "`[` opens a unit after a number, a declared name or a data column; elsewhere multiply by a number with a unit: `1 [m]`");
+}
+
+Diagnostic reserved_word(Token const& word) {
+  return error("E1119", word.span, fmt::format("`{}` is a word of the language and cannot be a name", word.text),
+               "choose another name");
+}
+
+Diagnostic begins_with_sign(Token const& sign) {
+  return error("E1120", sign.span, fmt::format("a statement cannot begin with `{}`", sign.text),
+               "put the first term in parentheses or another term first; a sign at the start of a line continues the line before");
+}
+
+Diagnostic prime_apart(Span where) {
+  return error("E1121", where, "a prime stands directly behind a name", "write the derivative of `y` as `y'`");
+}
+
+Diagnostic nesting_too_deep(Span where, int most) {
+  return error("E1122", where, fmt::format("the expression is nested more than {} deep", most), "name parts of it with `let`");
+}
+
+Diagnostic statement_too_long(Span where, int most) {
+  return error("E1123", where, fmt::format("the statement that begins here has more than {} operators", most),
+               "name parts of it with `let`");
+}
+
+Diagnostic unknown_escape(Span where, std::string_view escape) {
+  return error("E1124", where, fmt::format("`{}` is not an escape", escape), "a text knows `\\\"`, `\\\\` and `\\n`");
+}
+
+Diagnostic statement_incomplete(Token const& last, Token const& next) {
+  Diagnostic out = error("E1125", last.span, fmt::format("the line ends in `{}`, so the next line continues it", last.text),
+                         "complete the statement, or remove what its line ends in");
+  out.secondary.push_back({next.span, "a statement begins here"});
+  return out;
+}
+
+}  // namespace sysid::grammar::errors

@@ -1,0 +1,63 @@
+// Every message of the syntax stage, one named constructor per mistake: detection calls them, wording lives in errors.cpp alone.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/diagnostic.hpp"
+#include "grammar/scan.hpp"
+
+namespace sysid::grammar::errors {
+
+/// E1101: `wanted` and `found` are noun phrases.
+Diagnostic expected(Span where, std::string_view wanted, std::string_view found);
+/// E1102: a bracket never closed; `noticed` is where it had to be closed at the latest.
+Diagnostic unclosed(Token const& opener, Span noticed);
+/// E1103
+Diagnostic unclosed_text(Span text);
+/// E1104: `(a]`.
+Diagnostic mismatched(Token const& opener, Token const& closer);
+/// E1105: `2 y`; left and right are the tokens on both sides of the gap.
+Diagnostic no_operator_between(Token const& left, Token const& right);
+/// E1106: `a < b < c`.
+Diagnostic chained_comparison(Token const& first, Token const& second);
+/// E1107: `1.` and `.5`; `repaired` is how it is written.
+Diagnostic dot_without_digits(Span number, std::string_view repaired);
+/// E1108
+Diagnostic number_out_of_range(Span number, std::string_view text);
+/// E1109: `paramter m ~ ...` in a model, `fiel "a.csv"` in a data block. place: "a model".
+Diagnostic unknown_statement(Token const& word, std::string_view place, std::span<std::string_view const> known);
+/// E1110: neither an item nor a task begins so.
+Diagnostic unknown_item(Token const& word);
+/// E1111: `posterior = fitt duffing`.
+Diagnostic unknown_verb(Token const& word);
+/// E1112: `m*y'' == x`.
+Diagnostic double_equals(Span where);
+/// E1113: `parameter m log_uniform(1, 2)`; `where` is what stands where `~` had to stand.
+Diagnostic tilde_missing(Span where, std::string_view keyword);
+/// E1114: `m ~ normal(0, 1)` without its keyword.
+Diagnostic tilde_without_keyword(Span where);
+/// E1115
+Diagnostic stray_byte(Span where, unsigned char byte);
+/// E1116: `×` where `*` is meant.
+Diagnostic look_alike(Span where, std::string_view found, std::string_view meant);
+/// E1117: `**`, `:=`, `&&`: operators of other languages.
+Diagnostic foreign_operator(Span where, std::string_view found, std::string_view help);
+/// E1118: `[` where no unit may stand.
+Diagnostic bracket_out_of_place(Span where);
+/// E1119: `if` as a name.
+Diagnostic reserved_word(Token const& word);
+/// E1120: a statement that begins with + or -.
+Diagnostic begins_with_sign(Token const& sign);
+/// E1121: `y '`.
+Diagnostic prime_apart(Span where);
+/// E1122
+Diagnostic nesting_too_deep(Span where, int most);
+/// E1123
+Diagnostic statement_too_long(Span where, int most);
+/// E1124: `"\q"`.
+Diagnostic unknown_escape(Span where, std::string_view escape);
+/// E1125: a line that ends in an operator, and a declaration on the next.
+Diagnostic statement_incomplete(Token const& last, Token const& next);
+
+}  // namespace sysid::grammar::errors

@@ -1,0 +1,209 @@
+// Detection of the usual mistakes from the tokens around a failure. The wording is in errors.cpp.
+#include "grammar/explain.hpp"
+
+#include <fmt/format.h>
+
+#include "grammar/errors.hpp"
+#include "syntax/words.hpp"
+
+namespace sysid::grammar {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> comparisons{"<", "<=", ">", ">=", "==", "!="};
+constexpr std::array<std::string_view, 9> unfinished{"+", "-", "*", "/", "^", ",", "=", "~", ".."};
+
+bool is_symbol(Token const& token, std::span<std::string_view const> table) {
+  return token.kind == TokenKind::symbol && words::contains(table, token.text);
+}
+bool is_word(Token const& token) { return token.kind == TokenKind::word; }
+bool is_reserved(Token const& token) { return is_word(token) && words::contains(words::reserved, token.text); }
+bool ends_value(Token const& token) {
+  return (token.kind != TokenKind::symbol && !is_reserved(token)) || token.is(")") || token.is("]") || token.is("'");
+}
+
+/// The tokens around one failure.
+class Failure {
+ public:
+  Failure(Layout const& layout, std::uint32_t where, std::string const& wanted)
+      : tokens_(layout.tokens), wanted_(wanted), at_end_(layout.ends_line(where)), found_(layout.token_at(where)) {
+    // A closing brace counts as a statement of its own, but what fails there is what stands before it.
+    bool const before = at_end_ || found().is("}");
+    std::size_t const here = before && found_ > 0 ? found_ - 1 : std::min(found_, tokens_.size() - 1);
+    statement_ = tokens_.empty() ? 0 : tokens_[here].statement;
+    first_ = std::min(found_, tokens_.size());
+    while (first_ > 0 && tokens_[first_ - 1].statement == statement_) --first_;
+  }
+
+  int statement() const { return statement_; }
+  bool at_end_of_file() const { return at_end_ && found_ == tokens_.size(); }
+
+  Diagnostic diagnostic() const {
+    if (wanted_ == wanted::shallower_nesting) return errors::nesting_too_deep(span(), deepest_nesting);
+    if (auto incomplete = unfinished_line()) return *incomplete;
+    if (auto specific = at_end_ ? at_end() : at_token()) return *specific;
+    return errors::expected(span(), noun_phrase(), found_phrase());
+  }
+
+ private:
+  Token const& found() const { return tokens_[found_]; }
+  Token const* previous(std::size_t steps = 1) const {
+    return found_ >= steps && tokens_[found_ - steps].statement == statement_ ? &tokens_[found_ - steps] : nullptr;
+  }
+  Token const* next() const {
+    return found_ + 1 < tokens_.size() && tokens_[found_ + 1].statement == statement_ ? &tokens_[found_ + 1] : nullptr;
+  }
+  Token const* first() const {
+    return first_ < tokens_.size() && tokens_[first_].statement == statement_ ? &tokens_[first_] : nullptr;
+  }
+  bool begins_with(std::string_view keyword) const { return first() != nullptr && first()->is(keyword); }
+
+  Span span() const {
+    if (!at_end_) return found().span;
+    std::uint32_t const end = found_ == 0 ? 0 : tokens_[found_ - 1].span.end;
+    return {end, end};
+  }
+
+  /// The rules' names are noun phrases already; a literal is named 'x' by X3.
+  std::string noun_phrase() const {
+    return wanted_.size() == 3 && wanted_.front() == '\'' ? fmt::format("`{}`", wanted_[1]) : wanted_;
+  }
+
+  std::string found_phrase() const {
+    if (at_end_) return at_end_of_file() ? "the end of the file" : "the end of the line";
+    switch (found().kind) {
+      case TokenKind::number:
+        return fmt::format("the number `{}`", found().text);
+      case TokenKind::text:
+        return "a text";
+      case TokenKind::word:
+      case TokenKind::symbol:
+        break;
+    }
+    return fmt::format("`{}`", found().text);
+  }
+
+  /// `... +` and on the next line `parameter c ~ ...`: the rules see `+ parameter c`.
+  std::optional<Diagnostic> unfinished_line() const {
+    if (at_end_ || !is_word(found()) || found().newline_before) return std::nullopt;
+    Token const* const keyword = previous();
+    Token const* const last = previous(2);
+    if (keyword == nullptr || last == nullptr || !keyword->newline_before || !is_symbol(*last, unfinished)) return std::nullopt;
+    if (!words::contains(words::model_statements, keyword->text) && !words::contains(words::data_statements, keyword->text) &&
+        !words::contains(words::items, keyword->text))
+      return std::nullopt;
+    return errors::statement_incomplete(*last, *keyword);
+  }
+
+  std::optional<Diagnostic> at_end() const {
+    if (wanted_ != wanted::equals) return std::nullopt;
+    for (std::size_t i = first_; i < found_; ++i)
+      if (tokens_[i].is("==")) return errors::double_equals(tokens_[i].span);
+    return std::nullopt;
+  }
+
+  std::optional<Diagnostic> at_token() const {
+    bool const value_before = previous() != nullptr && ends_value(*previous());
+    bool const wants_name = wanted_ == wanted::name || wanted_ == wanted::column;
+    if (found().is("'")) return errors::prime_apart(found().span);
+    if (found().is("[") && value_before && !wanted_.starts_with("a ")) return errors::bracket_out_of_place(found().span);
+    if (is_reserved(found()) && wants_name) return errors::reserved_word(found());
+    if (is_symbol(found(), comparisons)) return at_comparison();
+    if (wanted_ == wanted::operator_between && previous() != nullptr) return side_by_side();
+    if (begins_with("observe") && wanted_ == wanted::tilde) return errors::tilde_missing(span(), "observe");
+    if (begins_with("parameter") && wanted_ == wanted::end_of_statement && is_word(found()) && value_before)
+      return errors::tilde_missing(span(), "parameter");
+    if (found().is("~") && value_before && (wanted_ == wanted::equals || wanted_ == wanted::end_of_statement))
+      return errors::tilde_without_keyword(found().span);
+    if ((found().is("+") || found().is("-")) && wanted_ == wanted::model_statement) return errors::begins_with_sign(found());
+    if (!is_word(found())) return std::nullopt;
+    if (wanted_ == wanted::data_statement) return errors::unknown_statement(found(), "a data block", words::data_statements);
+    if (wanted_ == wanted::item) return errors::unknown_item(found());
+    if (wanted_ == wanted::verb) return errors::unknown_verb(found());
+    return std::nullopt;
+  }
+
+  std::optional<Diagnostic> at_comparison() const {
+    int depth = 0;
+    for (std::size_t i = found_; i-- > first_ && depth >= 0;) {
+      depth += tokens_[i].is(")") ? 1 : tokens_[i].is("(") ? -1 : 0;
+      if (depth == 0 && (tokens_[i].is(",") || tokens_[i].is("="))) break;
+      if (depth == 0 && is_symbol(tokens_[i], comparisons)) return errors::chained_comparison(tokens_[i], found());
+    }
+    if (found().is("==")) return errors::double_equals(found().span);
+    return std::nullopt;
+  }
+
+  /// Two values without an operator: a misspelt keyword at the start of a statement, else a product as on paper.
+  std::optional<Diagnostic> side_by_side() const {
+    Token const& word = *previous();
+    if (found_ - 1 == first_ && is_word(word) && in_model()) {
+      bool equation = false;
+      for (std::size_t i = found_; i < tokens_.size() && tokens_[i].statement == statement_; ++i) equation |= tokens_[i].is("=");
+      bool const declares = next() != nullptr && (next()->is("[") || next()->is("~"));
+      if (!equation || declares || !nearest(word.text, words::list(words::model_statements)).empty())
+        return errors::unknown_statement(word, "a model", words::model_statements);
+    }
+    return errors::no_operator_between(word, found());
+  }
+
+  bool in_model() const {
+    std::size_t i = found_;
+    while (i > 0 && !tokens_[i].is("{") && !tokens_[i].is("}")) --i;
+    if (!tokens_[i].is("{")) return false;
+    int const header = tokens_[i].statement;
+    while (i > 0 && tokens_[i - 1].statement == header) --i;
+    return tokens_[i].is("model");
+  }
+
+  std::vector<Token> const& tokens_;
+  std::string const& wanted_;
+  bool at_end_;
+  std::size_t found_;
+  std::size_t first_ = 0;
+  int statement_ = 0;
+};
+
+std::uint32_t end_of(Layout const& layout, std::size_t token) { return token == 0 ? 0 : layout.tokens[token - 1].span.end; }
+
+}  // namespace
+
+std::optional<Diagnostic> explain(Layout const& layout, std::uint32_t where, std::string const& wanted) {
+  Failure const failure(layout, where, wanted);
+  if (layout.reported.contains(failure.statement()) || (failure.at_end_of_file() && layout.reported_at_end)) return std::nullopt;
+  return failure.diagnostic();
+}
+
+std::uint32_t behind_statement(Layout const& layout, std::uint32_t where) {
+  if (layout.ends_line(where)) return where;
+  std::size_t const first = layout.token_at(where);
+  int depth = 0;
+  std::size_t i = first;
+  for (; i < layout.tokens.size(); ++i) {
+    Token const& token = layout.tokens[i];
+    if (depth == 0 && (token.is(";") || token.is("}"))) break;
+    if (depth == 0 && i > first && token.statement != layout.tokens[i - 1].statement) break;
+    depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
+  }
+  return std::max(where, end_of(layout, i));
+}
+
+std::uint32_t behind_item(Layout const& layout, std::uint32_t where, std::string const& wanted) {
+  std::size_t const found = layout.token_at(where);
+  if (wanted == wanted::opening_brace) {
+    // The body that follows the incomplete head goes with it, unless another block begins first.
+    int depth = 0;
+    for (std::size_t i = found; i < layout.tokens.size(); ++i) {
+      Token const& token = layout.tokens[i];
+      bool const next_block = depth == 0 && token.newline_before && (token.is("model") || token.is("data"));
+      if (next_block) break;
+      depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
+      if (token.is("}") && depth <= 0) return token.span.end;
+    }
+  }
+  std::uint32_t const end = behind_statement(layout, where);
+  bool const stray_brace = end == where && found < layout.tokens.size() && layout.tokens[found].is("}") && !layout.ends_line(where);
+  return stray_brace ? layout.tokens[found].span.end : end;
+}
+
+}  // namespace sysid::grammar

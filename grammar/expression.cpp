@@ -1,0 +1,11 @@
+// Instantiates the rules of expression.hpp that expression_def.hpp defines.
+#include "grammar/expression_def.hpp"
+
+namespace sysid::grammar {
+
+BOOST_SPIRIT_INSTANTIATE(decltype(expression), Iterator, Context)
+BOOST_SPIRIT_INSTANTIATE(decltype(call), Iterator, Context)
+BOOST_SPIRIT_INSTANTIATE(decltype(distribution), Iterator, Context)
+BOOST_SPIRIT_INSTANTIATE(decltype(declared), Iterator, Context)
+
+}  // namespace sysid::grammar

@@ -1,0 +1,27 @@
+// Expressions, calls, units, declared names.
+#pragma once
+#include "grammar/token.hpp"
+
+namespace sysid::grammar {
+
+struct expression_tag {};
+struct call_tag {};
+struct distribution_tag {};
+struct unit_tag {};
+struct unit_expression_tag {};
+struct declared_tag {};
+
+inline constexpr x3::rule<expression_tag, ast::Expression> expression = wanted::value;
+/// name(arguments); fails where no parenthesis follows a name.
+inline constexpr x3::rule<call_tag, ast::Call> call = "a function";
+inline constexpr x3::rule<distribution_tag, ast::Call> distribution = "a distribution such as `normal(0, 1)`";
+/// `[...]`.
+inline constexpr x3::rule<unit_tag, ast::UnitExpression> unit = "a unit in brackets";
+inline constexpr x3::rule<unit_expression_tag, ast::UnitExpression> unit_expression = "a unit";
+/// A name and its unit.
+inline constexpr x3::rule<declared_tag, ast::Declared> declared = wanted::name;
+
+BOOST_SPIRIT_DECLARE(decltype(expression), decltype(call), decltype(distribution), decltype(unit), decltype(unit_expression),
+                     decltype(declared))
+
+}  // namespace sysid::grammar

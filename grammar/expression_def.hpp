@@ -1,0 +1,117 @@
+// Definitions of expression.hpp but for units: one rule per level of precedence, from `or` (loosest) to `^`.
+#pragma once
+#include <string>
+
+#include "grammar/actions.hpp"
+#include "grammar/expression.hpp"
+
+namespace sysid::grammar {
+
+struct conditional_tag {};
+struct disjunction_tag {};
+struct conjunction_tag {};
+struct negation_tag {};
+struct denial_tag {};
+struct negative_tag {};
+struct comparison_tag {};
+struct sum_tag {};
+struct product_tag {};
+struct signed_value_tag {};
+struct power_tag {};
+struct primary_tag {};
+struct group_tag {};
+struct argument_tag {};
+struct number_tag {};
+struct then_tag {};
+struct else_tag {};
+struct no_value_follows_tag {};
+
+constexpr x3::rule<conditional_tag, ast::Conditional> conditional = wanted::value;
+constexpr x3::rule<disjunction_tag, ast::Expression> disjunction = wanted::value;
+constexpr x3::rule<conjunction_tag, ast::Expression> conjunction = wanted::value;
+/// `not a` and `-a`.
+constexpr x3::rule<denial_tag, ast::Unary> denial = wanted::value;
+constexpr x3::rule<negative_tag, ast::Unary> negative = wanted::value;
+constexpr x3::rule<negation_tag, ast::Expression> negation = wanted::value;
+constexpr x3::rule<comparison_tag, ast::Expression> comparison = wanted::value;
+constexpr x3::rule<sum_tag, ast::Expression> sum = wanted::value;
+constexpr x3::rule<product_tag, ast::Expression> product = wanted::value;
+constexpr x3::rule<signed_value_tag, ast::Expression> signed_value = wanted::value;
+constexpr x3::rule<power_tag, ast::Expression> power = wanted::value;
+constexpr x3::rule<primary_tag, ast::Expression> primary = wanted::value;
+/// One expression in parentheses, or a list of several.
+constexpr x3::rule<group_tag, ast::List> group = wanted::value;
+constexpr x3::rule<argument_tag, ast::Argument> argument = "an argument";
+constexpr x3::rule<number_tag, ast::Number> number = wanted::value;
+constexpr x3::rule<then_tag> then_word = "`then`";
+constexpr x3::rule<else_tag> else_word = "`else`";
+constexpr x3::rule<no_value_follows_tag> no_value_follows = wanted::operator_between;
+
+/// Symbols by longest match.
+struct binary_operator : x3::symbols<std::string> {
+  binary_operator(std::initializer_list<char const*> spellings) {
+    for (char const* spelling : spellings) add(spelling, spelling);
+  }
+};
+binary_operator const comparison_operator{"<", "<=", ">", ">=", "==", "!="};
+binary_operator const sum_operator{"+", "-"};
+binary_operator const product_operator{"*", "/"};
+
+inline void fold(ast::Expression& left, std::string symbol, ast::Expression& right) {
+  Span const span = cover(left.span, right.span);
+  ast::Binary binary{{span}, std::move(symbol), std::move(left), std::move(right)};
+  left = {{span}, ast::Box<ast::Binary>(std::move(binary))};
+}
+/// (operator, right operand): left-associative.
+constexpr auto fold_symbol = [](auto& context) {
+  auto& part = x3::_attr(context);
+  fold(x3::_val(context), std::move(boost::fusion::at_c<0>(part)), boost::fusion::at_c<1>(part));
+};
+constexpr auto fold_with(char const* symbol) {
+  return [symbol](auto& context) { fold(x3::_val(context), symbol, x3::_attr(context)); };
+}
+constexpr auto take_group = [](auto& context) {
+  ast::List& list = x3::_attr(context);
+  if (list.items.size() == 1)
+    x3::_val(context) = std::move(list.items.front());
+  else
+    x3::_val(context).node = ast::Box<ast::List>(std::move(list));
+};
+auto const expression_def = conditional[take_boxed] | disjunction[take];
+
+auto const then_word_def = word("then");
+auto const else_word_def = word("else");
+auto const conditional_def =
+    located[word("if") > nested[expression][to(&ast::Conditional::condition)] > then_word >
+            nested[expression][to(&ast::Conditional::then)] > else_word > nested[expression][to(&ast::Conditional::otherwise)]];
+
+auto const disjunction_def = conjunction[take] >> *(word("or") > conjunction[fold_with("or")]);
+auto const conjunction_def = negation[take] >> *(word("and") > negation[fold_with("and")]);
+auto const negation_def = denial[take_boxed] | comparison[take];
+auto const denial_def = located[word("not")[symbol("not")] > nested[negation][to(&ast::Unary::operand)]];
+// At most one: a second comparison operator is found by whatever stands behind the expression.
+auto const comparison_def = sum[take] >> -(comparison_operator > sum)[fold_symbol];
+auto const sum_def = product[take] >> *(sum_operator > product)[fold_symbol];
+auto const product_def = signed_value[take] >> *(product_operator > signed_value)[fold_symbol] > no_value_follows;
+auto const signed_value_def = negative[take_boxed] | power[take];
+auto const negative_def = located[x3::lit('-')[symbol("-")] > nested[signed_value][to(&ast::Unary::operand)]];
+auto const power_def = primary[take] >> -('^' > nested[signed_value][fold_with("^")]);
+auto const no_value_follows_def = !(name | digit | '(' | '"');
+
+auto const primary_def = located[number[take_node] | text[take_node] | group[take_group] | call[take_boxed] | reference[take_node]];
+auto const number_def = located[plain_number[take] >> -unit[to(&ast::Number::unit)]];
+auto const group_def =
+    located['(' > nested[expression][append(&ast::List::items)] > *(',' > nested[expression][append(&ast::List::items)]) > ')'];
+
+auto const call_def = located[name[to(&ast::Call::function)] >> '(' >>
+                              -(argument[append(&ast::Call::arguments)] >> *(',' > argument[append(&ast::Call::arguments)])) > ')'];
+auto const distribution_def = located[call[take]];
+auto const argument_def = located[-(name >> equals)[to(&ast::Argument::name)] >> nested[expression][to(&ast::Argument::value)]];
+
+auto const declared_def = located[name[to(&ast::Declared::name)] >> -unit[to(&ast::Declared::unit)]];
+
+BOOST_SPIRIT_DEFINE(expression, conditional, then_word, else_word, disjunction, conjunction, negation, denial, comparison, sum,
+                    product, signed_value, negative, power, no_value_follows, primary, number, group, call, distribution, argument,
+                    declared)
+
+}  // namespace sysid::grammar

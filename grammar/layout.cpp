@@ -1,0 +1,202 @@
+// Three passes over the tokens: match brackets, decide newlines, number statements.
+#include "grammar/layout.hpp"
+
+#include <algorithm>
+
+#include "grammar/errors.hpp"
+#include "syntax/words.hpp"
+
+namespace sysid::grammar {
+
+namespace {
+
+/// A tree as deep as this is still safe to walk and destroy recursively; left-associated operators deepen it by one each.
+constexpr int most_operators = 4000;
+
+constexpr std::array<std::string_view, 15> binary_operators{"+",  "-",  "*",  "/",  "^",  "<",   "<=", ">",
+                                                            ">=", "==", "!=", "..", "or", "and", "**"};
+
+bool is_binary_operator(Token const& token) {
+  return token.kind != TokenKind::text && words::contains(binary_operators, token.text);
+}
+
+char closer_of(char opener) { return opener == '(' ? ')' : opener == '[' ? ']' : '}'; }
+
+class LayoutPass {
+ public:
+  LayoutPass(Source const& source, Scan scan) : source_(source), scan_(std::move(scan)), tokens_(scan_.tokens) {}
+
+  Layout run(Diagnostics& diagnostics, std::size_t limit) {
+    match_brackets();
+    decide_newlines();
+    refuse_long_statements();
+    report(diagnostics, limit);
+    out_.tokens = std::move(scan_.tokens);
+    return std::move(out_);
+  }
+
+ private:
+  void mistake(std::size_t token, Diagnostic diagnostic) { scan_.mistakes.push_back({token, std::move(diagnostic)}); }
+
+  bool is_opener(std::size_t i) const { return tokens_[i].is("(") || tokens_[i].is("["); }
+
+  /// Inside brackets no declaration can stand: a line that begins like one means that the bracket was never closed.
+  bool begins_declaration(std::size_t i) const {
+    if (!tokens_[i].newline_before || tokens_[i].kind != TokenKind::word || i + 1 == tokens_.size()) return false;
+    Token const& next = tokens_[i + 1];
+    bool const word = words::contains(words::model_statements, tokens_[i].text) ||
+                      words::contains(words::data_statements, tokens_[i].text) || words::contains(words::items, tokens_[i].text);
+    return word && !next.newline_before && next.kind == TokenKind::word && !words::contains(words::reserved, next.text);
+  }
+
+  /// `(` and `[` still open when something comes that cannot stand inside them. One message for the outermost; all are forgotten.
+  void close_unclosed(std::size_t found) {
+    std::size_t outermost = tokens_.size();
+    while (!open_.empty() && is_opener(open_.back())) {
+      outermost = open_.back();
+      open_.pop_back();
+    }
+    if (outermost < tokens_.size()) mistake(outermost, errors::unclosed(tokens_[outermost], found_here(found)));
+  }
+
+  Span found_here(std::size_t i) const {
+    if (i < tokens_.size()) return tokens_[i].span;
+    std::uint32_t const end = tokens_.empty() ? 0 : tokens_.back().span.end;
+    return {end, end};
+  }
+
+  void match_brackets() {
+    inside_.assign(tokens_.size() + 1, 0);
+    for (std::size_t i = 0; i < tokens_.size(); ++i) {
+      if (tokens_[i].kind == TokenKind::symbol)
+        match_bracket(i);
+      else if (begins_declaration(i))
+        close_unclosed(i);
+    }
+    close_unclosed(tokens_.size());
+    if (!open_.empty()) unclosed_block(open_.back(), tokens_.size());
+    // From +1 behind an opener and -1 at its closer to the number of brackets around each token.
+    for (std::size_t i = 1; i < inside_.size(); ++i) inside_[i] += inside_[i - 1];
+  }
+
+  void unclosed_block(std::size_t opener, std::size_t found) {
+    mistake(opener, errors::unclosed(tokens_[opener], found_here(found)));
+    if (found < tokens_.size()) spoilt_.push_back(found);
+    out_.reported_at_end = true;
+  }
+
+  void match_bracket(std::size_t i) {
+    Token const& token = tokens_[i];
+    if (is_opener(i)) {
+      open_.push_back(i);
+    } else if (token.is("{")) {
+      close_unclosed(i);
+      // Blocks do not nest: a block that begins while another is open means that the other was never closed.
+      std::size_t first = i;
+      while (first > 0 && !tokens_[first].newline_before) --first;
+      if (!open_.empty() && (tokens_[first].is("model") || tokens_[first].is("data"))) {
+        unclosed_block(open_.front(), first);
+        open_.clear();
+      }
+      open_.push_back(i);
+    } else if (token.is("}")) {
+      close_unclosed(i);
+      if (!open_.empty()) open_.pop_back();
+    } else if ((token.is(")") || token.is("]")) && !open_.empty() && is_opener(open_.back())) {
+      std::size_t const opener = open_.back();
+      open_.pop_back();
+      if (closer_of(tokens_[opener].text[0]) != token.text[0]) mistake(i, errors::mismatched(tokens_[opener], token));
+      ++inside_[opener + 1];
+      --inside_[i];
+    }
+  }
+
+  bool continues_after(Token const& token, bool in_block) const {
+    if (token.kind == TokenKind::text) return false;
+    if (is_binary_operator(token) || token.is(",") || token.is("=") || token.is("~") || token.is("then") || token.is("else"))
+      return true;
+    return !in_block && (token.is("with") || words::contains(words::prepositions, token.text));
+  }
+  bool continues_before(Token const& token, bool in_block) const {
+    return is_binary_operator(token) || token.is("then") || token.is("else") || (!in_block && token.is("with"));
+  }
+
+  void decide_newlines() {
+    out_.text = std::string(source_.text());
+    auto const blank = [&](std::size_t begin, std::size_t end) {
+      std::fill(out_.text.begin() + static_cast<std::ptrdiff_t>(begin), out_.text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+    };
+    for (Span const comment : scan_.comments) blank(comment.begin, comment.end);
+    std::uint32_t end = 0;
+    int statement = 0;
+    bool in_block = false;
+    for (std::size_t i = 0; i <= tokens_.size(); ++i) {
+      std::uint32_t const begin = i < tokens_.size() ? tokens_[i].span.begin : static_cast<std::uint32_t>(out_.text.size());
+      bool const both = i > 0 && i < tokens_.size();
+      bool const separator = both && tokens_[i - 1].kind == TokenKind::symbol &&
+                             std::string_view(";{}").find(tokens_[i - 1].text) != std::string_view::npos;
+      bool const joined = both && !separator &&
+                          (inside_[i] > 0 || continues_after(tokens_[i - 1], in_block) || continues_before(tokens_[i], in_block));
+      // Between tokens stand blanks and newlines only, once comments are gone.
+      for (std::uint32_t at = end; at < begin; ++at)
+        if (out_.text[at] != '\n' || joined) out_.text[at] = ' ';
+      if (i == tokens_.size()) break;
+      Token& token = tokens_[i];
+      if (separator || (token.newline_before && !joined) || token.is("}")) ++statement;
+      token.statement = statement;
+      if (token.is("{") || token.is("}")) in_block = token.is("{");
+      end = token.span.end;
+    }
+  }
+
+  void refuse_long_statements() {
+    for (std::size_t i = 0; i < tokens_.size();) {
+      std::size_t const first = i;
+      int operators = 0;
+      for (; i < tokens_.size() && tokens_[i].statement == tokens_[first].statement; ++i)
+        operators += is_binary_operator(tokens_[i]) || is_opener(i) || tokens_[i].is("not") || tokens_[i].is("if") ? 1 : 0;
+      if (operators <= most_operators) continue;
+      mistake(first, errors::statement_too_long(tokens_[first].span, most_operators));
+      for (std::size_t j = first; j < i; ++j)
+        if (tokens_[j].text.find_first_of("{};") == std::string_view::npos || tokens_[j].kind != TokenKind::symbol)
+          std::fill(out_.text.begin() + tokens_[j].span.begin, out_.text.begin() + tokens_[j].span.end, ' ');
+    }
+  }
+
+  void report(Diagnostics& diagnostics, std::size_t limit) {
+    std::stable_sort(scan_.mistakes.begin(), scan_.mistakes.end(),
+                     [](Mistake const& a, Mistake const& b) { return a.token < b.token; });
+    for (Mistake& mistake : scan_.mistakes) {
+      int const statement = tokens_.at(mistake.token).statement;
+      if (out_.reported.insert(statement).second && diagnostics.all().size() < limit)
+        diagnostics.add(std::move(mistake.diagnostic));
+    }
+    for (std::size_t const token : spoilt_) out_.reported.insert(tokens_[token].statement);
+  }
+
+  Source const& source_;
+  Scan scan_;
+  std::vector<Token>& tokens_;
+  std::vector<std::size_t> open_, spoilt_;
+  std::vector<int> inside_;
+  Layout out_;
+};
+
+}  // namespace
+
+std::size_t Layout::token_at(std::uint32_t offset) const {
+  auto const found =
+      std::partition_point(tokens.begin(), tokens.end(), [&](Token const& token) { return token.span.end <= offset; });
+  return static_cast<std::size_t>(found - tokens.begin());
+}
+
+bool Layout::ends_line(std::uint32_t offset) const {
+  std::size_t const at = text.find_first_not_of(' ', offset);
+  return at == std::string::npos || text[at] == '\n';
+}
+
+Layout lay_out(Source const& source, Diagnostics& diagnostics, std::size_t limit) {
+  return LayoutPass(source, scan(source.text())).run(diagnostics, limit);
+}
+
+}  // namespace sysid::grammar

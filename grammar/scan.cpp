@@ -1,0 +1,224 @@
+// Tokens by longest match, with the lexical mistakes met on the way.
+#include "grammar/scan.hpp"
+
+#include <array>
+#include <charconv>
+
+#include "grammar/errors.hpp"
+#include "syntax/words.hpp"
+
+namespace sysid::grammar {
+
+namespace {
+
+/// Characters that a word processor or a formula puts in the place of an operator, and what the language writes.
+struct LookAlike {
+  std::string_view bytes, meant;
+};
+constexpr std::array<LookAlike, 22> look_alikes{{
+    {"−", "`-`"},          {"–", "`-`"},          {"—", "`-`"},          {"×", "`*`"},          {"·", "`*`"},  {"⋅", "`*`"},
+    {"÷", "`/`"},          {"²", "`^2`"},         {"³", "`^3`"},         {"≤", "`<=`"},         {"≥", "`>=`"}, {"≠", "`!=`"},
+    {"′", "`'`"},          {"’", "`'`"},          {"‘", "`'`"},          {"“", "`\"`"},         {"”", "`\"`"}, {"″", "`''`"},
+    {"\u00a0", "a blank"}, {"\u202f", "a blank"}, {"\u2009", "a blank"}, {"\u200b", "nothing"},
+}};
+
+/// Operators of other languages.
+struct Foreign {
+  std::string_view symbol, help;
+};
+constexpr std::array<Foreign, 6> foreign_operators{{
+    {"**", "a power is written with `^`"},
+    {"->", "an equation or a definition is written with `=`"},
+    {":=", "an equation or a definition is written with `=`"},
+    {"&&", "write `and`"},
+    {"||", "write `or`"},
+    {"!", "write `not`"},
+}};
+constexpr std::array<std::string_view, 5> two_character_operators{"==", "!=", "<=", ">=", ".."};
+constexpr std::string_view one_character_operators = "+-*/^<>=~,;(){}[].'%";
+
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+
+/// Length of the well-formed UTF-8 character that begins `text` (RFC 3629: no overlong forms, no surrogates), or 0.
+std::size_t character_length(std::string_view text) {
+  auto const byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  unsigned const lead = byte(0);
+  if (lead < 0x80U) return 1;
+  std::size_t const length = lead >= 0xC2U && lead <= 0xDFU   ? 2
+                             : lead >= 0xE0U && lead <= 0xEFU ? 3
+                             : lead >= 0xF0U && lead <= 0xF4U ? 4
+                                                              : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if (!continues_character(text[i])) return 0;
+  bool const overlong = (lead == 0xE0U && byte(1) < 0xA0U) || (lead == 0xF0U && byte(1) < 0x90U);
+  bool const outside = (lead == 0xEDU && byte(1) > 0x9FU) || (lead == 0xF4U && byte(1) > 0x8FU);
+  return overlong || outside ? 0 : length;
+}
+
+class Scanner {
+ public:
+  explicit Scanner(std::string_view text) : text_(text) {}
+
+  Scan run() {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // a byte order mark
+    while (skip_blanks(), at_ < text_.size()) token();
+    return std::move(out_);
+  }
+
+ private:
+  char peek(std::size_t ahead = 0) const { return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0'; }
+  bool follows(std::string_view what) const { return text_.substr(at_).starts_with(what); }
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+  Span from(std::size_t begin) const { return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(at_)}; }
+  void mistake(Diagnostic diagnostic) { out_.mistakes.push_back({out_.tokens.size(), std::move(diagnostic)}); }
+
+  void skip_blanks() {
+    newline_before_ = out_.tokens.empty();
+    for (; at_ < text_.size(); ++at_) {
+      if (peek() == '#' || follows("//")) {
+        std::size_t const begin = at_;
+        while (at_ < text_.size() && peek() != '\n') ++at_;
+        out_.comments.push_back(from(begin));
+      }
+      if (peek() == '\n')
+        newline_before_ = true;
+      else if (!is_blank(peek()))
+        return;
+    }
+  }
+
+  void token() {
+    std::size_t const begin = at_;
+    TokenKind kind = TokenKind::symbol;
+    if (peek() == '"') {
+      kind = TokenKind::text;
+      text_token();
+    } else if (words::is_digit(peek())) {
+      kind = TokenKind::number;
+      number_token();
+    } else if (LookAlike const* look_alike = find_look_alike()) {
+      at_ += look_alike->bytes.size();
+      mistake(errors::look_alike(from(begin), look_alike->bytes, look_alike->meant));
+    } else if (words::begins_name(peek())) {
+      kind = TokenKind::word;
+      word_token();
+    } else {
+      symbol_token();
+    }
+    Span const span = from(begin);
+    out_.tokens.push_back({kind, span, text_.substr(span.begin, span.end - span.begin), newline_before_});
+  }
+
+  LookAlike const* find_look_alike() const {
+    if (static_cast<unsigned char>(peek()) < 0x80U) return nullptr;
+    for (LookAlike const& candidate : look_alikes)
+      if (follows(candidate.bytes)) return &candidate;
+    return nullptr;
+  }
+
+  void text_token() {
+    std::size_t const begin = at_++;
+    while (true) {
+      if (at_ == text_.size() || peek() == '\n') {
+        while (is_blank(text_[at_ - 1])) --at_;
+        return mistake(errors::unclosed_text(from(begin)));
+      }
+      if (peek() == '"') {
+        ++at_;
+        return;
+      }
+      std::size_t const character = at_;
+      std::size_t const length = character_length(text_.substr(at_));
+      at_ += length == 0 ? 1 : length;
+      if (length == 0 || (static_cast<unsigned char>(text_[character]) < 0x20U && text_[character] != '\t'))
+        mistake(errors::stray_byte(from(character), static_cast<unsigned char>(text_[character])));
+      if (text_[character] == '\\' && at_ < text_.size() && peek() != '\n') {
+        char const escaped = text_[at_];
+        ++at_;
+        if (escaped != '"' && escaped != '\\' && escaped != 'n') {
+          while (at_ < text_.size() && continues_character(peek())) ++at_;
+          mistake(errors::unknown_escape(from(character), text_.substr(character, at_ - character)));
+        }
+      }
+    }
+  }
+
+  void digits() {
+    while (words::is_digit(peek())) ++at_;
+  }
+
+  void number_token() {
+    std::size_t const begin = at_;
+    digits();
+    if (peek() == '.' && words::is_digit(peek(1))) {
+      ++at_;
+      digits();
+    }
+    if (peek() == 'e' || peek() == 'E') {
+      std::size_t const sign = peek(1) == '+' || peek(1) == '-' ? 1 : 0;
+      if (words::is_digit(peek(1 + sign))) {
+        at_ += 1 + sign;
+        digits();
+      }
+    }
+    std::string_view const number = text_.substr(begin, at_ - begin);
+    double value = 0;
+    if (std::from_chars(number.data(), number.data() + number.size(), value).ec == std::errc::result_out_of_range)
+      mistake(errors::number_out_of_range(from(begin), number));
+    if (peek() == '.' && peek(1) != '.') {
+      ++at_;
+      mistake(errors::dot_without_digits(from(begin), with_digits_behind(number)));
+    }
+  }
+
+  static std::string with_digits_behind(std::string_view number) {
+    return number.find_first_of(".eE") == std::string_view::npos ? std::string(number) + ".0" : std::string(number);
+  }
+
+  void word_token() {
+    while (at_ < text_.size() && words::continues_name(peek())) {
+      if (find_look_alike() != nullptr) return;
+      std::size_t const character = at_;
+      std::size_t const length = character_length(text_.substr(at_));
+      at_ += length == 0 ? 1 : length;
+      if (length == 0) mistake(errors::stray_byte(from(character), static_cast<unsigned char>(text_[character])));
+    }
+    while (peek() == '\'') ++at_;
+  }
+
+  void symbol_token() {
+    std::size_t const begin = at_;
+    for (std::string_view const symbol : two_character_operators) {
+      if (follows(symbol)) {
+        at_ += symbol.size();
+        return;
+      }
+    }
+    for (Foreign const& foreign : foreign_operators) {
+      if (follows(foreign.symbol)) {
+        at_ += foreign.symbol.size();
+        return mistake(errors::foreign_operator(from(begin), foreign.symbol, foreign.help));
+      }
+    }
+    char const symbol = text_[at_++];
+    if (symbol == '.' && words::is_digit(peek())) {
+      bool const after_operand = begin > 0 && (words::continues_name(text_[begin - 1]) || text_[begin - 1] == '\'');
+      digits();
+      if (!after_operand) mistake(errors::dot_without_digits(from(begin), "0" + std::string(text_.substr(begin, at_ - begin))));
+    } else if (one_character_operators.find(symbol) == std::string_view::npos) {
+      mistake(errors::stray_byte(from(begin), static_cast<unsigned char>(symbol)));
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  bool newline_before_ = false;
+  Scan out_;
+};
+
+}  // namespace
+
+Scan scan(std::string_view text) { return Scanner(text).run(); }
+
+}  // namespace sysid::grammar
