@@ -1,5 +1,5 @@
-// A probability distribution as a row of data, and one use of it in a model. Densities are expressions, so the same text serves priors,
-// noise, truncation and every executor. One file and one row (distribution/table.cpp) adds another.
+// A probability distribution as a row of data, and one use of it in a model. Densities are expressions, so the same text serves
+// priors, noise, truncation and every executor. One file and one row (distribution/table.cpp) adds another.
 #pragma once
 #include <optional>
 #include <span>
@@ -26,25 +26,36 @@ struct ArgumentRow {
   double fallback;
 };
 
+/// Which side of a quantile a probability is counted on: in its own tail it keeps all its digits.
+enum class Tail { lower, upper };
+
 struct DistributionRow {
   std::string_view name;
   std::span<ArgumentRow const> arguments;
-  bool noise;         // may stand after `observe CHANNEL ~`
-  bool proper;        // has a finite integral; `flat` has not and cannot be drawn from
-  bool logarithmic;   // the sampler's coordinate is logarithmic between finite bounds (log_uniform)
+  bool noise;        // may stand after `observe CHANNEL ~`
+  bool proper;       // has a finite integral; `flat` has not and cannot be drawn from: bounds restrict it and nothing is normalised
+  bool logarithmic;  // the sampler's coordinate is logarithmic between finite bounds (log_uniform)
+  bool dimensionless;  // the variate is a pure number (beta)
   /// log p(x | arguments), all constants kept; x inside the support.
   NodeId (*log_density)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// P(X <= x); nullptr: cannot be truncated.
   NodeId (*cumulative)(Graph&, NodeId x, std::span<NodeId const> arguments);
+  /// P(X > x), accurate where it is small; nullptr only when improper.
+  NodeId (*survival)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// Natural bounds of the support; nullptr: infinite on that side.
   NodeId (*lower)(Graph&, std::span<NodeId const> arguments);
   NodeId (*upper)(Graph&, std::span<NodeId const> arguments);
-  /// The value of x at which a noise density is largest as a function of its location: where residuals vanish. nullptr unless noise.
+  /// The value of x at which a noise density is largest as a function of its location: where residuals vanish. nullptr unless
+  /// noise.
   NodeId (*centre)(Graph&, std::span<NodeId const> arguments);
+  /// The largest log density that any location gives to x, all else equal: log p(x | location = x, ...). Untruncated,
+  /// saturated - log_density is never negative: half the squared deviance residual of x. nullptr unless noise.
+  NodeId (*saturated)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// One draw, untruncated; nullptr when improper.
   double (*draw)(Stream&, std::span<double const> arguments);
-  /// Inverse of `cumulative`, for draws from a narrow truncation; nullptr: rejection only.
-  double (*quantile)(double probability, std::span<double const> arguments);
+  /// Inverse of `cumulative` (tail lower) and of `survival` (tail upper), for draws from a narrow truncation; nullptr only when
+  /// improper.
+  double (*quantile)(double probability, Tail tail, std::span<double const> arguments);
   /// Whether numeric arguments are admissible (sd > 0, lower < upper); returns the reason when not, else empty.
   std::string_view (*refuse)(std::span<double const> arguments);
   std::string_view summary;
@@ -59,6 +70,10 @@ struct Distribution {
   std::vector<NodeId> arguments;
   std::optional<NodeId> lower, upper;
 };
+
+/// The probability that the untruncated distribution gives to what the bounds leave of its support; 1 without bounds or when
+/// improper. Accurate to rounding in either tail; of an interval narrow against the distribution, to rounding over mass.
+NodeId mass(Graph& graph, Distribution const& use);
 
 /// log density of the (truncated, normalised) distribution at x, which lies inside the support.
 NodeId log_density(Graph& graph, Distribution const& use, NodeId x);
@@ -76,12 +91,14 @@ struct Coordinate {
   NodeId value;
   NodeId log_jacobian;
 };
+/// No overflow and no cancellation for |u| up to 700; strictly inside the bounds unless the distance to a bound is below its
+/// rounding.
 Coordinate constrain(Graph& graph, Support const& support, NodeId u);
 /// The inverse of `constrain`.
 NodeId unconstrain(Graph& graph, Support const& support, NodeId x);
 
-/// One draw inside [lower, upper] (infinities allowed): by rejection while the mass is not small, else by the quantile. Throws UserError
-/// (E2) when the distribution is improper, the arguments are inadmissible or the interval holds no mass.
+/// One draw inside [lower, upper] (infinities allowed): by rejection while the mass is not small, else by the quantile. Throws
+/// UserError: E2112 inadmissible arguments, E2114 improper distribution, E2115 no mass between the bounds.
 double draw(DistributionRow const& row, std::span<double const> arguments, double lower, double upper, Stream& stream);
 
 }  // namespace sysid

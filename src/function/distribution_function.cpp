@@ -1,6 +1,7 @@
 // Distribution functions that truncated densities need and SLEEF lacks: the incomplete gamma functions and Student's t, from
 // Boost.Math. Exempt from equality across processors, by name: gamma_p, gamma_q, student_t_cdf (Boost calls the C library's exp and
 // pow). On one processor they depend on their arguments alone, so lanes and threads change nothing.
+#include "function/boost_policy.hpp"
 #include "function/primitive.hpp"
 
 #include <boost/math/special_functions/beta.hpp>
@@ -12,24 +13,18 @@
 namespace sysid {
 namespace {
 
-namespace policies = boost::math::policies;
-// A failure is a NaN or infinity, never an exception; no long double, whose width differs between platforms.
-using Quiet = policies::policy<policies::domain_error<policies::ignore_error>, policies::pole_error<policies::ignore_error>,
-                               policies::overflow_error<policies::ignore_error>, policies::underflow_error<policies::ignore_error>,
-                               policies::evaluation_error<policies::ignore_error>, policies::promote_double<false>>;
-
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// P(a, x) = gamma(a, x) / Gamma(a), a > 0, x >= 0 (also infinite); NaN elsewhere. DLMF 8.2.4
 double lower_gamma(double a, double x) {
   if (!(a > 0 && std::isfinite(a) && x >= 0)) return nan;
-  return std::isinf(x) ? 1 : boost::math::gamma_p(a, x, Quiet());
+  return std::isinf(x) ? 1 : boost::math::gamma_p(a, x, BoostPolicy());
 }
 
 /// Q(a, x) = 1 - P(a, x), accurate where it is small.
 double upper_gamma(double a, double x) {
   if (!(a > 0 && std::isfinite(a) && x >= 0)) return nan;
-  return std::isinf(x) ? 0 : boost::math::gamma_q(a, x, Quiet());
+  return std::isinf(x) ? 0 : boost::math::gamma_q(a, x, BoostPolicy());
 }
 
 /// P(T <= t), n > 0 degrees of freedom: half of I_z(n/2, 1/2) with z = n/(n + t^2) below 0, reflected above.            DLMF 8.17.2
@@ -37,8 +32,8 @@ double student(double t, double n) {
   if (!(n > 0 && std::isfinite(n)) || std::isnan(t)) return nan;
   if (std::isinf(t)) return t < 0 ? 0 : 1;
   double const square = t * t;
-  double const tail = square < n ? boost::math::ibetac(0.5, n / 2, square / (n + square), Quiet()) / 2
-                                 : boost::math::ibeta(n / 2, 0.5, 1 / (1 + square / n), Quiet()) / 2;
+  double const tail = square < n ? boost::math::ibetac(0.5, n / 2, square / (n + square), BoostPolicy()) / 2
+                                 : boost::math::ibeta(n / 2, 0.5, 1 / (1 + square / n), BoostPolicy()) / 2;
   return t < 0 ? tail : 1 - tail;
 }
 

@@ -33,8 +33,11 @@ inline Term gamma_p(Term shape, Term x) { return call(gamma_p_function, shape, x
 inline Term gamma_q(Term shape, Term x) { return call(gamma_q_function, shape, x); }
 /// P(T <= t) of Student's t.
 inline Term student_t_cdf(Term t, Term degrees_of_freedom) { return call(student_t_cdf_function, t, degrees_of_freedom); }
-/// Regularised incomplete beta function I_x(a, b), from operations (function/incomplete_beta.cpp).
-Term incomplete_beta(Term a, Term b, Term x);
+/// Regularised incomplete beta function I_x(a, b) and 1 - I_x(a, b), each accurate where it is small; from operations.
+struct IncompleteBeta {
+  Term lower, upper;
+};
+IncompleteBeta incomplete_beta(Term a, Term b, Term x);
 
 /// The scalar form over lanes, for primitives without a vector form.
 template <double (*scalar)(double)>

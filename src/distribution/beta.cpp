@@ -1,0 +1,74 @@
+// The beta distribution, for shares between 0 and 1.
+#include <boost/math/special_functions/beta.hpp>
+
+#include <algorithm>
+
+#include "core/elementary.hpp"
+#include "distribution/rows.hpp"
+#include "function/boost_policy.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr Spelling first[] = {{"a", 0, nullptr}};
+constexpr Spelling second[] = {{"b", 0, nullptr}};
+constexpr ArgumentRow arguments[] = {{first, must_be_given}, {second, must_be_given}};
+
+NodeId upper(Graph& graph, Nodes) { return graph.constant(1); }
+
+/// log of the beta density; `beta(a, b)` in a model.
+///
+///   log p = (a - 1) log x + (b - 1) log(1 - x) - log B(a, b),   0 < x < 1                                  Gelman et al. 2013,
+///   app. A
+///
+/// x, a, b: pure numbers; a, b > 0.
+NodeId log_density(Graph& graph, NodeId x, Nodes arguments) {
+  Term const value(graph, x), a(graph, arguments[0]), b(graph, arguments[1]);
+  return ((a - 1.0) * log(value) + (b - 1.0) * log1p(-value) + lgamma(a + b) - lgamma(a) - lgamma(b)).id;
+}
+
+NodeId cumulative(Graph& graph, NodeId x, Nodes a) {
+  return incomplete_beta(Term(graph, a[0]), Term(graph, a[1]), Term(graph, x)).lower.id;
+}
+NodeId survival(Graph& graph, NodeId x, Nodes a) {
+  return incomplete_beta(Term(graph, a[0]), Term(graph, a[1]), Term(graph, x)).upper.id;
+}
+
+/// G_a / (G_a + G_b) of two gamma variates, from their logarithms, which small a and b do not underflow.
+double draw(Stream& stream, Numbers a) {
+  double const log_a = log_standard_gamma(a[0], stream), log_b = log_standard_gamma(a[1], stream);
+  double const x = 1 / (1 + elementary::exp(log_b - log_a));
+  return std::clamp(x, std::numeric_limits<double>::min(), 1 - std::numeric_limits<double>::epsilon() / 2);
+}
+
+/// By Boost's inverse of the incomplete beta function, exempt from equality across processors.
+double quantile(double probability, Tail tail, Numbers a) {
+  return tail == Tail::lower ? boost::math::ibeta_inv(a[0], a[1], probability, BoostPolicy())
+                             : boost::math::ibetac_inv(a[0], a[1], probability, BoostPolicy());
+}
+
+std::string_view refuse(Numbers a) { return positive(a[0]) && positive(a[1]) ? std::string_view() : "a and b must be positive"; }
+
+}  // namespace
+
+DistributionRow beta_distribution() {
+  return {.name = "beta",
+          .arguments = arguments,
+          .noise = false,
+          .proper = true,
+          .logarithmic = false,
+          .dimensionless = true,
+          .log_density = &log_density,
+          .cumulative = &cumulative,
+          .survival = &survival,
+          .lower = &zero_bound,
+          .upper = &upper,
+          .centre = nullptr,
+          .saturated = nullptr,
+          .draw = &draw,
+          .quantile = &quantile,
+          .refuse = &refuse,
+          .summary = "beta, for shares between 0 and 1"};
+}
+
+}  // namespace sysid

@@ -1,0 +1,37 @@
+// The flat, improper prior: a constant density that no interval normalises.
+#include "distribution/rows.hpp"
+
+namespace sysid {
+namespace {
+
+/// log p = 0 for every x, also between bounds: `flat()` and `flat(lower = 0)` have no evidence and no prior draws.
+NodeId log_density(Graph& graph, NodeId, Nodes) { return graph.constant(0); }
+
+/// Lebesgue measure up to x, less an infinite constant: its derivative is the density, and nothing is normalised by it.
+NodeId cumulative(Graph&, NodeId x, Nodes) { return x; }
+
+std::string_view refuse(Numbers) { return {}; }
+
+}  // namespace
+
+DistributionRow flat_distribution() {
+  return {.name = "flat",
+          .arguments = {},
+          .noise = false,
+          .proper = false,
+          .logarithmic = false,
+          .dimensionless = false,
+          .log_density = &log_density,
+          .cumulative = &cumulative,
+          .survival = nullptr,
+          .lower = nullptr,
+          .upper = nullptr,
+          .centre = nullptr,
+          .saturated = nullptr,
+          .draw = nullptr,
+          .quantile = nullptr,
+          .refuse = &refuse,
+          .summary = "improper constant density; no evidence, no prior draws"};
+}
+
+}  // namespace sysid

@@ -1,0 +1,117 @@
+// The gamma distribution and the inverse gamma distribution, that of 1/x.
+#include <boost/math/special_functions/gamma.hpp>
+
+#include <algorithm>
+
+#include "core/elementary.hpp"
+#include "distribution/rows.hpp"
+#include "function/boost_policy.hpp"
+
+namespace sysid {
+namespace {
+
+NodeId scale_from_rate(Graph& graph, NodeId rate, Nodes) { return (1.0 / Term(graph, rate)).id; }
+NodeId scale_from_mean(Graph& graph, NodeId mean, Nodes before) { return (Term(graph, mean) / Term(graph, before[0])).id; }
+
+constexpr Spelling shape[] = {{"shape", 0, nullptr}};
+constexpr Spelling scale[] = {{"scale", 1, nullptr}, {"rate", -1, &scale_from_rate}, {"mean", 1, &scale_from_mean}};
+constexpr Spelling only_scale[] = {{"scale", 1, nullptr}};
+constexpr ArgumentRow gamma_arguments[] = {{shape, must_be_given}, {scale, must_be_given}};
+constexpr ArgumentRow inverse_arguments[] = {{shape, must_be_given}, {only_scale, must_be_given}};
+
+/// Variates stay normal positive numbers: a shape far below 1 has most of its mass under the smallest double.
+double within_doubles(double x) { return std::clamp(x, std::numeric_limits<double>::min(), std::numeric_limits<double>::max()); }
+
+/// By Boost's inverse of the incomplete gamma function, exempt from equality across processors.
+double standard_quantile(double shape, double probability, Tail tail) {
+  return tail == Tail::lower ? boost::math::gamma_p_inv(shape, probability, BoostPolicy())
+                             : boost::math::gamma_q_inv(shape, probability, BoostPolicy());
+}
+
+std::string_view refuse(Numbers a) {
+  if (!positive(a[0])) return "the shape must be positive";
+  if (!positive(a[1])) return "scale, rate or mean must be positive";
+  return {};
+}
+
+/// log of the gamma density; `gamma(shape, scale | rate | mean = ...)` in a model.
+///
+///   log p = (shape - 1) log x - x/scale - log Gamma(shape) - shape log scale,   x > 0                      Gelman et al. 2013,
+///   app. A
+///
+/// x, scale, mean = shape*scale: unit u; rate = 1/scale: u^-1; shape: a pure number; all > 0.
+NodeId gamma_log_density(Graph& graph, NodeId x, Nodes a) {
+  Term const value(graph, x), k(graph, a[0]), s(graph, a[1]);
+  return ((k - 1.0) * log(value) - value / s - lgamma(k) - k * log(s)).id;
+}
+NodeId gamma_cumulative(Graph& graph, NodeId x, Nodes a) {
+  return gamma_p(Term(graph, a[0]), Term(graph, x) / Term(graph, a[1])).id;
+}
+NodeId gamma_survival(Graph& graph, NodeId x, Nodes a) { return gamma_q(Term(graph, a[0]), Term(graph, x) / Term(graph, a[1])).id; }
+double gamma_draw(Stream& stream, Numbers a) { return within_doubles(a[1] * elementary::exp(log_standard_gamma(a[0], stream))); }
+double gamma_quantile(double probability, Tail tail, Numbers a) { return a[1] * standard_quantile(a[0], probability, tail); }
+
+/// log of the inverse gamma density; `inverse_gamma(shape, scale)` in a model.
+///
+///   log p = shape log scale - log Gamma(shape) - (shape + 1) log x - scale/x,   x > 0                      Gelman et al. 2013,
+///   app. A
+///
+/// x, scale: unit u; shape: a pure number; both > 0.
+NodeId inverse_log_density(Graph& graph, NodeId x, Nodes a) {
+  Term const value(graph, x), k(graph, a[0]), s(graph, a[1]);
+  return (k * log(s) - lgamma(k) - (k + 1.0) * log(value) - s / value).id;
+}
+NodeId inverse_cumulative(Graph& graph, NodeId x, Nodes a) {
+  return gamma_q(Term(graph, a[0]), Term(graph, a[1]) / Term(graph, x)).id;
+}
+NodeId inverse_survival(Graph& graph, NodeId x, Nodes a) {
+  return gamma_p(Term(graph, a[0]), Term(graph, a[1]) / Term(graph, x)).id;
+}
+double inverse_draw(Stream& stream, Numbers a) { return within_doubles(a[1] * elementary::exp(-log_standard_gamma(a[0], stream))); }
+double inverse_quantile(double probability, Tail tail, Numbers a) {
+  return a[1] / standard_quantile(a[0], probability, tail == Tail::lower ? Tail::upper : Tail::lower);
+}
+
+}  // namespace
+
+DistributionRow gamma_distribution() {
+  return {.name = "gamma",
+          .arguments = gamma_arguments,
+          .noise = false,
+          .proper = true,
+          .logarithmic = false,
+          .dimensionless = false,
+          .log_density = &gamma_log_density,
+          .cumulative = &gamma_cumulative,
+          .survival = &gamma_survival,
+          .lower = &zero_bound,
+          .upper = nullptr,
+          .centre = nullptr,
+          .saturated = nullptr,
+          .draw = &gamma_draw,
+          .quantile = &gamma_quantile,
+          .refuse = &refuse,
+          .summary = "gamma, by shape and scale, rate or mean"};
+}
+
+DistributionRow inverse_gamma_distribution() {
+  return {.name = "inverse_gamma",
+          .arguments = inverse_arguments,
+          .noise = false,
+          .proper = true,
+          .logarithmic = false,
+          .dimensionless = false,
+          .log_density = &inverse_log_density,
+          .cumulative = &inverse_cumulative,
+          .survival = &inverse_survival,
+          .lower = &zero_bound,
+          .upper = nullptr,
+          .centre = nullptr,
+          .saturated = nullptr,
+          .draw = &inverse_draw,
+          .quantile = &inverse_quantile,
+          .refuse = &refuse,
+          .summary = "inverse gamma: 1/x is gamma, for variances"};
+}
+
+}  // namespace sysid

@@ -1,0 +1,67 @@
+// The log-normal distribution: the logarithm of x is normal.
+#include "core/elementary.hpp"
+#include "distribution/rows.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr Spelling median[] = {{"median", 1, nullptr}};
+constexpr Spelling sd[] = {{"sd", 0, nullptr}, {"variance", 0, &sd_from_variance}, {"precision", 0, &sd_from_precision}};
+constexpr ArgumentRow arguments[] = {{median, must_be_given}, {sd, must_be_given}};
+
+Term constant(Term x, Term s) { return -half_log_two_pi - log(s) - log(x); }
+
+/// log of the density of x where log(x / median) is normal with mean 0 and the given sd; `log_normal(median, sd | variance |
+/// precision = ...)`.
+///
+///   log p = -1/2 log(2 pi) - log sd - log x - 1/2 (log(x / median)/sd)^2                Johnson, Kotz, Balakrishnan 1994,
+///   eq. 14.2'
+///
+/// x > 0 and median > 0: unit u; sd, variance, precision: of the logarithm, pure numbers; sd > 0. The median is exp of the usual
+/// mu, so that it has x's unit.
+NodeId log_density(Graph& graph, NodeId x, Nodes a) {
+  Term const value(graph, x), s(graph, a[1]);
+  Term const r = log(value) - log(Term(graph, a[0]));
+  return (constant(value, s) - r * r * (0.5 / (s * s))).id;
+}
+
+Term standardised(Graph& graph, NodeId x, Nodes a) { return (log(Term(graph, x)) - log(Term(graph, a[0]))) / Term(graph, a[1]); }
+NodeId cumulative(Graph& graph, NodeId x, Nodes a) { return standard_normal_lower(standardised(graph, x, a)).id; }
+NodeId survival(Graph& graph, NodeId x, Nodes a) { return standard_normal_upper(standardised(graph, x, a)).id; }
+NodeId centre(Graph&, Nodes a) { return a[0]; }
+NodeId saturated(Graph& graph, NodeId x, Nodes a) { return constant(Term(graph, x), Term(graph, a[1])).id; }
+
+double draw(Stream& stream, Numbers a) { return a[0] * elementary::exp(a[1] * stream.normal()); }
+double quantile(double probability, Tail tail, Numbers a) {
+  return a[0] * elementary::exp(a[1] * standard_normal_quantile(probability, tail));
+}
+
+std::string_view refuse(Numbers a) {
+  if (!positive(a[0])) return "the median must be positive";
+  if (!positive(a[1])) return "sd, variance or precision of the logarithm must be positive";
+  return {};
+}
+
+}  // namespace
+
+DistributionRow log_normal_distribution() {
+  return {.name = "log_normal",
+          .arguments = arguments,
+          .noise = true,
+          .proper = true,
+          .logarithmic = false,
+          .dimensionless = false,
+          .log_density = &log_density,
+          .cumulative = &cumulative,
+          .survival = &survival,
+          .lower = &zero_bound,
+          .upper = nullptr,
+          .centre = &centre,
+          .saturated = &saturated,
+          .draw = &draw,
+          .quantile = &quantile,
+          .refuse = &refuse,
+          .summary = "log-normal, by its median and the sd, variance or precision of the logarithm"};
+}
+
+}  // namespace sysid

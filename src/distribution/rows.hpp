@@ -1,0 +1,57 @@
+// What the files of one distribution each share: their rows, spellings, checks of arguments and the variates several of them need.
+#pragma once
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "distribution/distribution.hpp"
+#include "function/primitive.hpp"
+
+namespace sysid {
+
+DistributionRow beta_distribution();
+DistributionRow exponential_distribution();
+DistributionRow flat_distribution();
+DistributionRow gamma_distribution();
+DistributionRow half_cauchy_distribution();
+DistributionRow half_normal_distribution();
+DistributionRow inverse_gamma_distribution();
+DistributionRow log_normal_distribution();
+DistributionRow log_uniform_distribution();
+DistributionRow normal_distribution();
+DistributionRow student_t_distribution();
+DistributionRow uniform_distribution();
+
+using Nodes = std::span<NodeId const>;
+using Numbers = std::span<double const>;
+
+constexpr double must_be_given = std::numeric_limits<double>::quiet_NaN();
+/// log(2 pi) / 2.
+constexpr double half_log_two_pi = 0.91893853320467274178;
+
+/// Zero as a natural bound of a support.
+inline NodeId zero_bound(Graph& graph, Nodes) { return graph.constant(0); }
+
+/// sd from variance or precision.
+inline NodeId sd_from_variance(Graph& graph, NodeId variance, Nodes) { return sqrt(Term(graph, variance)).id; }
+inline NodeId sd_from_precision(Graph& graph, NodeId precision, Nodes) { return (1.0 / sqrt(Term(graph, precision))).id; }
+
+inline bool positive(double x) { return x > 0 && x < std::numeric_limits<double>::infinity(); }
+
+/// P(Z <= z) and P(Z > z) of the standard normal, each accurate where it is small: erfc(-+z / sqrt 2) / 2.                DLMF 7.18
+inline Term standard_normal_lower(Term z) { return 0.5 * erfc(-(z / std::numbers::sqrt2)); }
+inline Term standard_normal_upper(Term z) { return 0.5 * erfc(z / std::numbers::sqrt2); }
+/// The z with P(Z <= z) = probability, 0 < probability < 1.
+double standard_normal_quantile(double probability);
+/// The z with P(0 <= Z <= z) = q, |q| < 1/2, exact near 0.
+double standard_normal_quantile_from_middle(double q);
+inline double standard_normal_quantile(double probability, Tail tail) {
+  double const z = standard_normal_quantile(probability);
+  return tail == Tail::lower ? z : -z;
+}
+
+/// log of a variate of the gamma distribution with scale 1; shape > 0. The logarithm, because for a small shape the variate
+/// underflows.
+double log_standard_gamma(double shape, Stream& stream);
+
+}  // namespace sysid
