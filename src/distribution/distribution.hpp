@@ -97,8 +97,8 @@ Coordinate constrain(Graph& graph, Support const& support, NodeId u);
 /// The inverse of `constrain`.
 NodeId unconstrain(Graph& graph, Support const& support, NodeId x);
 
-/// One draw inside [lower, upper] (infinities allowed): by rejection while the mass is not small, else by the quantile. Throws
-/// UserError: E2112 inadmissible arguments, E2114 improper distribution, E2115 no mass between the bounds.
+/// One draw inside [lower, upper] (infinities allowed): by rejection, and by the quantile when all of some tries fell outside.
+/// Throws UserError: E2112 inadmissible arguments, E2114 improper distribution, E2115 no mass between the bounds.
 double draw(DistributionRow const& row, std::span<double const> arguments, double lower, double upper, Stream& stream);
 
 }  // namespace sysid

@@ -18,8 +18,9 @@ namespace {
   throw UserError(std::move(diagnostic));
 }
 
-// Below this mass rejection is slower than a quantile; above, its expected number of tries is at most ten.
-constexpr double small_mass = 0.1;
+// A draw that falls between the bounds is one of the truncated distribution, and so is the quantile's that follows when all these
+// fall outside: the switch biases nothing, and where the mass is not small no probability is ever computed.
+constexpr int tries = 32;
 
 }  // namespace
 
@@ -32,6 +33,12 @@ double draw(DistributionRow const& row, std::span<double const> arguments, doubl
   if (lower == -std::numeric_limits<double>::infinity() && upper == std::numeric_limits<double>::infinity())
     return row.draw(stream, arguments);
 
+  if (lower < upper)
+    for (int i = 0; i < tries; ++i) {
+      double const x = row.draw(stream, arguments);
+      if (lower <= x && x <= upper) return x;
+    }
+
   // With constant arguments the expressions fold to numbers.
   Graph graph;
   Distribution use;
@@ -43,15 +50,9 @@ double draw(DistributionRow const& row, std::span<double const> arguments, doubl
   double const inside = number(mass(graph, use));
   if (!(lower < upper) || !(inside > 0))
     refuse("E2115", "`" + name + "` has no mass between its bounds", "widen `lower` and `upper`, or move the distribution");
-
   Support const bounds = support(graph, use);
   double const low = bounds.lower ? number(*bounds.lower) : -std::numeric_limits<double>::infinity();
   double const high = bounds.upper ? number(*bounds.upper) : std::numeric_limits<double>::infinity();
-  if (inside >= small_mass)
-    for (;;) {
-      double const x = row.draw(stream, arguments);
-      if (low <= x && x <= high) return x;
-    }
   // The nearer tail keeps the digits of small probabilities.
   double const to_low = bounds.lower ? number(row.cumulative(graph, *bounds.lower, use.arguments)) : 0;
   double const share = stream.uniform() * inside;
