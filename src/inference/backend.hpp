@@ -25,24 +25,6 @@ struct Needs {
   bool proper_prior = false;  // every prior can be drawn from
 };
 
-/// All that a run gets from outside, and the only way anything but the result leaves it.
-struct RunContext {
-  std::uint64_t seed;
-  Progress& progress;
-  /// Counts of this run's solves and failures; empty at the start, refilled from the checkpoint when resuming.
-  Ledger& ledger;
-  /// Asked between steps; true: checkpoint, return what there is. Empty: never.
-  std::function<bool()> interrupted;
-  /// Takes the whole state of the run; anything stored as JSON text or CBOR comes back exactly. Empty: no checkpoints.
-  std::function<void(nlohmann::json const&)> checkpoint;
-  /// Seconds between checkpoints; one more is made on interruption.
-  double checkpoint_interval = 60;
-  /// What `checkpoint` was last given by the same task: the run goes on to the same bytes as if it had never stopped.
-  std::optional<nlohmann::json> resume;
-
-  bool stop_requested() const { return interrupted && interrupted(); }
-};
-
 /// An optimum and its Gaussian (Laplace) approximation.
 struct Mode {
   std::vector<double> theta;       // [P], sampler's coordinates
@@ -54,6 +36,27 @@ struct Mode {
   double share = 0;                // of the sum of all modes' masses
   int hits = 0;                    // local searches that ended here
   bool well_defined = true;        // false: flat in some direction, whose width is the prior's
+};
+
+/// All that a run gets from outside, and the only way anything but the result leaves it.
+struct RunContext {
+  std::uint64_t seed;
+  Progress& progress;
+  /// Counts of this run's solves and failures; empty at the start, refilled from the checkpoint when resuming.
+  Ledger& ledger;
+  /// Asked between steps; true: checkpoint, return what there is. Empty: never.
+  std::function<bool()> interrupted = {};
+  /// Takes the whole state of the run; anything stored as JSON text or CBOR comes back exactly. Empty: no checkpoints.
+  std::function<void(nlohmann::json const&)> checkpoint = {};
+  /// Seconds between checkpoints; one more is made on interruption.
+  double checkpoint_interval = 60;
+  /// What `checkpoint` was last given by the same task: the run goes on to the same bytes as if it had never stopped.
+  std::optional<nlohmann::json> resume = {};
+  /// Modes of the posterior, when a search has found them already: `mh` starts from these instead of searching again.
+  std::vector<Mode> modes = {};
+  Findings mode_findings = {};  // of that search
+
+  bool stop_requested() const { return interrupted && interrupted(); }
 };
 
 /// A proposal as frozen after burn-in: x' = x + scale L z, one move in ten with 0.2 scale when `adaptive`.

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/lanes.hpp"
+
 namespace sysid {
 
 /// One chain after burn-in and thinning. values[d][p]: declared unit.
@@ -26,5 +28,8 @@ struct Draws {
     return n;
   }
 };
+
+/// Up to `count` draws spread evenly over all chains, never random: parameters only, as columns [parameter_count x <= count].
+LaneArray spread(Draws const& draws, int count);
 
 }  // namespace sysid

@@ -26,7 +26,7 @@ constexpr std::size_t most_modes = 12;
 constexpr double notable_share = 0.01;
 
 // Steps of Purpose::start: streams of different uses never meet.
-constexpr std::uint64_t search_step = 0, prior_start_step = 1, dispersal_step = 1'000'000;
+constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_step = 1'000'000;
 
 double gap(Objective const& objective, Eigen::VectorXd const& a, Eigen::VectorXd const& b) {
   return (a - b).cwiseQuotient(objective.scale).cwiseAbs().maxCoeff();
@@ -69,18 +69,19 @@ std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Cl
   return chosen;
 }
 
-/// One local search stands for all that ended in the same place, judged by the curvature there.
+/// One local search stands for all that ended in the same place: near in prior widths, and within the Gauss-Newton ellipsoid, which
+/// alone may be far too wide where the likelihood is no sum of squares.
 struct Cluster {
   Climber best;
   int hits = 1;
 };
 
-std::vector<Cluster> cluster(std::vector<Climber> climbers) {
+std::vector<Cluster> cluster(Objective const& objective, std::vector<Climber> climbers) {
   sort_best_first(climbers);
   std::vector<Cluster> clusters;
   for (Climber& climber : climbers) {
     auto const same = [&](Cluster const& c) {
-      if (c.best.curvature.size() == 0) return false;
+      if (c.best.curvature.size() == 0 || gap(objective, climber.theta, c.best.theta) > near) return false;
       Eigen::VectorXd const apart = climber.theta - c.best.theta;
       return apart.dot(c.best.curvature * apart) < 1;
     };
@@ -95,7 +96,7 @@ std::vector<Cluster> cluster(std::vector<Climber> climbers) {
 
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, RunContext& context) {
   std::vector<Mode> modes;
-  for (Cluster const& c : cluster(std::move(climbers))) {
+  for (Cluster const& c : cluster(objective, std::move(climbers))) {
     if (context.stop_requested() || modes.size() >= most_modes) break;
     if (!modes.empty() && c.best.log_density < modes.front().log_density - negligible) break;
     Eigen::MatrixXd const guess =

@@ -131,14 +131,14 @@ inline double as_residual(double log_likelihood, double ceiling) { return std::s
 
 /// What a run needs, with nobody watching.
 struct Bench {
-  explicit Bench(std::uint64_t seed = 1) : context{seed, progress, ledger, {}, {}, 60, std::nullopt} {}
+  explicit Bench(std::uint64_t seed = 1) : context{.seed = seed, .progress = progress, .ledger = ledger} {}
   SilentProgress progress;
   Ledger ledger;
   RunContext context;
 };
 
-/// Duffing's oscillator as in the tutorial's Sec. 8.4: 500 samples at 1000 Hz, held white force of sd 10, 1 % noise, parameters m, c, k,
-/// k3 and noise precision, log-uniform a decade (the precision two) either side of the truth.
+/// Duffing's oscillator as in the tutorial's Sec. 8.4: 500 samples at 1000 Hz, held white force of sd 10, 1 % noise, parameters m,
+/// c, k, k3 and noise precision, log-uniform a decade (the precision two) either side of the truth.
 inline TestTarget duffing(std::uint64_t record) {
   constexpr int samples = 500;
   constexpr double dt = 1e-3;
@@ -179,8 +179,11 @@ inline TestTarget duffing(std::uint64_t record) {
     rows[samples] = as_residual(0.5 * samples * elementary::log(w[4] / (2 * std::numbers::pi)), ceiling);
   };
   return TestTarget({"m", "c", "k", "k3", "beta"},
-                    {{Prior::log_uniform, 0.1, 10}, {Prior::log_uniform, 2, 200}, {Prior::log_uniform, 1e3, 1e5},
-                     {Prior::log_uniform, 5e8, 5e10}, {Prior::log_uniform, beta / 100, beta * 100}},
+                    {{Prior::log_uniform, 0.1, 10},
+                     {Prior::log_uniform, 2, 200},
+                     {Prior::log_uniform, 1e3, 1e5},
+                     {Prior::log_uniform, 5e8, 5e10},
+                     {Prior::log_uniform, beta / 100, beta * 100}},
                     samples + 1, ceiling, residuals);
 }
 

@@ -1,0 +1,21 @@
+// Draws spread over chains.
+#include "inference/draws.hpp"
+
+#include <algorithm>
+
+namespace sysid {
+
+LaneArray spread(Draws const& draws, int count) {
+  std::vector<std::vector<double> const*> pooled;
+  for (Chain const& chain : draws.chains)
+    for (auto const& values : chain.values) pooled.push_back(&values);
+  count = std::min<int>(count, static_cast<int>(pooled.size()));
+  LaneArray columns(draws.parameter_count, count);
+  for (int w = 0; w < count; ++w) {
+    auto const pick = static_cast<std::size_t>((2LL * w + 1) * static_cast<long long>(pooled.size()) / (2LL * count));
+    for (int p = 0; p < draws.parameter_count; ++p) columns(p, w) = (*pooled[pick])[static_cast<std::size_t>(p)];
+  }
+  return columns;
+}
+
+}  // namespace sysid

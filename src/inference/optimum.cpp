@@ -1,0 +1,81 @@
+// Point estimates from the global search.
+#include "inference/optimum.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "inference/checkpoint.hpp"
+#include "inference/laplace.hpp"
+#include "inference/search.hpp"
+
+namespace sysid::optimum {
+namespace {
+
+/// Names of parameters whose optimum lies within a millionth of the prior's width of a bound.
+std::string parameters_at_bound(Target const& target, Mode const& mode) {
+  std::string names;
+  auto const parameters = target.parameters();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    double const width = parameters[p].upper - parameters[p].lower;
+    if (!std::isfinite(width)) continue;
+    // Logarithmic coordinates end at the lower bound relative to it, not to the width.
+    double const below = mode.declared[p] - parameters[p].lower, above = parameters[p].upper - mode.declared[p];
+    double const unit = parameters[p].lower > 0 ? std::min(width, parameters[p].lower) : width;
+    if (below < 1e-3 * unit || above < 1e-3 * width)
+      names += fmt::format("{}{} = {:.4g}", names.empty() ? "" : ", ", parameters[p].name, mode.declared[p]);
+  }
+  return names;
+}
+
+void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {
+  for (ParameterInfo const& parameter : target.parameters()) {
+    result.draws.names.push_back(parameter.name);
+    result.draws.units.push_back(parameter.unit);
+  }
+  result.draws.parameter_count = target.dimension();
+  LaneArray const theta = to_lanes({theta_of(mode)});
+  double log_prior = 0, declared_prior = 0, log_likelihood = 0;
+  target.log_prior(theta, {&log_prior, 1}, true);
+  target.log_prior(theta, {&declared_prior, 1}, false);
+  target.log_likelihood(theta, {&log_likelihood, 1}, context.ledger);
+  result.draws.chains.push_back({{mode.declared}, {declared_prior}, {log_likelihood}, {log_prior + log_likelihood}, {1.0}});
+}
+
+FitResult run(std::string_view backend, Target const& target, Aim aim, Settings const& settings, RunContext& context) {
+  FitResult result;
+  result.settings = settings;
+  // A search starts again from its beginning: what it would lose is seconds, and its end is the same.
+  nlohmann::json const identity = checkpoint::identity(backend, settings, context.seed, target);
+  if (context.resume) result.failure = checkpoint::refuse(*context.resume, identity);
+  if (result.failure) return result;
+  SearchResult found = search(target, aim, context);
+  result.failure = found.failure;
+  result.interrupted = found.interrupted;
+  if (found.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
+  if (found.failure || found.interrupted) return result;
+  result.modes = std::move(found.modes);
+  Mode const& best = result.modes.front();
+  std::string const bound = parameters_at_bound(target, best);
+  if (!bound.empty())
+    result.findings.push_back({Severity::warning, "at_bound",
+                               fmt::format("the optimum lies at a bound of the prior: {}; its widths mean little", bound),
+                               "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
+  else
+    result.findings = std::move(found.findings);
+  write_draw(target, best, context, result);
+  return result;
+}
+
+}  // namespace
+
+FitResult run_map(Target const& target, Settings const& settings, RunContext& context) {
+  return run("map", target, Aim::declared_posterior, settings, context);
+}
+
+FitResult run_ml(Target const& target, Settings const& settings, RunContext& context) {
+  return run("ml", target, Aim::likelihood, settings, context);
+}
+
+}  // namespace sysid::optimum

@@ -1,0 +1,55 @@
+// The back ends, one line each, in the order `sysid list` prints them.
+#include "inference/backend.hpp"
+#include "inference/mh.hpp"
+#include "inference/optimum.hpp"
+
+namespace sysid {
+namespace {
+
+std::string no_refusal(Settings const&) { return {}; }
+
+BackendRow const rows[] = {
+    {"mh",
+     "Metropolis-Hastings chains, adaptive or spherical Gaussian proposal",
+     {.proper_prior = true},
+     mh::settings(),
+     &mh::refuse,
+     &mh::run},
+    {"map",
+     "the most probable parameters, with Laplace standard deviations",
+     {.proper_prior = true},
+     {},
+     &no_refusal,
+     &optimum::run_map},
+    {"ml", "the likeliest parameters, with Laplace standard deviations", {.proper_prior = true}, {}, &no_refusal, &optimum::run_ml},
+};
+
+}  // namespace
+
+std::span<BackendRow const> backends() { return rows; }
+
+BackendRow const* find_backend(std::string_view name) {
+  for (BackendRow const& row : rows)
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+std::vector<Summary> summarise(FitResult const& result) {
+  std::vector<Summary> summaries;
+  for (int p = 0; p < result.draws.parameter_count; ++p) {
+    auto const parameter = static_cast<std::size_t>(p);
+    ChainValues values;
+    if (!result.unthinned.empty()) {
+      values = result.unthinned[parameter];
+    } else {
+      for (Chain const& chain : result.draws.chains) {
+        values.emplace_back();
+        for (auto const& draw : chain.values) values.back().push_back(draw[parameter]);
+      }
+    }
+    summaries.push_back(summarise(result.draws.names[parameter], result.draws.units[parameter], values));
+  }
+  return summaries;
+}
+
+}  // namespace sysid

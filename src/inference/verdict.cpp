@@ -1,0 +1,37 @@
+// Wording of the verdict.
+#include "inference/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sysid {
+
+Verdict judge(Findings const& findings) {
+  auto const count = [&](Severity s) {
+    return std::count_if(findings.begin(), findings.end(), [&](Finding const& f) { return f.severity == s; });
+  };
+  auto const errors = count(Severity::error), warnings = count(Severity::warning);
+  Verdict verdict;
+  verdict.pass = errors == 0;
+  verdict.exit_code = verdict.pass ? 0 : 1;
+  if (errors > 0)
+    verdict.text =
+        fmt::format("do not use these numbers yet: {} failed", errors == 1 ? "a check" : fmt::format("{} checks", errors));
+  else if (warnings > 0)
+    verdict.text =
+        fmt::format("the checks pass, with {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+  else
+    verdict.text = "the checks pass";
+  for (Severity const severity : {Severity::error, Severity::warning, Severity::note}) {
+    for (Finding const& finding : findings) {
+      if (finding.severity != severity) continue;
+      char const* const mark = severity == Severity::error ? "failed" : severity == Severity::warning ? "warning" : "note";
+      verdict.text += fmt::format("\n  {}: {}", mark, finding.message);
+      if (!finding.help.empty()) verdict.text += fmt::format("\n    what to do: {}", finding.help);
+    }
+  }
+  return verdict;
+}
+
+}  // namespace sysid
