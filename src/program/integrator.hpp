@@ -9,14 +9,24 @@
 
 namespace sysid {
 
-/// The derivative at one stage: `states` replace the state leaves, inputs and time are read at `stage`.
+/// Where a method evaluated the derivative, for a diagnosis of failed solves.
+struct StageVisit {
+  std::vector<NodeId> states;
+  Stage stage = Stage::begin;
+};
+
+/// What a method writes its step with.
 struct Stages {
   Graph& graph;
   std::span<NodeId const> derivative;
-  std::vector<NodeId> states;  // leaves at the beginning of the step
-  NodeId h;
+  std::vector<NodeId> states;  // leaves: the states at the beginning of the step
+  NodeId h;                    // leaf: the step size
+  std::vector<StageVisit>& visited;
 
+  /// The derivative where `at` replaces the states, inputs and time being read at `stage`.
   std::vector<NodeId> evaluate(std::span<NodeId const> at, Stage stage) const;
+  /// states + by * slopes
+  std::vector<NodeId> advance(std::span<NodeId const> slopes, NodeId by) const;
 };
 
 struct IntegratorRow {

@@ -20,14 +20,13 @@ struct Kernel {
   int registers = 0;              // rows of lanes: inputs first, then temporaries
   std::vector<double> constants;  // the uniforms
   Code code;
-  std::vector<Operand> results;      // where each output is found after the last instruction; an input, a constant or a register
-  std::vector<NodeId> input_leaves;  // the leaf each input row stands for, and a copy of what names it in a dump
+  std::vector<Operand> results;  // where each output is found after the last instruction; an input, a constant or a register
   std::shared_ptr<LinkedCode const> linked;
 };
 
 /// The function outputs(input_leaves). Any other leaf below an output is a fault of ours (InternalError).
-/// Values agree with Graph::evaluate to a few ulp: powers become products, sums of powers Horner's form, divisions by constants
-/// products with the reciprocal where that is exact; results are the same bytes for every width, position and instruction set.
+/// Values agree with Graph::evaluate to a few ulp (integer powers are products, the rest is computed as written); they are the same
+/// bytes for every width, position and instruction set.
 Kernel compile_kernel(Graph const& graph, std::span<NodeId const> input_leaves, std::span<NodeId const> outputs);
 
 /// inputs: [inputs x W], out: [outputs x W], any W; rows of `out` may not overlap those of `inputs`.

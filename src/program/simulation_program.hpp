@@ -44,52 +44,57 @@ struct UniformLeaf {
   Stage stage = Stage::begin;
 };
 
-/// Uniforms of a section: constants, then values computed once per data set from raw leaves by `table`.
+/// Values that depend on data alone, computed once per data set for every step or sample.
 struct UniformTable {
-  std::vector<UniformLeaf> leaves;  // inputs of the kernel
-  Kernel table;                     // outputs: the uniforms that depend on data
+  std::vector<UniformLeaf> leaves;  // what the rows of the kernel's inputs are
+  Kernel kernel;                    // outputs: the uniforms of one row
 };
 
-/// One sum over samples: count * per_sample + sum over data_terms + sum_i factor_i * accumulator_i, put together in the epilogue.
+/// Straight-line code over the register file, and the row of uniforms it reads.
 struct Section {
   Code code;
   UniformTable uniforms;
   std::shared_ptr<LinkedCode const> linked;
 };
 
-/// Registers of the file are, in this order: parameters, values hoisted into the prologue, states, accumulators, records, sums,
-/// temporaries; uniforms are, in this order: constants, then one row of the running section's table.
+/// Registers of the file, in this order; uniforms are constants, then one row of the running section's table.
 struct RegisterLayout {
   int parameters = 0, hoisted = 0, states = 0, accumulators = 0, records = 0, sums = 0, temporaries = 0;
-  int first_state() const { return parameters + hoisted; }
+  int first_hoisted() const { return parameters; }
+  int first_state() const { return first_hoisted() + hoisted; }
   int first_accumulator() const { return first_state() + states; }
   int first_record() const { return first_accumulator() + accumulators; }
   int first_sum() const { return first_record() + records; }
   int first_temporary() const { return first_sum() + sums; }
   int total() const { return first_temporary() + temporaries; }
-  /// Rows the step and the observations touch: what has to stay in the first-level cache.
-  int hot = 0;
 };
 
 struct SimulationProgram {
   SimulationSource source;
+
   RegisterLayout registers;
+  int hot_registers = 0;  // rows that a step and the observations touch: they should stay in the first-level cache
   std::vector<double> constants;
-  int widest_row = 0;            // uniforms of the section that has most, constants not counted
+  int uniforms = 0;              // constants and the widest row
   Section prologue;              // parameters -> hoisted values
-  Section start;                 // parameters -> initial states
+  Section start;                 // parameters, hoisted values -> initial states
   Section step;                  // one integrator step
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
   Section record;                // one sample into the record registers
-  Section epilogue;              // accumulators -> sums; its row: samples per channel, then sums of data alone
-  std::vector<Kernel>
-      data_sums;  // per channel: terms of data alone, summed once per data set; inputs as observe[channel].uniforms.leaves
+  Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums
+  std::vector<UniformTable> data_sums;  // per channel: terms of data alone, summed once per data set over the summed samples
+
+  // The step as expressions, before algebra: where a failed solve is looked into.
+  Graph graph;                      // source.graph, grown
+  std::vector<NodeId> next;         // states after one step
+  std::vector<StageVisit> visited;  // evaluations of the derivative, in order
 
   int sum_count() const;
   /// The row of sum k of a channel in the output of Simulator::sums.
   int sum_row(int channel, int k) const;
 };
 
+/// Cannot fail on a checked model: a leaf that has no business where it stands is a fault of ours (InternalError).
 SimulationProgram compile(SimulationSource source);
 
 /// What `--dump program` prints.

@@ -1,8 +1,8 @@
 // The data side of a simulation: for one program and one experiment, the rows of uniforms of every step and sample, and which are
 // summed.
 #pragma once
+#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "data/experiment.hpp"
@@ -19,33 +19,38 @@ struct UniformRows {
 
 class Schedule {
  public:
-  /// substeps >= 1: integrator steps per sampling interval.
+  /// substeps >= 1: integrator steps per sampling interval. Needs as many inputs and channels in the experiment as the program
+  /// reads.
   Schedule(SimulationProgram const& program, Experiment const& experiment, int substeps);
 
-  int samples() const { return static_cast<int>(time_.size()); }
+  int samples() const { return static_cast<int>(experiment_.time.size()); }
   int substeps() const { return substeps_; }
-  double time(int sample) const { return time_[static_cast<std::size_t>(sample)]; }
+  Experiment const& experiment() const { return experiment_; }
+  double time(int sample) const { return experiment_.time[static_cast<std::size_t>(sample)]; }
   /// Whether the sample of the channel is summed: its row is scored and it is not missing.
-  bool summed(int channel, int sample) const { return summed_[static_cast<std::size_t>(sample * channels_ + channel)] != 0; }
+  bool summed(int channel, int sample) const;
   /// The number of summed samples of a channel.
-  int count(int channel) const { return counts_[static_cast<std::size_t>(channel)]; }
+  int count(int channel) const;
   /// One past the last sample that is summed in any channel.
   int last_summed() const { return last_summed_; }
 
+  /// Step `substep` of the interval after `sample`.
   double const* step_row(int sample, int substep) const { return steps_.row(sample * substeps_ + substep); }
   double const* observe_row(int channel, int sample) const { return observe_[static_cast<std::size_t>(channel)].row(sample); }
   double const* record_row(int sample) const { return records_.row(sample); }
-  double const* epilogue_row() const { return epilogue_.data(); }
+  std::vector<double> const& epilogue_row() const { return epilogue_; }
 
-  /// The value of a uniform leaf, for a scalar re-run: within `substep` of the interval after `sample`.
-  double leaf(UniformLeaf const& leaf, int sample, int substep) const;
+  /// A leaf within a step: at `stage` of step `substep` of the interval after `sample`.
+  double at_step(UniformLeaf const& leaf, int sample, int substep) const;
+  /// A leaf at a sample. Inputs are read from the right, `input_rate` at the last sample from the left.
+  double at_sample(UniformLeaf const& leaf, int sample) const;
 
  private:
+  UniformRows tabulate(UniformTable const& table, int rows, bool steps) const;
+
   Experiment experiment_;
-  std::vector<double> time_;
   int substeps_ = 1;
-  int channels_ = 0;
-  std::vector<std::uint8_t> summed_;
+  std::vector<std::vector<std::uint8_t>> summed_;  // [channels][samples]
   std::vector<int> counts_;
   int last_summed_ = 0;
   UniformRows steps_, records_;

@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/lanes.hpp"
@@ -10,21 +11,23 @@
 
 namespace sysid {
 
+class Block;       // simulate/block.hpp
 class ThreadPool;  // simulate/thread_pool.hpp
 
 /// How, never what: results are the same bytes for every choice.
 struct ExecutionOptions {
-  int lanes = 0;    // lanes per block; 0: chosen from the work and the first-level cache
+  int lanes = 0;    // lanes per block, rounded up to what an executor has; 0: chosen from the work and the first-level cache
   int threads = 1;  // 0: one per processor
 };
 
-/// How the solve of one lane ended. `sample`: one by which it had failed (checked every few samples, the same ones for any width).
+/// How the solve of one lane ended. `sample`: one by which it had failed (looked for every few samples, the same ones for any
+/// width).
 struct Outcome {
   bool ok = true;
   int sample = -1;
 };
 
-/// The first non-finite sub-expression of a failed solve, in evaluation order, and the time it appeared.
+/// The first sub-expression of a failed solve that is not finite, and when.
 struct Diagnosis {
   NodeId node = 0;  // of SimulationProgram::source.graph
   double time = 0;
@@ -38,6 +41,7 @@ class Simulator {
 
   SimulationProgram const& program() const { return *program_; }
   Schedule const& schedule() const { return schedule_; }
+  ExecutionOptions const& options() const { return options_; }
 
   /// parameters: [parameters x W], SI. out: [sum_count x W], rows as SimulationProgram::sum_row; NaN in failed lanes. outcome: [W].
   /// A lane fails when a state or a sum is not finite. Lane w depends on column w alone.
@@ -47,17 +51,20 @@ class Simulator {
   /// row.
   void records(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const;
 
-  /// Writes the parameters in force from sample `sample` on, for lanes [lane, lane + parameters.width()).
+  /// Writes the parameters in force from sample `sample` on, for lanes [lane, lane + parameters.width()) of the batch.
   using Redraw = std::function<void(int sample, int lane, Lanes parameters)>;
-  /// `records` with parameters redrawn at every sample; the initial state is that of sample 0's. May be called from several
-  /// threads.
+  /// `records` with parameters redrawn at every sample; initial states are those of sample 0's parameters. `redraw` is called from
+  /// several threads at once.
   void records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const;
 
   /// Re-runs one lane with plain arithmetic until something is not finite; nothing when it stays finite there.
   std::optional<Diagnosis> diagnose(std::span<double const> parameters) const;
 
  private:
-  int block_width(int lanes) const;
+  using Work = std::function<void(Block&, int lane, int lanes)>;
+  void for_each_block(int width, int samples, Work const& work) const;
+  void record_block(Block& block, Redraw const* redraw, int lane, int lanes, int first, int last, Lanes out,
+                    std::span<Outcome> outcome) const;
 
   std::shared_ptr<SimulationProgram const> program_;
   Schedule schedule_;

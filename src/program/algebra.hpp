@@ -1,0 +1,83 @@
+// Rewriting of expressions before they are emitted: products for integer powers, Horner's form, fused multiply-adds, and everything
+// that is known early gathered so that it is computed early. Exact in real arithmetic; a few ulp in floating point.
+#pragma once
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "expression/graph.hpp"
+#include "program/binding.hpp"
+
+namespace sysid {
+
+/// Only what never costs accuracy: x^n for integer |n| <= 16 as products, x^(1/2) as a square root.
+std::vector<NodeId> expand_powers(Graph& graph, std::span<NodeId const> roots);
+
+/// base^exponent by squaring, 1 <= |exponent|.
+NodeId integer_power(Graph& graph, NodeId base, int exponent);
+/// The largest |exponent| that is expanded into products.
+constexpr int largest_expanded_power = 16;
+
+/// A product sorted by binding time:  sign * parameter * data * prod(numerator) / prod(denominator).
+struct Product {
+  struct Factor {
+    NodeId base;
+    int exponent;  // > 0
+  };
+  bool negative = false;
+  NodeId parameter = 0;                        // known once per parameter vector, constants included
+  NodeId data = 0;                             // known once per data set
+  std::vector<Factor> numerator, denominator;  // known at the step only
+};
+
+/// Rewrites the step-level parts of expressions; what is known earlier is left alone and counts as an atom.
+class Algebra {
+ public:
+  /// roots: all expressions that will be rewritten; sub-expressions they share stay shared.
+  Algebra(Graph& graph, std::span<NodeId const> roots);
+
+  NodeId rewrite(NodeId id);
+  /// `id` as a sum of products, sums under constant and per-parameter factors multiplied out.
+  std::vector<Product> expand(NodeId id);
+  NodeId sum(std::vector<Product> terms);
+  NodeId product(Product const& product);
+  /// One factor, known early or at the step.
+  Product single(NodeId id);
+
+  BindingTimes& binding() { return binding_; }
+
+ private:
+  struct Shared {
+    NodeId lowest;  // the power of the same base with the lowest exponent
+    int difference;
+  };
+
+  Product unit();
+  bool may_open(NodeId id) const { return id >= uses_.size() || uses_[id] <= 1; }
+  void collect(NodeId id, int exponent, Product& into, bool open);
+  void collect_terms(NodeId id, bool negative, std::vector<Product>& terms, bool open);
+  void expand_below(NodeId id, Product const& scale, std::vector<Product>& terms);
+  void multiply_atom(Product& into, NodeId atom, int exponent);
+  void multiply_factor(std::vector<Product::Factor>& factors, NodeId base, int exponent);
+  void multiply(Product& into, Product const& by);
+  NodeId rewrite_power(NodeId id);
+  void factor_out(std::vector<Product>& terms);
+  struct Pair {
+    NodeId a, b;
+    bool single;  // only a
+  };
+  Pair split(Product const& product);
+  NodeId multiplied(std::vector<NodeId> factors);
+  int depth(NodeId id);
+  void find_shared_powers(std::span<NodeId const> roots);
+
+  Graph& graph_;
+  BindingTimes binding_;
+  NodeId one_;
+  std::vector<int> uses_;  // of the nodes below the roots, as they were given
+  std::unordered_map<NodeId, NodeId> rewritten_;
+  std::unordered_map<NodeId, Shared> shared_;
+  std::vector<int> depth_;
+};
+
+}  // namespace sysid

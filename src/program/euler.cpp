@@ -1,0 +1,10 @@
+// Euler's explicit method:  y + h f(y, t).
+#include "program/integrator.hpp"
+
+namespace sysid {
+
+std::vector<NodeId> euler_step(Stages const& stages) {
+  return stages.advance(stages.evaluate(stages.states, Stage::begin), stages.h);
+}
+
+}  // namespace sysid

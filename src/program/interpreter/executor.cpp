@@ -1,0 +1,94 @@
+// Links bytecode to the handlers of every executor this processor can run.
+#include "program/interpreter/executor.hpp"
+
+#include <fmt/format.h>
+
+#include "core/diagnostic.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr Executor narrow_executors[] = {
+    {InstructionSet::avx2, 4}, {InstructionSet::avx2, 8}, {InstructionSet::avx2, 16}, {InstructionSet::avx2, 32}};
+// Four lanes fill one narrow vector: the wide set gains nothing from them and has no handlers for it.
+constexpr Executor wide_executors[] = {{InstructionSet::avx2, 4},
+                                       {InstructionSet::avx512, 8},
+                                       {InstructionSet::avx512, 16},
+                                       {InstructionSet::avx512, 32},
+                                       {InstructionSet::avx512, 64}};
+
+std::vector<Step> link_for(Code const& code, int uniforms, Executor executor) {
+  bool const wide = executor.set == InstructionSet::avx512;
+  std::uint32_t const rows = static_cast<std::uint32_t>(uniform_space(uniforms)) * 8;
+  std::uint32_t const row = static_cast<std::uint32_t>(executor.width) * 8;
+  auto const offset = [&](Operand const& operand) {
+    return operand.place == OperandPlace::uniform ? operand.index * 8 : rows + operand.index * row;
+  };
+  std::vector<Step> steps;
+  steps.reserve(code.size() + 1);
+  for (Instruction const& i : code) {
+    Shape const shape{i.opcode, i.store, i.a.place, i.b.place, i.c.place};
+    Handler const handler = wide ? avx512::handler(shape, executor.width) : avx2::handler(shape, executor.width);
+    if (handler == nullptr) throw InternalError(fmt::format("no executor has the instruction `{}`", capability(i.opcode).name));
+    Step step{handler, rows + i.target * row, offset(i.a), {{offset(i.b), offset(i.c)}}};
+    if (i.opcode == Opcode::call_unary) step.unary = i.function->unary_lanes;
+    steps.push_back(step);
+    if (i.opcode == Opcode::call_binary) {
+      Step data{};
+      data.binary = i.function->binary_lanes;
+      steps.push_back(data);
+    }
+  }
+  Step last{};
+  last.handler = wide ? avx512::end(executor.width) : avx2::end(executor.width);
+  steps.push_back(last);
+  return steps;
+}
+
+int position(Executor executor) {
+  int index = 0;
+  for (int width = executor.set == InstructionSet::avx512 ? 8 : 4; width < executor.width; width *= 2) ++index;
+  return index;
+}
+
+}  // namespace
+
+std::span<Executor const> executors(InstructionSet set) {
+  if (set == InstructionSet::avx512) return wide_executors;
+  return narrow_executors;
+}
+
+Executor choose_executor(int lanes, int widest) {
+  std::span<Executor const> const all = executors(instruction_set());
+  Executor chosen = all.front();
+  for (Executor const& executor : all) {
+    if (executor.width > widest) break;
+    chosen = executor;
+    if (executor.width >= lanes) break;
+  }
+  return chosen;
+}
+
+std::vector<Step> const& LinkedCode::steps(Executor executor) const {
+  int const index = position(executor);
+  return executor.set == InstructionSet::avx512 ? wide[index] : narrow[index];
+}
+
+std::shared_ptr<LinkedCode const> link(Code const& code, int uniforms) {
+  auto linked = std::make_shared<LinkedCode>();
+  for (Executor const& executor : narrow_executors) linked->narrow[position(executor)] = link_for(code, uniforms, executor);
+  if (supported_instruction_set() == InstructionSet::avx512)
+    for (Executor const& executor : wide_executors)
+      if (executor.set == InstructionSet::avx512) linked->wide[position(executor)] = link_for(code, uniforms, executor);
+  return linked;
+}
+
+void run(LinkedCode const& code, Executor executor, double* file) {
+  Step const* steps = code.steps(executor).data();
+  if (executor.set == InstructionSet::avx512)
+    avx512::run(steps, reinterpret_cast<char*>(file), executor.width);
+  else
+    avx2::run(steps, reinterpret_cast<char*>(file), executor.width);
+}
+
+}  // namespace sysid

@@ -1,0 +1,42 @@
+// Running bytecode: linked for every instruction set and width, and the scalar oracle. All executors give the same bytes.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/instruction_set.hpp"
+#include "program/code.hpp"
+#include "program/interpreter/step.hpp"
+
+namespace sysid {
+
+/// An executor of lanes: vectors of one instruction set, `width` lanes at a time.
+struct Executor {
+  InstructionSet set = InstructionSet::avx2;
+  int width = 4;
+};
+
+/// The executors of a set, narrow to wide.
+std::span<Executor const> executors(InstructionSet set);
+/// The executor of the set in force for a block of `lanes`: the narrowest that holds them, but at most `widest`.
+Executor choose_executor(int lanes, int widest = 1 << 30);
+
+/// Doubles of a register file that `uniforms` uniforms take, so that rows begin on a cache line.
+constexpr int uniform_space(int uniforms) { return (uniforms + 7) / 8 * 8; }
+
+/// Code linked for every executor of this processor.
+struct LinkedCode {
+  std::vector<Step> narrow[4], wide[4];  // AVX2 and AVX-512, in the order of `executors`
+  std::vector<Step> const& steps(Executor executor) const;
+};
+
+/// uniforms: size of the file's uniform part. Offsets are the same for every section that shares a file.
+std::shared_ptr<LinkedCode const> link(Code const& code, int uniforms);
+
+/// file: uniform_space(uniforms) doubles, then rows of executor.width lanes, on a 64-byte boundary.
+void run(LinkedCode const& code, Executor executor, double* file);
+
+/// The oracle: one lane, one instruction after the other.
+void run_scalar(Code const& code, double const* uniforms, double* registers);
+
+}  // namespace sysid

@@ -1,0 +1,313 @@
+// Sorts a system's expressions into sections by binding time and emits each.
+#include "program/simulation_program.hpp"
+
+#include <bit>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "core/diagnostic.hpp"
+#include "program/algebra.hpp"
+#include "program/emit.hpp"
+#include "program/interpreter/executor.hpp"
+
+namespace sysid {
+namespace {
+
+// OperandPlace holders for values that only the program has: leaves of kind `unknown`.
+constexpr int accumulator_leaf = 1 << 20;       // + accumulator
+constexpr int epilogue_uniform_leaf = 1 << 21;  // + position in the epilogue's row
+
+// Registers and uniforms are numbered within banks until all sections are known.
+enum Bank : std::uint32_t {
+  parameter_bank = 0u << 24,
+  hoisted_bank = 1u << 24,
+  state_bank = 2u << 24,
+  accumulator_bank = 3u << 24,
+  record_bank = 4u << 24,
+  sum_bank = 5u << 24,
+  temporary_bank = 6u << 24,
+  constant_bank = 7u << 24,
+  row_bank = 8u << 24,
+};
+constexpr std::uint32_t bank_of(std::uint32_t index) { return index & 0xff000000u; }
+constexpr std::uint32_t position_of(std::uint32_t index) { return index & 0x00ffffffu; }
+
+/// A channel's sum as  sum_i factor_i * term_i : terms are accumulators, data sums, or the number of samples.
+struct SumTerm {
+  NodeId factor;
+  NodeId term;  // a place holder
+};
+
+class Compilation {
+ public:
+  explicit Compilation(SimulationSource source) { program_.source = std::move(source); }
+
+  SimulationProgram compile() {
+    SimulationSource const& source = program_.source;
+    program_.graph = source.graph;
+    program_.registers.parameters = source.parameters;
+    program_.registers.states = source.states();
+    expand_step();
+    graph_ = program_.graph;
+    compile_step();
+    for (std::size_t c = 0; c < source.channels.size(); ++c) compile_observation(static_cast<int>(c));
+    compile_records();
+    compile_epilogue();
+    compile_start();
+    compile_prologue();
+    number();
+    return std::move(program_);
+  }
+
+ private:
+  void expand_step() {
+    IntegratorRow const* integrator = find_integrator(program_.source.integrator);
+    if (integrator == nullptr) throw InternalError("there is no integrator `" + program_.source.integrator + "`");
+    Graph& graph = program_.graph;
+    std::vector<NodeId> states;
+    for (int i = 0; i < program_.source.states(); ++i) states.push_back(graph.leaf(LeafKind::state, i));
+    NodeId const h = graph.leaf(LeafKind::step_size);
+    Stages const stages{graph, program_.source.derivative, std::move(states), h, program_.visited};
+    program_.next = integrator->step(stages);
+  }
+
+  void compile_step() {
+    Algebra algebra(graph_, program_.next);
+    std::vector<Goal> goals;
+    for (std::size_t i = 0; i < program_.next.size(); ++i)
+      goals.push_back({algebra.rewrite(program_.next[i]), state_bank + static_cast<std::uint32_t>(i)});
+    program_.step = section(goals);
+  }
+
+  /// Splits the channel's sums and emits what is left to do at each sample.
+  void compile_observation(int channel) {
+    std::vector<NodeId> const& sums = program_.source.channels[static_cast<std::size_t>(channel)].sums;
+    Algebra algebra(graph_, sums);
+    std::vector<Goal> goals;
+    std::vector<NodeId> data_terms;
+    std::map<NodeId, NodeId> place_of;  // term -> its place holder: sums of one channel share accumulators
+    for (NodeId const sum : sums) {
+      std::vector<SumTerm> terms;
+      for (Product term : algebra.expand(sum)) {
+        NodeId factor = term.negative ? graph_.negate(term.parameter) : term.parameter;
+        term.negative = false;
+        term.parameter = graph_.constant(1);
+        bool const at_step = !term.numerator.empty() || !term.denominator.empty();
+        NodeId const value = at_step ? algebra.product(term) : term.data;
+        auto const [place, fresh] = place_of.try_emplace(value, 0);
+        if (fresh) {
+          if (at_step) {
+            int const accumulator = program_.registers.accumulators++;
+            place->second = graph_.leaf(LeafKind::unknown, accumulator_leaf + accumulator);
+            goals.push_back(
+                {algebra.sum({algebra.single(place->second), term}), accumulator_bank + static_cast<std::uint32_t>(accumulator)});
+          } else if (graph_.is_constant(value, 1)) {
+            place->second = epilogue_uniform(channel);
+          } else {
+            place->second = epilogue_uniform(static_cast<int>(program_.source.channels.size()) + data_sums_++);
+            data_terms.push_back(value);
+          }
+        }
+        terms.push_back({factor, place->second});
+      }
+      sums_.push_back(std::move(terms));
+    }
+    program_.observe.push_back(section(goals));
+    program_.data_sums.push_back(table(data_terms));
+  }
+
+  void compile_records() {
+    std::vector<NodeId> const& records = program_.source.records;
+    Algebra algebra(graph_, records);
+    std::vector<Goal> goals;
+    for (std::size_t i = 0; i < records.size(); ++i)
+      goals.push_back({algebra.rewrite(records[i]), record_bank + static_cast<std::uint32_t>(i)});
+    program_.registers.records = static_cast<int>(records.size());
+    program_.record = section(goals);
+  }
+
+  void compile_epilogue() {
+    std::vector<Goal> goals;
+    for (std::vector<SumTerm> const& terms : sums_) {
+      NodeId sum = graph_.constant(0);
+      for (SumTerm const& term : terms) {
+        sum = graph_.is_constant(term.factor, 1) ? graph_.add(sum, term.term)
+              : graph_.is_constant(sum, 0)       ? graph_.multiply(term.factor, term.term)
+                                                 : graph_.fused(term.factor, term.term, sum);
+      }
+      goals.push_back({sum, sum_bank + static_cast<std::uint32_t>(goals.size())});
+    }
+    program_.registers.sums = static_cast<int>(goals.size());
+    program_.epilogue = section(goals);
+  }
+
+  void compile_start() {
+    std::vector<NodeId> const initial = expand_powers(graph_, program_.source.initial);
+    std::vector<Goal> goals;
+    for (std::size_t i = 0; i < initial.size(); ++i) goals.push_back({initial[i], state_bank + static_cast<std::uint32_t>(i)});
+    hoisting_ = false;
+    program_.start = section(goals);
+  }
+
+  void compile_prologue() {
+    std::vector<NodeId> const values = expand_powers(graph_, hoisted_);
+    std::vector<Goal> goals;
+    for (std::size_t i = 0; i < values.size(); ++i) goals.push_back({values[i], hoisted_bank + static_cast<std::uint32_t>(i)});
+    hoisted_rows_.clear();  // they are what is computed here
+    program_.registers.hoisted = static_cast<int>(hoisted_.size());
+    program_.prologue = section(goals);
+  }
+
+  NodeId epilogue_uniform(int position) { return graph_.leaf(LeafKind::unknown, epilogue_uniform_leaf + position); }
+
+  // --- one section ---
+
+  Section section(std::vector<Goal> const& goals) {
+    BindingTimes binding(graph_);
+    std::vector<NodeId> row;
+    Locate const locate = [&](NodeId id) -> std::optional<Operand> {
+      Node const& node = graph_[id];
+      if (node.operation == Operation::constant) return Operand{OperandPlace::uniform, constant_bank + constant(node.value)};
+      if (node.operation == Operation::leaf) {
+        auto const index = static_cast<std::uint32_t>(node.index);
+        if (node.leaf_kind == LeafKind::parameter) return Operand{OperandPlace::lane, parameter_bank + index};
+        if (node.leaf_kind == LeafKind::state) return Operand{OperandPlace::lane, state_bank + index};
+        if (node.leaf_kind == LeafKind::unknown && node.index >= epilogue_uniform_leaf)
+          return Operand{OperandPlace::uniform, row_bank + index - epilogue_uniform_leaf};
+        if (node.leaf_kind == LeafKind::unknown && node.index >= accumulator_leaf)
+          return Operand{OperandPlace::lane, accumulator_bank + index - accumulator_leaf};
+      }
+      Binding const when = binding(id);
+      if (when == Binding::data) {
+        row.push_back(id);
+        return Operand{OperandPlace::uniform, row_bank + static_cast<std::uint32_t>(row.size() - 1)};
+      }
+      if (when == Binding::parameter) {
+        if (auto const found = hoisted_rows_.find(id); found != hoisted_rows_.end())
+          return Operand{OperandPlace::lane, hoisted_bank + found->second};
+        if (!hoisting_) return std::nullopt;
+        auto const index = static_cast<std::uint32_t>(hoisted_.size());
+        hoisted_rows_.emplace(id, index);
+        hoisted_.push_back(id);
+        return Operand{OperandPlace::lane, hoisted_bank + index};
+      }
+      return std::nullopt;
+    };
+    Emitted emitted = emit(graph_, goals, locate, temporary_bank);
+    program_.registers.temporaries = std::max(program_.registers.temporaries, emitted.temporaries);
+    Section result;
+    result.code = std::move(emitted.code);
+    result.uniforms = table(row);
+    return result;
+  }
+
+  UniformTable table(std::vector<NodeId> const& values) {
+    UniformTable result;
+    std::vector<NodeId> leaves;
+    for (NodeId const id : graph_.reachable(values)) {
+      Node const& node = graph_[id];
+      if (node.operation != Operation::leaf) continue;
+      leaves.push_back(id);
+      result.leaves.push_back({node.leaf_kind, node.index, node.stage});
+    }
+    result.kernel = compile_kernel(graph_, leaves, values);
+    widest_row_ = std::max(widest_row_, result.kernel.outputs);
+    return result;
+  }
+
+  std::uint32_t constant(double value) {
+    auto const [found, fresh] =
+        constants_.try_emplace(std::bit_cast<std::uint64_t>(value), static_cast<std::uint32_t>(program_.constants.size()));
+    if (fresh) program_.constants.push_back(value);
+    return found->second;
+  }
+
+  // --- final numbers ---
+
+  void number() {
+    widest_row_ = std::max(widest_row_, static_cast<int>(program_.source.channels.size()) + data_sums_);
+    program_.uniforms = static_cast<int>(program_.constants.size()) + widest_row_;
+    std::set<std::uint32_t> hot;
+    std::vector<Section*> sections{&program_.prologue, &program_.start, &program_.step, &program_.record, &program_.epilogue};
+    for (Section& observe : program_.observe) sections.push_back(&observe);
+    for (Section* section : sections) {
+      for (Instruction& instruction : section->code) {
+        if (instruction.store) instruction.target = numbered(instruction.target);
+        for (Operand* operand : {&instruction.a, &instruction.b, &instruction.c})
+          if (operand->place == OperandPlace::lane || operand->place == OperandPlace::uniform)
+            operand->index = numbered(operand->index);
+      }
+      section->linked = link(section->code, program_.uniforms);
+    }
+    auto const touch = [&hot](Code const& code) {
+      for (Instruction const& instruction : code) {
+        if (instruction.store) hot.insert(instruction.target);
+        for (Operand const& operand : {instruction.a, instruction.b, instruction.c})
+          if (operand.place == OperandPlace::lane) hot.insert(operand.index);
+      }
+    };
+    touch(program_.step.code);
+    for (Section const& observe : program_.observe) touch(observe.code);
+    program_.hot_registers = static_cast<int>(hot.size());
+  }
+
+  std::uint32_t numbered(std::uint32_t index) const {
+    RegisterLayout const& layout = program_.registers;
+    int first = 0;
+    switch (bank_of(index)) {
+      case parameter_bank:
+        first = 0;
+        break;
+      case hoisted_bank:
+        first = layout.first_hoisted();
+        break;
+      case state_bank:
+        first = layout.first_state();
+        break;
+      case accumulator_bank:
+        first = layout.first_accumulator();
+        break;
+      case record_bank:
+        first = layout.first_record();
+        break;
+      case sum_bank:
+        first = layout.first_sum();
+        break;
+      case temporary_bank:
+        first = layout.first_temporary();
+        break;
+      case constant_bank:
+        first = 0;
+        break;
+      case row_bank:
+        first = static_cast<int>(program_.constants.size());
+        break;
+    }
+    return static_cast<std::uint32_t>(first) + position_of(index);
+  }
+
+  SimulationProgram program_;
+  Graph graph_;                  // grows by algebra
+  std::vector<NodeId> hoisted_;  // values of the prologue
+  std::map<NodeId, std::uint32_t> hoisted_rows_;
+  bool hoisting_ = true;
+  std::map<std::uint64_t, std::uint32_t> constants_;
+  std::vector<std::vector<SumTerm>> sums_;  // of all channels
+  int data_sums_ = 0;
+  int widest_row_ = 0;
+};
+
+}  // namespace
+
+int SimulationProgram::sum_count() const { return registers.sums; }
+
+int SimulationProgram::sum_row(int channel, int k) const {
+  int row = k;
+  for (int c = 0; c < channel; ++c) row += static_cast<int>(source.channels[static_cast<std::size_t>(c)].sums.size());
+  return row;
+}
+
+SimulationProgram compile(SimulationSource source) { return Compilation(std::move(source)).compile(); }
+
+}  // namespace sysid

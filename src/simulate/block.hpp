@@ -1,0 +1,54 @@
+// One block of lanes on its way through the schedule. State and accumulators stay in its register file between calls, so a run may
+// stop anywhere, be looked at, lose its dead lanes and go on.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "core/lanes.hpp"
+#include "program/interpreter/executor.hpp"
+#include "program/simulation_program.hpp"
+#include "simulate/schedule.hpp"
+
+namespace sysid {
+
+class Block {
+ public:
+  /// lanes <= executor.width; what the executor has more computes copies of the last lane.
+  Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes);
+
+  /// Takes parameters [parameters x lanes] and computes what hangs on them; then the initial states, with empty accumulators.
+  void set_parameters(ConstLanes parameters);
+  void start();
+  /// From `sample` to the next one.
+  void step(int sample);
+  /// Adds the sample to the accumulators of the channels it is summed in.
+  void observe(int sample);
+  /// Computes the records of the sample; read them with `records`.
+  void record(int sample);
+  /// Computes the sums from the accumulators; read them with `sums`.
+  void finish();
+
+  /// Notes which lanes have a state that is not finite; they go on as copies of a live one. Returns whether any lane lives.
+  bool bury(int sample);
+
+  ConstLanes states() const { return rows(program_.registers.first_state(), program_.registers.states); }
+  ConstLanes records() const { return rows(program_.registers.first_record(), program_.registers.records); }
+  ConstLanes sums() const { return rows(program_.registers.first_sum(), program_.registers.sums); }
+  /// The sample at which a lane was found dead; -1: it lives.
+  std::vector<int> const& death() const { return death_; }
+
+ private:
+  ConstLanes rows(int first, int count) const { return {rows_ + first * executor_.width, count, lanes_, executor_.width}; }
+  void load_row(double const* row, int width);
+
+  SimulationProgram const& program_;
+  Schedule const& schedule_;
+  Executor executor_;
+  int lanes_;
+  LaneArray file_;
+  double* row_;   // uniforms of the running section, after the constants
+  double* rows_;  // registers
+  std::vector<int> death_;
+};
+
+}  // namespace sysid

@@ -1,0 +1,112 @@
+// Where a failed solve broke: the step is run again in one lane, as written, and the first sub-expression that is not finite is
+// named.
+#include <cmath>
+
+#include "program/kernel.hpp"
+#include "simulate/simulator.hpp"
+
+namespace sysid {
+namespace {
+
+/// The first node below the roots that is not finite, in evaluation order; values of leaves from `value_of`.
+std::optional<NodeId> first_not_finite(Graph const& graph, std::span<NodeId const> roots,
+                                       std::function<double(NodeId)> const& value_of) {
+  std::vector<NodeId> const nodes = graph.reachable(roots);
+  std::vector<double> const values = graph.evaluate(nodes, value_of);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (!std::isfinite(values[i]) && graph[nodes[i]].operation != Operation::constant) return nodes[i];
+  return std::nullopt;
+}
+
+std::optional<std::size_t> not_finite(std::vector<double> const& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i])) return i;
+  return std::nullopt;
+}
+
+/// One lane of one simulation.
+class Solve {
+ public:
+  Solve(SimulationProgram const& program, Schedule const& schedule, std::span<double const> parameters)
+      : program_(program), schedule_(schedule), parameters_(parameters) {
+    for (NodeId const id : program.graph.reachable(program.next))
+      if (program.graph[id].operation == Operation::leaf) leaves_.push_back(id);
+    next_ = compile_kernel(program.graph, leaves_, program.next);
+  }
+
+  std::optional<Diagnosis> run() {
+    Graph const& graph = program_.source.graph;
+    std::vector<NodeId> const& initial = program_.source.initial;
+    auto const parameter = [&](NodeId id) { return parameters_[static_cast<std::size_t>(graph[id].index)]; };
+    if (auto const node = first_not_finite(graph, initial, parameter)) return Diagnosis{*node, schedule_.time(0), 0};
+    states_ = graph.evaluate(initial, parameter);
+    for (int sample = 0; sample < schedule_.last_summed(); ++sample) {
+      if (auto const node = look_at_sums(sample)) return Diagnosis{*node, schedule_.time(sample), sample};
+      for (int substep = 0; substep < schedule_.substeps() && sample + 1 < schedule_.last_summed(); ++substep)
+        if (auto const found = step(sample, substep)) return found;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  double leaf(Node const& node, int sample, int substep, std::vector<double> const& states) const {
+    if (node.leaf_kind == LeafKind::parameter) return parameters_[static_cast<std::size_t>(node.index)];
+    if (node.leaf_kind == LeafKind::state) return states[static_cast<std::size_t>(node.index)];
+    UniformLeaf const uniform{node.leaf_kind, node.index, node.stage};
+    return substep < 0 ? schedule_.at_sample(uniform, sample) : schedule_.at_step(uniform, sample, substep);
+  }
+
+  std::optional<NodeId> look_at_sums(int sample) const {
+    Graph const& graph = program_.source.graph;
+    for (std::size_t c = 0; c < program_.source.channels.size(); ++c) {
+      if (!schedule_.summed(static_cast<int>(c), sample)) continue;
+      auto const value_of = [&](NodeId id) { return leaf(graph[id], sample, -1, states_); };
+      if (auto const node = first_not_finite(graph, program_.source.channels[c].sums, value_of)) return node;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Diagnosis> step(int sample, int substep) {
+    std::vector<double> inputs, next(states_.size());
+    for (NodeId const id : leaves_) inputs.push_back(leaf(program_.graph[id], sample, substep, states_));
+    run_scalar(next_, inputs, next);
+    if (std::optional<std::size_t> const state = not_finite(next)) return look_into(sample, substep, *state);
+    states_ = std::move(next);
+    return std::nullopt;
+  }
+
+  /// The evaluations of the derivative within the step that made `failed` not finite.
+  Diagnosis look_into(int sample, int substep, std::size_t failed) const {
+    Graph const& graph = program_.source.graph;
+    auto const at = [&](Stage stage, NodeId node) {
+      return Diagnosis{node, schedule_.at_step({LeafKind::time, 0, stage}, sample, substep), sample};
+    };
+    for (StageVisit const& visit : program_.visited) {
+      std::vector<double> const states =
+          program_.graph.evaluate(visit.states, [&](NodeId id) { return leaf(program_.graph[id], sample, substep, states_); });
+      if (std::optional<std::size_t> const state = not_finite(states)) return at(visit.stage, program_.source.derivative[*state]);
+      auto const value_of = [&](NodeId id) {
+        Node node = graph[id];
+        node.stage = visit.stage;
+        return leaf(node, sample, substep, states);
+      };
+      if (auto const node = first_not_finite(graph, program_.source.derivative, value_of)) return at(visit.stage, *node);
+    }
+    return at(Stage::end, program_.source.derivative[failed]);
+  }
+
+  SimulationProgram const& program_;
+  Schedule const& schedule_;
+  std::span<double const> parameters_;
+  std::vector<NodeId> leaves_;
+  Kernel next_;
+  std::vector<double> states_;
+};
+
+}  // namespace
+
+std::optional<Diagnosis> Simulator::diagnose(std::span<double const> parameters) const {
+  return Solve(*program_, schedule_, parameters).run();
+}
+
+}  // namespace sysid

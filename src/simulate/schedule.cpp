@@ -1,0 +1,102 @@
+// Tables of uniforms: raw data leaves in, one row per step or sample out, by the same kernels that serve lanes.
+#include "simulate/schedule.hpp"
+
+#include <cmath>
+
+#include "core/diagnostic.hpp"
+#include "core/lanes.hpp"
+
+namespace sysid {
+
+Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, int substeps)
+    : experiment_(experiment), substeps_(substeps) {
+  std::size_t const channels = program.source.channels.size();
+  if (substeps < 1 || static_cast<int>(experiment.inputs.size()) < program.source.inputs || experiment.measured.size() < channels)
+    throw InternalError("the experiment does not fit the program");
+
+  for (std::size_t c = 0; c < channels; ++c) {
+    std::vector<double> const& measured = experiment.measured[c];
+    std::vector<std::uint8_t> summed(experiment.time.size());
+    int count = 0;
+    for (std::size_t i = 0; i < summed.size(); ++i) {
+      summed[i] = !measured.empty() && experiment.scored[i] != 0 && !std::isnan(measured[i]);
+      if (summed[i] == 0) continue;
+      ++count;
+      last_summed_ = std::max(last_summed_, static_cast<int>(i) + 1);
+    }
+    summed_.push_back(std::move(summed));
+    counts_.push_back(count);
+  }
+
+  steps_ = tabulate(program.step.uniforms, (samples() - 1) * substeps, true);
+  records_ = tabulate(program.record.uniforms, samples(), false);
+  for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
+
+  for (int const count : counts_) epilogue_.push_back(count);
+  for (std::size_t c = 0; c < channels; ++c) {
+    UniformRows const terms = tabulate(program.data_sums[c], samples(), false);
+    std::vector<double> sums(static_cast<std::size_t>(terms.width));
+    for (int i = 0; i < samples(); ++i)
+      for (std::size_t k = 0; k < sums.size() && summed(static_cast<int>(c), i); ++k) sums[k] += terms.row(i)[k];
+    epilogue_.insert(epilogue_.end(), sums.begin(), sums.end());
+  }
+}
+
+bool Schedule::summed(int channel, int sample) const {
+  return summed_[static_cast<std::size_t>(channel)][static_cast<std::size_t>(sample)] != 0;
+}
+
+int Schedule::count(int channel) const { return counts_[static_cast<std::size_t>(channel)]; }
+
+double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const {
+  double const place = leaf.stage == Stage::begin ? 0 : leaf.stage == Stage::middle ? 0.5 : 1;
+  double const s = (substep + place) / substeps_;
+  double const interval = time(sample + 1) - time(sample);
+  switch (leaf.kind) {
+    case LeafKind::input:
+      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].value(sample, s);
+    case LeafKind::input_rate:
+      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].rate(sample, s);
+    case LeafKind::time:
+      return time(sample) + s * interval;
+    case LeafKind::step_size:
+      return interval / substeps_;
+    default:
+      throw InternalError("a step reads what only a sample has");
+  }
+}
+
+double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
+  bool const last = sample + 1 == samples();
+  switch (leaf.kind) {
+    case LeafKind::input:
+      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].sample(sample);
+    case LeafKind::input_rate:
+      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].rate(last ? sample - 1 : sample, last ? 1 : 0);
+    case LeafKind::time:
+      return time(sample);
+    case LeafKind::measured: {
+      std::vector<double> const& measured = experiment_.measured[static_cast<std::size_t>(leaf.index)];
+      return measured.empty() ? std::nan("") : measured[static_cast<std::size_t>(sample)];
+    }
+    default:
+      throw InternalError("a sample reads what only a step has");
+  }
+}
+
+UniformRows Schedule::tabulate(UniformTable const& table, int rows, bool steps) const {
+  int const width = table.kernel.outputs;
+  UniformRows result{width, std::vector<double>(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))};
+  if (rows == 0 || width == 0) return result;
+  LaneArray leaves(table.kernel.inputs, rows), values(width, rows);
+  for (int k = 0; k < table.kernel.inputs; ++k) {
+    UniformLeaf const& leaf = table.leaves[static_cast<std::size_t>(k)];
+    for (int r = 0; r < rows; ++r) leaves(k, r) = steps ? at_step(leaf, r / substeps_, r % substeps_) : at_sample(leaf, r);
+  }
+  run(table.kernel, leaves, values);
+  for (int r = 0; r < rows; ++r)
+    for (int k = 0; k < width; ++k) result.values[static_cast<std::size_t>(r * width + k)] = values(k, r);
+  return result;
+}
+
+}  // namespace sysid

@@ -1,0 +1,81 @@
+// The two systems of the benchmarks with records and parameters, for the engine and for the hand-written loops.
+#pragma once
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "baseline.hpp"
+#include "core/elementary.hpp"
+#include "core/random.hpp"
+#include "simulate/simulator.hpp"
+#include "simulate/systems.hpp"
+
+namespace benchmark_cases {
+
+using namespace sysid;
+
+struct Case {
+  char const* name;
+  baseline::Record record;
+  std::shared_ptr<SimulationProgram const> program;
+  Experiment experiment;
+  std::vector<double> centre;  // parameters, spread by a few percent over lanes
+  double (*loop)(baseline::Record const&, std::vector<double> const&);
+
+  LaneArray parameters(int width) const {
+    LaneArray result(static_cast<int>(centre.size()), width);
+    for (int r = 0; r < result.rows(); ++r)
+      for (int w = 0; w < width; ++w) {
+        Stream stream(
+            {.seed = 3, .purpose = Purpose::test, .index = static_cast<std::uint64_t>(w), .step = static_cast<std::uint64_t>(r)});
+        result(r, w) = centre[static_cast<std::size_t>(r)] * (1 + 0.02 * stream.normal());
+      }
+    return result;
+  }
+};
+
+inline Experiment experiment_of(baseline::Record const& record) {
+  Experiment experiment;
+  for (std::size_t i = 0; i < record.input.size(); ++i) experiment.time.push_back(record.h * static_cast<double>(i));
+  experiment.inputs.emplace_back(InputRule::linear, experiment.time, record.input);
+  experiment.measured = {record.measured};
+  experiment.scored.assign(record.input.size(), 1);
+  return experiment;
+}
+
+/// 500 samples at 1 kHz under random force; one RK4 step per sample.
+inline Case duffing() {
+  baseline::Record record{0.001, {}, {}};
+  Stream stream({.seed = 1, .purpose = Purpose::input, .index = 0, .step = 0});
+  for (int i = 0; i < 500; ++i) {
+    record.input.push_back(10 * stream.normal());
+    record.measured.push_back(1e-5 * stream.normal());
+  }
+  Experiment experiment = experiment_of(record);
+  return {"Duffing, 500 samples",
+          std::move(record),
+          std::make_shared<SimulationProgram const>(compile(systems::duffing())),
+          std::move(experiment),
+          {1, 20, 1e4, 5e9, 1e10},
+          [](baseline::Record const& r, std::vector<double> const& p) { return baseline::duffing(r, p[0], p[1], p[2], p[3]); }};
+}
+
+/// 1001 samples of a sine; n = 2.
+inline Case bouc_wen() {
+  baseline::Record record{0.004, {}, {}};
+  Stream stream({.seed = 2, .purpose = Purpose::input, .index = 0, .step = 0});
+  for (int i = 0; i < 1001; ++i) {
+    record.input.push_back(120 * elementary::sin(2 * 3.14159265358979 * 0.004 * i));
+    record.measured.push_back(1e-4 * stream.normal());
+  }
+  Experiment experiment = experiment_of(record);
+  return {
+      "Bouc-Wen n = 2, 1001 samples",
+      std::move(record),
+      std::make_shared<SimulationProgram const>(compile(systems::bouc_wen(2))),
+      std::move(experiment),
+      {2, 10, 5e4, 0.8, -1.1},
+      [](baseline::Record const& r, std::vector<double> const& p) { return baseline::bouc_wen(r, p[0], p[1], p[2], p[3], p[4]); }};
+}
+
+}  // namespace benchmark_cases

@@ -1,0 +1,60 @@
+// Systems the tests and benchmarks simulate, as sources of programs.
+#pragma once
+#include "program/simulation_program.hpp"
+
+namespace sysid::systems {
+
+inline NodeId number(Graph& graph, double value) { return graph.constant(value); }
+
+/// log N(measured(channel) | location, precision)
+inline NodeId normal_log_density(Graph& g, int channel, NodeId location, NodeId precision) {
+  NodeId const residual = g.subtract(g.leaf(LeafKind::measured, channel), location);
+  NodeId const square = g.power(residual, g.constant(2));
+  NodeId const pi2 = g.constant(6.283185307179586);
+  NodeId const half = g.constant(0.5);
+  return g.subtract(g.multiply(half, g.call(log_function, g.divide(precision, pi2))),
+                    g.multiply(g.multiply(half, precision), square));
+}
+
+/// m y'' + c y' + k y + k3 y^3 = x; parameters m, c, k, k3, precision; sums: log density, squared residuals; records: y, y'.
+inline SimulationSource duffing() {
+  SimulationSource source;
+  Graph& g = source.graph;
+  auto const p = [&](int i) { return g.leaf(LeafKind::parameter, i); };
+  NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1), x = g.leaf(LeafKind::input, 0);
+  NodeId const cubic = g.multiply(p(3), g.power(y, g.constant(3)));
+  NodeId const resistance = g.add(g.add(g.multiply(p(1), v), g.multiply(p(2), y)), cubic);
+  source.parameters = 5;
+  source.inputs = 1;
+  source.initial = {g.constant(0), g.constant(0)};
+  source.derivative = {v, g.divide(g.subtract(x, resistance), p(0))};
+  NodeId const residual = g.subtract(g.leaf(LeafKind::measured, 0), y);
+  source.channels = {{{normal_log_density(g, 0, y, p(4)), g.power(residual, g.constant(2))}}};
+  source.records = {y, v};
+  return source;
+}
+
+/// m y'' + c y' + z = x,  z' = A y' - alpha |y'| |z|^(n-1) z - beta y' |z|^n; parameters m, c, A, alpha, beta and, when exponent is
+/// 0, n.
+inline SimulationSource bouc_wen(double exponent) {
+  SimulationSource source;
+  Graph& g = source.graph;
+  auto const p = [&](int i) { return g.leaf(LeafKind::parameter, i); };
+  NodeId const v = g.leaf(LeafKind::state, 1), z = g.leaf(LeafKind::state, 2), x = g.leaf(LeafKind::input, 0);
+  NodeId const y = g.leaf(LeafKind::state, 0);
+  NodeId const n = exponent == 0 ? p(5) : g.constant(exponent);
+  NodeId const abs_z = g.unary(Operation::absolute, z), abs_v = g.unary(Operation::absolute, v);
+  NodeId const first = g.multiply(g.multiply(g.multiply(p(3), abs_v), g.power(abs_z, g.subtract(n, g.constant(1)))), z);
+  NodeId const second = g.multiply(g.multiply(p(4), v), g.power(abs_z, n));
+  source.parameters = exponent == 0 ? 6 : 5;
+  source.inputs = 1;
+  source.initial = {g.constant(0), g.constant(0), g.constant(0)};
+  source.derivative = {v, g.divide(g.subtract(g.subtract(x, g.multiply(p(1), v)), z), p(0)),
+                       g.subtract(g.subtract(g.multiply(p(2), v), first), second)};
+  NodeId const residual = g.subtract(g.leaf(LeafKind::measured, 0), y);
+  source.channels = {{{g.power(residual, g.constant(2))}}};
+  source.records = {y, v, z};
+  return source;
+}
+
+}  // namespace sysid::systems
