@@ -64,11 +64,12 @@ Diagnostic mismatched(Token const& opener, Token const& closing) {
 }
 
 Diagnostic no_operator_between(Token const& left, Token const& right) {
-  bool const simple = left.kind != TokenKind::symbol && right.kind != TokenKind::symbol;
-  std::string const product = simple ? fmt::format(": `{}*{}`", left.text, right.text) : "";
-  return error("E1105", cover(left.span, right.span),
-               fmt::format("there is no operator between `{}` and `{}`", left.text, right.text),
-               fmt::format("multiplication is written with `*`{}", product));
+  std::string help = "multiplication is written with `*`";
+  if (left.kind != TokenKind::symbol && right.kind != TokenKind::symbol) help += fmt::format(": `{}*{}`", left.text, right.text);
+  if (left.kind == TokenKind::word && right.kind == TokenKind::word && !left.text.ends_with('\''))
+    help += fmt::format("; if `{0}` is a function, write `{0}({1})`", left.text, right.text);
+  return error("E1105", cover(left.span, right.span), fmt::format("there is no operator between `{}` and `{}`", left.text, right.text),
+               std::move(help));
 }
 
 Diagnostic chained_comparison(Token const& first, Token const& second) {

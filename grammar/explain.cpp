@@ -110,6 +110,7 @@ class Failure {
     if (is_reserved(found()) && wants_name) return errors::reserved_word(found());
     if (is_symbol(found(), comparisons)) return at_comparison();
     if (wanted_ == wanted::operator_between && previous() != nullptr) return side_by_side();
+    if (found().is("=") && wanted_ == wanted::end_of_statement) return second_equals();
     if (begins_with("observe") && wanted_ == wanted::tilde) return errors::tilde_missing(span(), "observe");
     if (begins_with("parameter") && wanted_ == wanted::end_of_statement && is_word(found()) && value_before)
       return errors::tilde_missing(span(), "parameter");
@@ -118,8 +119,18 @@ class Failure {
     if ((found().is("+") || found().is("-")) && wanted_ == wanted::model_statement) return errors::begins_with_sign(found());
     if (!is_word(found())) return std::nullopt;
     if (wanted_ == wanted::data_statement) return errors::unknown_statement(found(), "a data block", words::data_statements);
+    if (wanted_ == wanted::item && words::contains(words::items, found().text) && next() != nullptr)
+      return errors::expected(next()->span, wanted::name, fmt::format("`{}`", next()->text));
     if (wanted_ == wanted::item) return errors::unknown_item(found());
     if (wanted_ == wanted::verb) return errors::unknown_verb(found());
+    return std::nullopt;
+  }
+
+  /// `k*y =` and on the next line `m*y'' = x`: one statement with two `=`.
+  std::optional<Diagnostic> second_equals() const {
+    for (std::size_t i = found_; i-- > first_;)
+      if (tokens_[i + 1].newline_before && is_symbol(tokens_[i], unfinished))
+        return errors::statement_incomplete(tokens_[i], tokens_[i + 1]);
     return std::nullopt;
   }
 

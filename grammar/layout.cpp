@@ -75,7 +75,7 @@ class LayoutPass {
     }
     close_unclosed(tokens_.size());
     if (!open_.empty()) unclosed_block(open_.back(), tokens_.size());
-    // From +1 behind an opener and -1 at its closer to the number of brackets around each token.
+    // inside_[i] counts the brackets around the gap before token i.
     for (std::size_t i = 1; i < inside_.size(); ++i) inside_[i] += inside_[i - 1];
   }
 
@@ -89,6 +89,10 @@ class LayoutPass {
     Token const& token = tokens_[i];
     if (is_opener(i)) {
       open_.push_back(i);
+    } else if ((token.is("~") || token.is("=") || token.is(",")) && !open_.empty() && tokens_[open_.back()].is("[")) {
+      // None of these stands in a unit.
+      mistake(open_.back(), errors::unclosed(tokens_[open_.back()], token.span));
+      open_.pop_back();
     } else if (token.is("{")) {
       close_unclosed(i);
       // Blocks do not nest: a block that begins while another is open means that the other was never closed.
@@ -107,7 +111,7 @@ class LayoutPass {
       open_.pop_back();
       if (closer_of(tokens_[opener].text[0]) != token.text[0]) mistake(i, errors::mismatched(tokens_[opener], token));
       ++inside_[opener + 1];
-      --inside_[i];
+      --inside_[i + 1];
     }
   }
 
@@ -117,8 +121,10 @@ class LayoutPass {
       return true;
     return !in_block && (token.is("with") || words::contains(words::prepositions, token.text));
   }
-  bool continues_before(Token const& token, bool in_block) const {
-    return is_binary_operator(token) || token.is("then") || token.is("else") || (!in_block && token.is("with"));
+  bool continues_before(std::size_t i, bool in_block) const {
+    Token const& token = tokens_[i];
+    bool const names_task = i + 1 < tokens_.size() && tokens_[i + 1].is("=");
+    return is_binary_operator(token) || token.is("then") || token.is("else") || (!in_block && token.is("with") && !names_task);
   }
 
   void decide_newlines() {
@@ -135,8 +141,8 @@ class LayoutPass {
       bool const both = i > 0 && i < tokens_.size();
       bool const separator = both && tokens_[i - 1].kind == TokenKind::symbol &&
                              std::string_view(";{}").find(tokens_[i - 1].text) != std::string_view::npos;
-      bool const joined = both && !separator &&
-                          (inside_[i] > 0 || continues_after(tokens_[i - 1], in_block) || continues_before(tokens_[i], in_block));
+      bool const joined = both && !separator && !tokens_[i].is("}") &&
+                          (inside_[i] > 0 || continues_after(tokens_[i - 1], in_block) || continues_before(i, in_block));
       // Between tokens stand blanks and newlines only, once comments are gone.
       for (std::uint32_t at = end; at < begin; ++at)
         if (out_.text[at] != '\n' || joined) out_.text[at] = ' ';

@@ -10,14 +10,18 @@ struct verb_tag {};
 struct preposition_tag {};
 struct data_reference_tag {};
 struct option_tag {};
-struct data_word_tag {};
-struct end_of_task_tag {};
+struct settings_tag {};
+struct preposition_or_end_tag {};
+struct with_or_end_tag {};
 
 constexpr x3::rule<verb_tag, ast::Name> verb = wanted::verb;
 constexpr x3::rule<preposition_tag, ast::Name> preposition = "`to`, `on` or `from`";
 constexpr x3::rule<data_reference_tag, ast::DataReference> data_reference = "the name of a data block";
 constexpr x3::rule<option_tag, ast::Option> option = "an option";
-constexpr x3::rule<end_of_task_tag> end_of_task = wanted::end_of_task;
+/// `with` and what follows; its own list, since an alternative does not roll a container back.
+constexpr x3::rule<settings_tag, std::vector<ast::Option>> settings = "`with`";
+constexpr x3::rule<preposition_or_end_tag> preposition_or_end = wanted::preposition_or_end;
+constexpr x3::rule<with_or_end_tag> with_or_end = wanted::with_or_end;
 
 template <auto const& Table>
 constexpr auto take_one_of = [](auto& context) {
@@ -25,18 +29,23 @@ constexpr auto take_one_of = [](auto& context) {
   x3::_val(context) = std::move(x3::_attr(context));
 };
 
+constexpr auto push = [](auto& context) { x3::_val(context).push_back(std::move(x3::_attr(context))); };
+
 auto const task_def =
     located[(((name >> equals)[to(&ast::Task::name)] > verb[to(&ast::Task::verb)]) | verb[to(&ast::Task::verb)]) >
-            name[to(&ast::Task::subject)] > -(preposition[to(&ast::Task::preposition)] > data_reference[to(&ast::Task::data)]) >
-            -(word("with") > option[append(&ast::Task::options)] > *(',' > option[append(&ast::Task::options)])) > end_of_task];
+            name[to(&ast::Task::subject)] > ((preposition[to(&ast::Task::preposition)] > data_reference[to(&ast::Task::data)] >
+                                              (settings[to(&ast::Task::options)] | x3::expect[with_or_end])) |
+                                             settings[to(&ast::Task::options)] | x3::expect[preposition_or_end])];
+auto const settings_def = word("with") > option[push] > *(',' > option[push]);
 auto const verb_def = located[name[take_one_of<words::verbs>]];
 auto const preposition_def = located[name[take_one_of<words::prepositions>]];
 auto const data_reference_def = located[name[to(&ast::DataReference::data)] >> -('.' > name[to(&ast::DataReference::part)])];
 auto const option_def = located[((word("input") >> &name)[set(&ast::Option::input, true)] > name[to(&ast::Option::key)] > equals >
                                  expression[to(&ast::Option::value)]) |
                                 (-(name >> equals)[to(&ast::Option::key)] >> expression[to(&ast::Option::value)])];
-auto const end_of_task_def = &end_of_statement;
+auto const preposition_or_end_def = &end_of_statement;
+auto const with_or_end_def = &end_of_statement;
 
-BOOST_SPIRIT_DEFINE(task, verb, preposition, data_reference, option, end_of_task)
+BOOST_SPIRIT_DEFINE(task, verb, preposition, data_reference, option, settings, preposition_or_end, with_or_end)
 
 }  // namespace sysid::grammar

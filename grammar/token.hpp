@@ -47,6 +47,8 @@ inline auto word(char const* spelling) { return x3::lexeme[x3::lit(spelling) >> 
 
 /// A word that begins a declaration: what follows cannot continue an expression, so `input x` declares and `input*x = 1` is an
 /// equation.
-inline auto keyword(char const* spelling) { return word(spelling) >> &(name | digit | '"' | end_of_statement); }
+inline auto keyword(char const* spelling) {
+  return word(spelling) >> &(name_begin | digit | '"' | end_of_statement) >> !(word("and") | word("or"));
+}
 
 }  // namespace sysid::grammar

@@ -1,0 +1,124 @@
+// Every message of the syntax stage: the bad examples of tests/golden/errors with what is shown for them.
+// SYSID_BLESS=1 in the environment rewrites the expected texts; review the difference.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "parsing.hpp"
+
+using namespace sysid;
+using test::messages;
+
+namespace {
+
+std::filesystem::path const examples = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/errors";
+
+std::string content(std::filesystem::path const& path) {
+  std::ifstream const in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+std::vector<std::filesystem::path> syntax_examples() {
+  std::vector<std::filesystem::path> out;
+  for (auto const& entry : std::filesystem::directory_iterator(examples))
+    if (entry.path().extension() == ".sysid" && entry.path().filename().string().starts_with("E1")) out.push_back(entry.path());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::size_t count(std::string const& text, std::string const& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("each bad example is answered by the expected messages") {
+  bool const bless = std::getenv("SYSID_BLESS") != nullptr;
+  for (std::filesystem::path const& path : syntax_examples()) {
+    Source const source(path.filename().string(), content(path));
+    Diagnostics diagnostics;
+    CAPTURE(path.string());
+    CHECK_FALSE(parse(source, diagnostics).has_value());
+    std::string const shown = render(diagnostics, source);
+    std::filesystem::path expected = path;
+    expected.replace_extension(".expected");
+    if (bless) std::ofstream(expected, std::ios::binary) << shown;
+    CHECK(shown == content(expected));
+  }
+}
+
+TEST_CASE("an example shows its own code first, and every code has an example") {
+  std::set<std::string> codes;
+  for (std::filesystem::path const& path : syntax_examples()) {
+    std::string const code = path.filename().string().substr(0, 5);
+    codes.insert(code);
+    if (code != "E11_s")
+      CHECK_MESSAGE(content(path.string().substr(0, path.string().size() - 6) + ".expected").find(code) != std::string::npos, path);
+  }
+  codes.insert("E1123");  // its example would hold thousands of operators; tested below
+  std::string const wording = content(std::filesystem::path(SYSID_SOURCE_DIR) / "grammar/errors.cpp");
+  for (std::size_t at = wording.find("\"E1"); at != std::string::npos; at = wording.find("\"E1", at + 1))
+    CHECK_MESSAGE(codes.contains(wording.substr(at + 1, 5)), wording.substr(at + 1, 5));
+}
+
+TEST_CASE("a statement of too many operators is refused in one message") {
+  std::string sum = "y";
+  for (int i = 0; i < 4001; ++i) sum += " + y";
+  std::string const shown = messages("model m {\n  state y\n  y' = " + sum + "\n  let a = 1\n}\n");
+  CHECK(shown.starts_with("test.sysid:3:3: error[E1123]: the statement that begins here has more than 4000 operators"));
+  CHECK(count(shown, "error[") == 1);
+}
+
+TEST_CASE("at most twenty errors are reported") {
+  std::string body;
+  for (int i = 0; i < 50; ++i) body += "  2 y = 3\n";
+  CHECK(count(messages("model m {\n" + body + "}\n"), "error[E1105]") == 20);
+  std::string stray;
+  for (int i = 0; i < 50; ++i) stray += "  y = $\n";
+  CHECK(count(messages("model m {\n" + stray + "}\n"), "error[E1115]") == 20);
+}
+
+TEST_CASE("one mistake gives one message") {
+  for (std::string const text : {
+           "model m {\n  y' = (1\n}\n",
+           "model m {\n  y' = 1)\n}\n",
+           "model m {\n  y' = [1\n  y = 3\n}\nfit m\n",
+           "model m {\n  y' = 1\n",
+           "model m \n  y' = 1\n  state y\n  parameter k ~ normal(0, 1)\n}\nfit m to d\n",
+           "model \"m\" {\n  y' = 1\n  state y\n}\nfit m to d\n",
+           "model m {\n  y' = 1\n}\n}\nfit m to d\n",
+           "model m {\n  candidates a {\n    b; c = 3\n    d\n  }\n  state y\n}\n",
+           "model m \"open {\n  y' = 1\n  state y\n}\nfit m to d\n",
+           "model m {\n  y' = $ + $ (\n  state y\n}\n",
+           "dictionary d {\n  input x\n  terms = a, b\n}\nfit m to d\n",
+           "model m {\n  y' = 3 +\n}\nfit m\n",
+           "data d {\n  file 'a.csv'\n  time t [s]\n}\n",
+           "p = fit m to d with mh(samples = 3\nq = fit m to d\n",
+       }) {
+    CAPTURE(text);
+    std::string const shown = messages(text);
+    CHECK_MESSAGE(count(shown, "error[") == 1, shown);
+  }
+}
+
+TEST_CASE("an expression alone reports what follows it") {
+  Source const source("--set", "1e4 [N/m] k");
+  Diagnostics diagnostics;
+  CHECK_FALSE(parse_expression(source, diagnostics).has_value());
+  CHECK(render(diagnostics, source) ==
+        "--set:1:9: error[E1105]: there is no operator between `]` and `k`\n"
+        "   1 | 1e4 [N/m] k\n"
+        "     |         ^^^\n"
+        "help: multiplication is written with `*`\n"
+        "more: sysid explain E1105\n");
+  Diagnostics empty;
+  CHECK_FALSE(parse_expression(Source("--set", ""), empty).has_value());
+  CHECK(empty.all().at(0).message == "expected a value but found the end of the file");
+}

@@ -1,0 +1,165 @@
+// Random trees: every node, every option, names that are words of the language among them.
+#include "random_tree.hpp"
+
+#include <array>
+
+#include "syntax/words.hpp"
+
+namespace sysid::test {
+
+namespace {
+
+// Without with, to, on, from: at the end of a line between blocks they would continue it.
+constexpr std::array names{"y",    "x",    "alpha", "k3",   "_",    "input", "state", "model",
+                           "data", "time", "fit",   "rows", "hold", "let",   "σ_ε",   "inf"};
+constexpr std::array units{"N", "m", "kg", "µm", "1", "%", "degC"};
+constexpr std::array texts{"", "duffing.csv", "two\nlines", "a \"quoted\" \\ word", "# no comment", "Größe × 2", "y", "if", "1st"};
+constexpr std::array symbols{"+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!=", "and", "or"};
+
+}  // namespace
+
+ast::Name RandomTree::name() { return {{}, random_.pick(names)}; }
+ast::Text RandomTree::text() { return {{}, random_.pick(texts)}; }
+
+double RandomTree::value() {
+  constexpr std::array values{0.0, 1.0, 2.5, 0.1, 1e-4, 1e300, 5e-324, 123456789.0, 1.0 / 3.0, 25000.0};
+  return random_.chance(4) ? static_cast<double>(random_.below(1U << 30U)) / 1024.0 * 1e-7 : random_.pick(values);
+}
+
+ast::Number RandomTree::number(int depth) {
+  ast::Number out{{}, value(), {}};
+  if (depth > 0 && random_.chance(3)) out.unit = unit(depth - 1);
+  return out;
+}
+
+ast::UnitExpression RandomTree::unit(int depth) {
+  if (random_.chance(8)) return {{}, {{{}, ast::Name{{}, "-"}, {}, false}}};
+  ast::UnitExpression out{
+      {}, several(1, [&] {
+        ast::UnitFactor factor{{}, ast::Name{{}, random_.pick(units)}, {}, random_.chance(2)};
+        if (depth > 0 && random_.chance(4)) {
+          ast::UnitExpression group = unit(depth - 1);
+          if (std::get_if<ast::Name>(&group.factors[0].base) == nullptr || std::get<ast::Name>(group.factors[0].base).text != "-")
+            factor.base = ast::Box(std::move(group));
+        }
+        if (random_.chance(3)) factor.exponent = ast::Box(expression(depth > 0 ? depth - 1 : 0));
+        return factor;
+      })};
+  out.factors[0].reciprocal = false;
+  return out;
+}
+
+ast::Call RandomTree::call(int depth) {
+  return {{}, name(), several(0, [&] { return ast::Argument{{}, perhaps([&] { return name(); }), expression(depth - 1)}; })};
+}
+
+ast::Expression RandomTree::expression(int depth) {
+  switch (depth <= 0 ? random_.below(3) : random_.below(12)) {
+    case 0:
+      return {{}, number(depth)};
+    case 1:
+      return {{}, reference()};
+    case 2:
+      return {{}, random_.chance(4) ? decltype(ast::Expression::node)(text()) : decltype(ast::Expression::node)(reference())};
+    case 3:
+      return {{}, ast::Box(ast::Unary{{}, random_.chance(3) ? "not" : "-", expression(depth - 1)})};
+    case 4:
+      return {{}, ast::Box(call(depth))};
+    case 5:
+      return {{}, ast::Box(ast::Conditional{{}, expression(depth - 1), expression(depth - 1), expression(depth - 1)})};
+    case 6:
+      return {{}, ast::Box(ast::List{{}, several(2, [&] { return expression(depth - 1); })})};
+    default:
+      return {{}, ast::Box(ast::Binary{{}, random_.pick(symbols), expression(depth - 1), expression(depth - 1)})};
+  }
+}
+
+ast::Declared RandomTree::declared() {
+  return {{}, name(), perhaps([&] { return unit(1); })};
+}
+ast::Column RandomTree::column() {
+  return {{}, random_.chance(2) ? name().text : text().value, perhaps([&] { return unit(1); })};
+}
+ast::FunctionDefinition RandomTree::function() {
+  return {{}, name(), several(0, [&] { return name(); }), expression(2)};
+}
+
+ast::ModelStatement RandomTree::model_statement() {
+  constexpr std::array kinds{ast::DefinitionKind::constant, ast::DefinitionKind::local, ast::DefinitionKind::derived};
+  switch (random_.below(9)) {
+    case 0:
+      return ast::TimeDeclaration{{}, declared()};
+    case 1:
+      return ast::InputDeclaration{{}, several(1, [&] { return declared(); })};
+    case 2:
+      return ast::StateDeclaration{{}, several(1, [&] { return declared(); })};
+    case 3:
+      return ast::InitialDeclaration{{}, several(1, [&] { return ast::InitialValue{{}, reference(), expression(2)}; })};
+    case 4: {
+      ast::ParameterDeclaration out{{}, declared(), {}, {}};
+      if (random_.chance(2))
+        out.prior = call(2);
+      else
+        out.value = perhaps([&] { return expression(2); });
+      return out;
+    }
+    case 5:
+      return ast::Definition{{}, random_.pick(kinds), declared(), expression(3)};
+    case 6:
+      return function();
+    case 7:
+      return ast::Observation{{}, declared(), call(2)};
+    default:
+      return ast::Equation{{}, expression(4), expression(3)};
+  }
+}
+
+ast::DataStatement RandomTree::data_statement() {
+  switch (random_.below(6)) {
+    case 0:
+      return ast::DataFile{{}, text()};
+    case 1:
+      return ast::DataTime{{}, column()};
+    case 2:
+      return ast::DataRate{{}, random_.chance(2), expression(2)};
+    case 3:
+      return ast::DataInput{{}, name(), column(), perhaps([&] { return name(); })};
+    case 4:
+      return ast::DataMeasure{{}, name(), column()};
+    default:
+      return ast::DataSplit{{}, several(1, [&] { return ast::SplitPart{{}, name(), expression(1), expression(1)}; })};
+  }
+}
+
+ast::Task RandomTree::task() {
+  ast::Task out{{}, perhaps([&] { return name(); }), {{}, std::string(random_.pick(words::verbs))}, name(), {}, {}, {}};
+  if (random_.chance(2)) {
+    out.preposition = ast::Name{{}, std::string(random_.pick(words::prepositions))};
+    out.data = ast::DataReference{{}, name(), perhaps([&] { return name(); })};
+  }
+  out.options = several(0, [&] {
+    ast::Option option{{}, random_.chance(3), perhaps([&] { return name(); }), expression(2)};
+    if (option.input && !option.key) option.key = name();
+    return option;
+  });
+  return out;
+}
+
+ast::File RandomTree::file() {
+  ast::File out;
+  out.items = several(0, [&]() -> ast::Item {
+    switch (random_.below(4)) {
+      case 0:
+        return ast::Data{{}, name(), several(0, [&] { return data_statement(); })};
+      case 1:
+        return function();
+      case 2:
+        return task();
+      default:
+        return ast::Model{{}, name(), perhaps([&] { return text(); }), several(0, [&] { return model_statement(); })};
+    }
+  });
+  return out;
+}
+
+}  // namespace sysid::test
