@@ -45,16 +45,14 @@ struct DistributionRow {
   /// Natural bounds of the support; nullptr: infinite on that side.
   NodeId (*lower)(Graph&, std::span<NodeId const> arguments);
   NodeId (*upper)(Graph&, std::span<NodeId const> arguments);
-  /// The value of x at which a noise density is largest as a function of its location: where residuals vanish. nullptr unless
-  /// noise.
+  /// The x at which a noise density is largest as a function of its location: where residuals vanish. nullptr unless noise.
   NodeId (*centre)(Graph&, std::span<NodeId const> arguments);
   /// The largest log density that any location gives to x, all else equal: log p(x | location = x, ...). Untruncated,
   /// saturated - log_density is never negative: half the squared deviance residual of x. nullptr unless noise.
   NodeId (*saturated)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// One draw, untruncated; nullptr when improper.
   double (*draw)(Stream&, std::span<double const> arguments);
-  /// Inverse of `cumulative` (tail lower) and of `survival` (tail upper), for draws from a narrow truncation; nullptr only when
-  /// improper.
+  /// Inverse of `cumulative` (tail lower) or `survival` (upper), for draws from narrow truncations; nullptr only when improper.
   double (*quantile)(double probability, Tail tail, std::span<double const> arguments);
   /// Whether numeric arguments are admissible (sd > 0, lower < upper); returns the reason when not, else empty.
   std::string_view (*refuse)(std::span<double const> arguments);
@@ -91,8 +89,7 @@ struct Coordinate {
   NodeId value;
   NodeId log_jacobian;
 };
-/// No overflow and no cancellation for |u| up to 700; strictly inside the bounds unless the distance to a bound is below its
-/// rounding.
+/// No overflow and no cancellation for |u| up to 700; strictly inside the bounds unless closer to a bound than its rounding.
 Coordinate constrain(Graph& graph, Support const& support, NodeId u);
 /// The inverse of `constrain`.
 NodeId unconstrain(Graph& graph, Support const& support, NodeId x);

@@ -15,8 +15,7 @@ Term constant(Term s) { return -half_log_two_pi - log(s); }
 ///   log p = -1/2 log(2 pi) - log sd - 1/2 ((x - mean)/sd)^2,   precision = 1/variance = 1/sd^2          Bishop 2006,
 ///   eq. 1.46, 1.48
 ///
-/// x, mean, sd: unit u; variance: u^2; precision: u^-2; sd > 0. Written so that all but (x - mean)^2 is work per parameter, not per
-/// sample.
+/// x, mean, sd: unit u; variance: u^2; precision: u^-2; sd > 0. All but (x - mean)^2 is work per parameter, not per sample.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const r = Term(graph, x) - Term(graph, a[0]), s(graph, a[1]);
   return (constant(s) - r * r * (0.5 / (s * s))).id;

@@ -50,8 +50,7 @@ inline double standard_normal_quantile(double probability, Tail tail) {
   return tail == Tail::lower ? z : -z;
 }
 
-/// log of a variate of the gamma distribution with scale 1; shape > 0. The logarithm, because for a small shape the variate
-/// underflows.
+/// log of a gamma variate of scale 1; shape > 0. The logarithm, because for a small shape the variate underflows.
 double log_standard_gamma(double shape, Stream& stream);
 
 }  // namespace sysid

@@ -8,8 +8,7 @@
 namespace sysid {
 namespace {
 
-/// sd^2 = variance = 1/precision = scale^2 n/(n - 2), n > 2: below, the variance is infinite and the scale from it NaN, which is
-/// refused.
+/// sd^2 = variance = 1/precision = scale^2 n/(n - 2), n > 2: below, the variance is infinite and the scale NaN, which is refused.
 NodeId scale_from_sd(Graph& graph, NodeId sd, Nodes before) {
   Term const n(graph, before[1]);
   return (Term(graph, sd) * sqrt((n - 2.0) / n)).id;

@@ -6,8 +6,7 @@
 
 namespace sysid {
 
-/// Algorithm AS 241, PPND16: rational approximations, relative error about 1e-16.              Wichura 1988, Applied Statistics 37,
-/// 477
+/// Algorithm AS 241, PPND16: rational approximations, relative error about 1e-16.         Wichura 1988, Applied Statistics 37, 477
 double standard_normal_quantile_from_middle(double q) {
   if (std::fabs(q) > 0.425) return standard_normal_quantile(0.5 + q);
   double const r = 0.180625 - q * q;

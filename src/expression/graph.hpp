@@ -122,8 +122,7 @@ class Graph {
   double evaluate(NodeId root, std::function<double(NodeId)> const& value_of) const;
   std::vector<double> evaluate(std::span<NodeId const> roots, std::function<double(NodeId)> const& value_of) const;
 
-  /// Infix text in the language's notation; leaf names from `name_of(leaf id)`. Parts longer than 20 000 characters are shown as
-  /// dots.
+  /// Infix text in the language's notation; leaf names from `name_of(leaf id)`. Parts above 20 000 characters are dots.
   std::string format(NodeId root, std::function<std::string(NodeId)> const& name_of) const;
 
  private:

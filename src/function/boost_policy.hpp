@@ -1,5 +1,4 @@
-// How sysid calls Boost.Math: a failure is a NaN or an infinity, never an exception; no long double, whose width differs between
-// platforms.
+// How sysid calls Boost.Math: a failure is a NaN or an infinity, never an exception; no long double, whose width varies.
 #pragma once
 #include <boost/math/policies/policy.hpp>
 

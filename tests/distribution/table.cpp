@@ -125,7 +125,7 @@ TEST_CASE("distribution and survival function add to one, and the quantile inver
 
 TEST_CASE("draws have the distribution, whole and truncated") {
   // Kolmogorov-Smirnov: P(D > sqrt(log(2/alpha)/(2 n))) <= alpha = 1e-6, Massart 1990.
-  constexpr int n = 4000;
+  constexpr int n = 10'000;
   double const threshold = std::sqrt(std::log(2 / 1e-6) / (2 * n));
   for (Case const& given : all_cases()) {
     Evaluated evaluated(given);
