@@ -48,7 +48,7 @@ class RandomTree {
   template <class Make>
   auto several(std::size_t least, Make make) {
     std::vector<decltype(make())> out;
-    for (std::size_t n = least + random_.below(3); out.size() < n;) out.push_back(make());
+    for (std::size_t n = least + random_.below(4); out.size() < n;) out.push_back(make());
     return out;
   }
   template <class Make>
