@@ -1,0 +1,15 @@
+// Draws and predictions as CSV: comment lines (#) in the head alone, one header, shortest round-trip decimals.
+#pragma once
+#include <string>
+
+#include "report/report.hpp"
+
+namespace sysid {
+
+/// A chain in the form of Stan's CSV: lp__, accept_stat__, log_prior__, log_likelihood__, then the user's names. `chain` from 0.
+std::string draws_csv(Report const& report, int chain);
+
+/// t, then per quantity NAME_mean, _sd, _q2.5, _q97.5, with noise NAME_noisy_mean, ..., NAME_measured; last `scored` (0 or 1).
+std::string predict_csv(Report const& report, Prediction const& prediction);
+
+}  // namespace sysid

@@ -1,0 +1,186 @@
+// Figures along the record: fit or prediction with bands and residuals, and the residuals' autocorrelation.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/figures.hpp"
+
+namespace sysid {
+
+namespace {
+
+using namespace plot;
+
+/// More samples than this in 760 pixels are a blot.
+constexpr std::size_t shown_samples = 1000;
+
+struct Window {
+  std::size_t first = 0, count = 0;
+  bool whole = true;
+};
+
+/// The first scored samples, from the first scored one on.
+Window window(Prediction const& prediction) {
+  std::size_t first = 0, last = prediction.time.size();
+  while (first < last && prediction.scored[first] == 0) ++first;
+  while (last > first && prediction.scored[last - 1] == 0) --last;
+  if (first == last) {
+    first = 0;
+    last = prediction.time.size();
+  }
+  bool const whole = last - first <= shown_samples;
+  return {first, whole ? last - first : shown_samples, whole};
+}
+
+std::vector<double> cut(std::vector<double> const& values, Window w) {
+  if (values.empty()) return {};
+  auto const begin = values.begin() + static_cast<std::ptrdiff_t>(w.first);
+  return {begin, begin + static_cast<std::ptrdiff_t>(w.count)};
+}
+
+std::string figure_name(std::string_view what, Prediction const& prediction, PredictedQuantity const& quantity) {
+  return identifier(fmt::format("{}_{}_{}", what, prediction.experiment, quantity.name));
+}
+
+}  // namespace
+
+Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
+  Window const w = window(prediction);
+  std::vector<double> const time = cut(prediction.time, w), mean = cut(quantity.response.mean, w),
+                            lower = cut(quantity.response.lower, w), upper = cut(quantity.response.upper, w),
+                            noisy_lower = cut(quantity.noisy.lower, w), noisy_upper = cut(quantity.noisy.upper, w),
+                            measured = cut(quantity.measured, w);
+  bool const has_noise = !noisy_lower.empty(), has_data = !measured.empty();
+
+  int const width = 760, height = has_data ? 430 : 290;
+  Axis x = axis(time.front(), time.back(), 8);
+  x.reach_ticks();
+  std::pair<double, double> extent = range(mean);
+  for (auto const* series : {&lower, &upper, &noisy_lower, &noisy_upper, &measured})
+    if (!series->empty()) extent = cover(extent, range(*series));
+  Axis const y = axis(extent.first, extent.second, 5, 0.04);
+
+  Figure out;
+  out.name = figure_name(has_data ? "fit" : "state", prediction, quantity);
+  out.title = fmt::format("{} on {}", quantity.name, prediction.experiment);
+  out.script = preamble(out.name, width, height);
+  std::vector<std::vector<double>> rows, residual_rows;
+  std::pair<double, double> residual_extent(0, 0);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    double const nan = std::nan("");
+    auto const at = [&](std::vector<double> const& series) { return series.empty() ? nan : y.scaled(series[i]); };
+    rows.push_back({x.scaled(time[i]), at(mean), at(lower), at(upper), at(noisy_lower), at(noisy_upper), at(measured)});
+    if (!has_data) continue;
+    double const low = has_noise ? noisy_lower[i] - mean[i] : lower[i] - mean[i];
+    double const high = has_noise ? noisy_upper[i] - mean[i] : upper[i] - mean[i];
+    residual_rows.push_back({x.scaled(time[i]), measured[i] - mean[i], low, high});
+    for (double const v : {measured[i] - mean[i], low, high})
+      if (std::isfinite(v)) residual_extent = cover(residual_extent, {v, v});
+  }
+  out.script += data_block("fit", rows);
+
+  Panel top = panel_at(78, width - 14.0, has_data ? 158.0 : 44.0, height - 34.0, x, y);
+  top.x_label = has_data ? "" : axis_label("time", "s", x.exponent);
+  top.x_numbers = !has_data;
+  top.y_label = axis_label(quantity.name, quantity.unit, y.exponent);
+  out.script += panel(top, width, height);
+  std::vector<Key> keys;
+  if (has_data) keys.push_back({Key::points, data, "measured"});
+  keys.push_back({Key::line, model, "posterior mean"});
+  keys.push_back({Key::area, response_band, "95 % of the response"});
+  if (has_noise) keys.push_back({Key::area, noise_band, "95 % with noise"});
+  out.script += legend(keys, top.right, height - 14.0, width, height);
+  out.script += "plot ";
+  if (has_noise) out.script += fmt::format("$fit using 1:5:6 with filledcurves fc rgb '{}' fs noborder, ", noise_band);
+  out.script += fmt::format("$fit using 1:3:4 with filledcurves fc rgb '{}' fs noborder, ", response_band);
+  if (has_data) out.script += fmt::format("$fit using 1:7 with points pt 7 ps 0.28 lc rgb '{}', ", data);
+  out.script += fmt::format("$fit using 1:2 with lines lw 1.4 lc rgb '{}'\n", model);
+
+  out.script += end_legend();
+
+  if (has_data) {
+    Axis const r = axis(residual_extent.first, residual_extent.second, 3, 0.06);
+    for (auto& row : residual_rows)
+      for (std::size_t c = 1; c < row.size(); ++c) row[c] = r.scaled(row[c]);
+    out.script += data_block("residual", residual_rows);
+    Panel low = panel_at(top.left, top.right, 44, 138, x, r);
+    low.x_label = axis_label("time", "s", x.exponent);
+    low.y_label = axis_label("residual", quantity.unit, r.exponent);
+    out.script += panel(low, width, height);
+    out.script += fmt::format(
+        "plot $residual using 1:3:4 with filledcurves fc rgb '{}' fs noborder, "
+        "0 with lines lw 1 lc rgb '{}', $residual using 1:2 with points pt 7 ps 0.28 lc rgb '{}'\n",
+        has_noise ? noise_band : response_band, model, data);
+  }
+  out.script += "unset multiplot\n";
+
+  if (has_data)
+    out.caption = fmt::format("Measured and modelled {}. The residuals below should scatter without pattern; {}", quantity.name,
+                              has_noise ? "about one in twenty lies outside the light response_band, which includes the noise."
+                                        : "the band is that of the response, without noise.");
+  else
+    out.caption = fmt::format("The model's account of {}, which is not measured, with its 95 % band.", quantity.name);
+  if (!w.whole)
+    out.caption += fmt::format(" Shown are the first {} of {} scored samples.", w.count,
+                               std::count(prediction.scored.begin(), prediction.scored.end(), 1));
+  return out;
+}
+
+std::vector<double> autocorrelation(std::vector<double> const& series, int lags) {
+  double sum = 0, count = 0;
+  for (double const v : series)
+    if (std::isfinite(v)) {
+      sum += v;
+      ++count;
+    }
+  std::vector<double> out;
+  double variance = 0;
+  for (int lag = 0; lag <= lags; ++lag) {
+    double product = 0;
+    for (std::size_t i = static_cast<std::size_t>(lag); i < series.size(); ++i) {
+      double const p = (series[i] - sum / count) * (series[i - static_cast<std::size_t>(lag)] - sum / count);
+      if (std::isfinite(p)) product += p;
+    }
+    if (lag == 0) variance = product;
+    out.push_back(product / variance);
+  }
+  return out;
+}
+
+Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
+  std::vector<double> residuals;
+  double count = 0;
+  for (std::size_t i = 0; i < quantity.measured.size(); ++i) {
+    residuals.push_back(prediction.scored[i] != 0 ? quantity.measured[i] - quantity.response.mean[i] : std::nan(""));
+    if (std::isfinite(residuals.back())) ++count;
+  }
+  int const lags = static_cast<int>(std::min(60.0, count / 4));
+  std::vector<double> const values = autocorrelation(residuals, lags);
+  double const limit = 1.96 / std::sqrt(count);
+
+  int const width = 760, height = 220;
+  Figure out;
+  out.name = figure_name("residuals", prediction, quantity);
+  out.title = fmt::format("Residual autocorrelation of {}", quantity.name);
+  std::vector<std::vector<double>> rows;
+  for (int lag = 1; lag <= lags; ++lag) rows.push_back({static_cast<double>(lag), values[static_cast<std::size_t>(lag)]});
+  std::vector<double> coefficients(values.begin() + 1, values.end());
+  auto const extent = cover(range(coefficients), {-1.5 * limit, 1.5 * limit});
+  Panel p = panel_at(78, width - 14.0, 44, height - 12.0, axis(0, lags + 1, 8), axis(extent.first, extent.second, 4, 0.05));
+  p.x_label = "lag [samples]";
+  p.y_label = "autocorrelation";
+  out.script = preamble(out.name, width, height) + data_block("acf", rows) +
+               data_block("limit", {{0, -limit, limit}, {lags + 1.0, -limit, limit}}) + panel(p, width, height);
+  out.script += fmt::format(
+      "plot $limit using 1:2:3 with filledcurves fc rgb '{}' fs noborder, 0 with lines lw 1 lc rgb '{}', "
+      "$acf using 1:2 with impulses lw 3 lc rgb '{}'\nunset multiplot\n",
+      noise_band, muted, model);
+  out.caption = fmt::format(
+      "Autocorrelation of the residuals of {}. White residuals stay inside the band (95 % of them); a pattern is dynamics the "
+      "model lacks.",
+      quantity.name);
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,155 @@
+// The pair plot, and the list of all figures.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/figures.hpp"
+#include "report/number.hpp"
+
+namespace sysid {
+
+namespace {
+
+using namespace plot;
+
+constexpr std::size_t shown_pairs = 7;
+constexpr std::size_t shown_draws = 600;
+
+double correlation(std::vector<double> const& a, std::vector<double> const& b) {
+  auto const n = static_cast<double>(a.size());
+  double mean_a = 0, mean_b = 0, ab = 0, aa = 0, bb = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    mean_a += a[i] / n;
+    mean_b += b[i] / n;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ab += (a[i] - mean_a) * (b[i] - mean_b);
+    aa += (a[i] - mean_a) * (a[i] - mean_a);
+    bb += (b[i] - mean_b) * (b[i] - mean_b);
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+/// Leaves the first and last tick when the numbers of all would not stand side by side.
+void thin_numbers(Axis& axis, double pixels) {
+  double room = 0;
+  for (auto const& [value, text] : axis.ticks) room += 7.0 * text_width(text) + 8;
+  double const spread =
+      axis.ticks.size() < 2 ? 0 : (axis.ticks.back().first - axis.ticks.front().first) / (axis.high - axis.low) * pixels;
+  if (axis.ticks.size() > 2 && room - 7.0 * text_width(axis.ticks[0].second) > spread)
+    axis.ticks = {axis.ticks.front(), axis.ticks.back()};
+}
+
+}  // namespace
+
+Figure pair_figure(Draws const& draws) {
+  std::size_t const count = std::min(draws.names.size(), shown_pairs);
+  // Draws of all chains, evenly thinned.
+  std::vector<std::vector<double>> all(count), shown(count);
+  for (Chain const& chain : draws.chains)
+    for (auto const& row : chain.values)
+      for (std::size_t i = 0; i < count; ++i) all[i].push_back(row[i]);
+  std::size_t const stride = (all[0].size() + shown_draws - 1) / shown_draws;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t d = 0; d < all[i].size(); d += stride) shown[i].push_back(all[i][d]);
+
+  int const left = 70, bottom = 52, width = 760;
+  int const cell = (width - left - 6) / static_cast<int>(count);
+  int const tall = std::min(cell, 150);
+  int const height = bottom + tall * static_cast<int>(count) + 6;
+  Figure out{"pairs", "Pairs", "", preamble("pairs", width, height)};
+  std::vector<Axis> axes;
+  for (std::size_t i = 0; i < count; ++i) {
+    auto const [low, high] = range(all[i]);
+    // The fewest ticks that leave two clear of the neighbouring panels' numbers.
+    for (int wanted = 3; wanted <= 6; ++wanted) {
+      Axis next = axis(low, high, wanted, 0.05);
+      next.clear_edges(0.12);
+      bool const enough = next.ticks.size() >= 2;
+      if (wanted == 3 || enough) axes.resize(i), axes.push_back(std::move(next));
+      if (enough) break;
+    }
+  }
+  out.script += "set grid noxtics noytics\n";
+  for (std::size_t row = 0; row < count; ++row) {
+    for (std::size_t column = 0; column < count; ++column) {
+      Panel p;
+      p.left = left + static_cast<double>(column) * cell;
+      p.right = p.left + cell - 8;
+      p.top = height - 4.0 - static_cast<double>(row) * tall;
+      p.bottom = p.top - tall + 8;
+      p.x = axes[column];
+      thin_numbers(p.x, p.right - p.left);
+      if (column > row) {
+        double const r = correlation(all[row], all[column]);
+        out.script +=
+            fmt::format("set label 1 '{}' at screen {:.5f},{:.5f} center textcolor rgb '{}'\n",
+                        std::isfinite(r) ? fmt::format("{}{:.2f}", r < 0 ? "−" : "", std::fabs(r)) : "-",
+                        (p.left + p.right) / 2 / width, (p.bottom + p.top) / 2 / height, std::fabs(r) >= 0.5 ? contrast : muted);
+        out.script +=
+            panel(p, width, height) + "unset border\nunset xtics\nunset ytics\nset xlabel ''\nplot NaN notitle\nunset label 1\n";
+        continue;
+      }
+      bool const last = row + 1 == count;
+      p.x_numbers = last;
+      p.x_label = last ? axis_label(draws.names[column], draws.units[column], p.x.exponent) : "";
+      if (row == column) {
+        constexpr std::size_t bins = 24;
+        std::vector<double> counts(bins, 0);
+        double const low = axes[row].low, extent = axes[row].high - low;
+        for (double const v : all[row])
+          ++counts[std::min(bins - 1, static_cast<std::size_t>((axes[row].scaled(v) - low) / extent * static_cast<double>(bins)))];
+        std::vector<std::vector<double>> outline;
+        for (std::size_t b = 0; b < bins; ++b)
+          for (std::size_t edge : {b, b + 1}) outline.push_back({low + extent * static_cast<double>(edge) / bins, counts[b]});
+        p.y = {0, 1.08 * *std::max_element(counts.begin(), counts.end()), 0, {}};
+        p.y_axis = false;
+        out.script += data_block(fmt::format("h{}", row), outline) + panel(p, width, height);
+        out.script += fmt::format(
+            "plot $h{0} using 1:2 with filledcurves y1=0 fc rgb '{1}' fs noborder, $h{0} using 1:2 with lines lw 1 lc rgb '{2}'\n",
+            row, response_band, model);
+        continue;
+      }
+      p.y = axes[row];
+      p.y_numbers = column == 0;
+      p.y_label_distance = 54;
+      p.y_label = column == 0 ? axis_label(draws.names[row], draws.units[row], p.y.exponent) : "";
+      std::vector<std::vector<double>> points;
+      for (std::size_t d = 0; d < shown[row].size(); ++d)
+        points.push_back({axes[column].scaled(shown[column][d]), axes[row].scaled(shown[row][d])});
+      out.script += data_block(fmt::format("p{}_{}", row, column), points) + panel(p, width, height);
+      out.script += fmt::format("plot $p{}_{} using 1:2 with points pt 7 ps 0.18 lc rgb '{}'\n", row, column, model);
+    }
+  }
+  out.script += "unset multiplot\n";
+  out.caption =
+      "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination the data "
+      "determine "
+      "where the two alone are not; separate clouds are several modes.";
+  if (draws.names.size() > shown_pairs)
+    out.caption += fmt::format(" Shown are the first {} of {}.", shown_pairs, draws.names.size());
+  return out;
+}
+
+std::vector<Figure> figures(Report const& report) {
+  std::vector<Figure> out;
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (!quantity.response.mean.empty() && prediction.time.size() > 1) out.push_back(fit_figure(prediction, quantity));
+  bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
+  if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
+  if (has_draws && report.draws.names.size() > 1) out.push_back(pair_figure(report.draws));
+  if (has_draws) out.push_back(trace_figure(report.draws));
+  if (has_draws && report.draws.chains.size() > 1) out.push_back(rank_figure(report.draws));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities) {
+      std::size_t residuals = 0;
+      for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i)
+        if (prediction.scored[i] != 0 && std::isfinite(quantity.measured[i])) ++residuals;
+      if (residuals >= 20) out.push_back(residual_figure(prediction, quantity));
+    }
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,114 @@
+// JSON by nlohmann's ordered objects: order of insertion, round-trip decimals.
+#include "report/json.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace sysid {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json facts(Facts const& facts) {
+  Json out = Json::object();
+  for (auto const& [name, value] : facts) std::visit([&, &key = name](auto const& v) { out[key] = v; }, value);
+  return out;
+}
+
+Json score_object(std::vector<Score> const& scores) {
+  Json out = Json::object();
+  for (Score const& score : scores) out[score.name] = score.value;
+  return out;
+}
+
+Json parameters(std::vector<Summary> const& summaries) {
+  Json out = Json::object();
+  for (Summary const& s : summaries)
+    out[s.name] = {{"unit", s.unit},
+                   {"mean", s.mean},
+                   {"median", s.median},
+                   {"sd", s.sd},
+                   {"mad", s.mad},
+                   {"q5", s.q5},
+                   {"q95", s.q95},
+                   {"rhat", s.rhat},
+                   {"ess_bulk", s.ess_bulk},
+                   {"ess_tail", s.ess_tail},
+                   {"mcse_mean", s.mcse_mean}};
+  return out;
+}
+
+Json named_values(std::vector<double> const& values, std::vector<std::string> const& names) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < values.size() && i < names.size(); ++i) out[names[i]] = values[i];
+  return out;
+}
+
+Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
+  Json failures = Json::array();
+  for (Failure const& failure : ledger.failures())
+    failures.push_back({{"class", name(failure.kind)},
+                        {"where", failure.where},
+                        {"count", failure.count},
+                        {"time", failure.time},
+                        {"example", named_values(failure.example, names)}});
+  return {{"solves", ledger.solves()}, {"failed", ledger.failed()}, {"failures", failures}};
+}
+
+/// Over all channels, then per channel of each experiment.
+Json fit(Report const& report) {
+  Json out = score_object(report.fit);
+  Json channels = Json::object();
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (auto const found = scores(quantity, prediction.scored); !found.empty())
+        channels[prediction.experiment][quantity.name] = score_object(found);
+  if (!channels.empty()) out["channels"] = channels;
+  return out;
+}
+
+/// The user's text may hold any bytes: what is not UTF-8 is replaced, never thrown.
+std::string dump(Json const& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+}  // namespace
+
+std::string summary_json(Report const& report) {
+  Json out;
+  out["task"] = report.task;
+  out["what"] = report.what;
+  out["model"] = report.model_name;
+  out["parameters"] = parameters(report.summary);
+  if (has_verdict(report)) out["verdict"] = {{"pass", grade(report) != Severity::error}, {"text", verdict_headline(report)}};
+  out["findings"] = Json::array();
+  for (Finding const& finding : report.findings)
+    out["findings"].push_back({{"severity", severity_word(finding.severity)},
+                               {"code", finding.code},
+                               {"message", finding.message},
+                               {"help", finding.help}});
+  out["fit"] = fit(report);
+  out["modes"] = Json::array();
+  for (Mode const& mode : report.modes)
+    out["modes"].push_back({{"log_density", mode.log_density},
+                            {"log_mass", mode.log_mass},
+                            {"share", mode.share},
+                            {"values", named_values(mode.declared, report.draws.names)},
+                            {"sd", named_values(mode.sd, report.draws.names)}});
+  for (ReportTable const& table : report.tables) out["tables"][table.title] = {{"header", table.header}, {"rows", table.rows}};
+  out["ledger"] = ledger(report.ledger, report.draws.names);
+  out["seed"] = report.seed;
+  out["versions"] = facts(report.versions);
+  out["data"] = Json::array();
+  for (DataInfo const& data : report.data)
+    out["data"].push_back({{"name", data.name},
+                           {"file", data.file},
+                           {"sha256", data.sha256},
+                           {"rows", data.rows},
+                           {"scored", data.scored},
+                           {"notes", data.notes}});
+  out["settings"] = facts(report.settings);
+  return dump(out);
+}
+
+std::string timing_json(Report const& report) { return dump(facts(report.timing)); }
+
+}  // namespace sysid

@@ -1,0 +1,62 @@
+// Pointwise bands and scores.
+#include "report/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "inference/convergence.hpp"
+
+namespace sysid {
+
+Band band(std::vector<std::vector<double>> const& trajectories) {
+  std::vector<std::vector<double> const*> usable;
+  for (std::vector<double> const& trajectory : trajectories)
+    if (std::all_of(trajectory.begin(), trajectory.end(), [](double v) { return std::isfinite(v); })) usable.push_back(&trajectory);
+  Band out;
+  if (usable.empty()) return out;
+  std::size_t const samples = usable[0]->size();
+  auto const count = static_cast<double>(usable.size());
+  std::vector<double> values(usable.size());
+  for (std::size_t i = 0; i < samples; ++i) {
+    double sum = 0;
+    for (std::size_t d = 0; d < usable.size(); ++d) sum += values[d] = (*usable[d])[i];
+    double const mean = sum / count;
+    double squares = 0;
+    for (double const v : values) squares += (v - mean) * (v - mean);
+    std::sort(values.begin(), values.end());
+    out.mean.push_back(mean);
+    out.sd.push_back(usable.size() > 1 ? std::sqrt(squares / (count - 1)) : 0);
+    out.lower.push_back(quantile(values, 0.025));
+    out.upper.push_back(quantile(values, 0.975));
+  }
+  return out;
+}
+
+std::vector<Score> scores(PredictedQuantity const& quantity, std::vector<std::uint8_t> const& scored) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i)
+    if (scored[i] != 0 && std::isfinite(quantity.measured[i])) rows.push_back(i);
+  if (rows.empty()) return {};
+  auto const n = static_cast<double>(rows.size());
+  double sum = 0, errors = 0, squares = 0;
+  for (std::size_t const i : rows) sum += quantity.measured[i];
+  for (std::size_t const i : rows) {
+    double const deviation = quantity.measured[i] - sum / n;
+    double const error = quantity.measured[i] - quantity.response.mean[i];
+    squares += deviation * deviation;
+    errors += error * error;
+  }
+  std::vector<Score> out = {{"nmse", 100 * errors / squares}, {"rmse", std::sqrt(errors / n)}};
+  if (quantity.noisy.mean.empty()) return out;
+  double inside = 0, within = 0;
+  for (std::size_t const i : rows) {
+    double const y = quantity.measured[i];
+    if (y >= quantity.noisy.lower[i] && y <= quantity.noisy.upper[i]) ++inside;
+    if (std::fabs(y - quantity.noisy.mean[i]) <= 3 * quantity.noisy.sd[i]) ++within;
+  }
+  out.push_back({"coverage_95", inside / n});
+  out.push_back({"coverage_3sd", within / n});
+  return out;
+}
+
+}  // namespace sysid

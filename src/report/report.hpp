@@ -1,0 +1,79 @@
+// What a task found, as plain data: the application fills it, the writers of this folder turn it into files and text.
+// Nothing in it depends on the host or the hour but `timing`.
+#pragma once
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/ledger.hpp"
+#include "core/settings.hpp"
+#include "inference/backend.hpp"
+#include "inference/convergence.hpp"
+#include "inference/draws.hpp"
+#include "inference/finding.hpp"
+#include "report/prediction.hpp"
+
+namespace sysid {
+
+/// Named values in the order in which they are shown.
+using Facts = std::vector<std::pair<std::string, SettingValue>>;
+
+struct PriorInfo {
+  std::string name, unit;
+  std::string text;                       // "log_uniform(0.1, 10)"
+  std::function<double(double)> density;  // of the declared value; empty when it depends on other parameters
+};
+
+struct DataInfo {
+  std::string name;  // "bench.train"
+  std::string file, sha256;
+  int rows = 0;                    // of the file
+  int scored = 0;                  // of the split
+  std::vector<std::string> notes;  // "input x = force [N], held (zero_order)"
+};
+
+/// A table of what this kind of task adds: candidate models, inclusion probabilities, populations.
+struct ReportTable {
+  std::string title, caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+struct Report {
+  std::string version;  // of sysid
+  std::string task;     // "posterior"
+  std::string what;     // "fit duffing to bench.train with mh"
+  std::string model_name, model_title;
+  std::vector<std::string> equations;  // in the language, one each
+  std::string model_text;              // the user's text
+  std::string resolved_text;           // the file that reproduces this run, every setting spelt out
+  std::vector<PriorInfo> priors;
+  std::vector<DataInfo> data;
+  Draws draws;                   // may be empty (simulate, predict)
+  std::vector<Summary> summary;  // of the draws, parameters first
+  std::string verdict;           // in plain words, its first line is shown; empty: as `judge` words the findings
+  Findings findings;
+  std::vector<Score> fit;               // over all channels
+  std::vector<Prediction> predictions;  // of each experiment: over the fitted rows, or of the predicted ones
+  std::vector<Mode> modes;              // by falling share
+  std::vector<ReportTable> tables;
+  Ledger ledger;
+  std::uint64_t seed = 0;
+  Facts settings, versions;
+  Facts timing;  // seconds, threads, host: for timing.json alone
+};
+
+/// The worst of the findings; note when there are none.
+Severity grade(Report const& report);
+
+/// Whether there is anything to judge: a plain simulation has no diagnostics.
+bool has_verdict(Report const& report);
+
+/// The verdict's first line, without the findings.
+std::string verdict_headline(Report const& report);
+
+/// "error", "warning", "note".
+std::string_view severity_word(Severity severity);
+
+}  // namespace sysid

@@ -1,0 +1,74 @@
+// Aligned columns under the user's names and units; digits end where chance begins.
+#include "report/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "inference/verdict.hpp"
+#include "report/number.hpp"
+
+namespace sysid {
+
+namespace {
+
+std::string draws_line(Draws const& draws) {
+  if (draws.chains.empty()) return "";
+  std::size_t const chains = draws.chains.size();
+  return fmt::format("{} chain{} of {} draws", chains, chains == 1 ? "" : "s", draws.chains[0].values.size());
+}
+
+std::string summary_table(Report const& report) {
+  std::vector<std::vector<std::string>> rows = {{"", "unit", "mean", "sd", "q5", "q95", "rhat", "ess_bulk", "ess_tail"}};
+  for (Summary const& s : report.summary) {
+    SummaryText const t = format_summary(s);
+    rows.push_back({s.name, s.unit, t.mean, t.sd, t.q5, t.q95, t.rhat, t.ess_bulk, t.ess_tail});
+  }
+  return align_columns(rows, 2);
+}
+
+std::string scores_line(std::vector<Score> const& scores) {
+  std::string out;
+  for (Score const& score : scores) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", score.name, significant(score.value, 4));
+  return out;
+}
+
+std::string ledger_text(Ledger const& ledger) {
+  if (ledger.solves() == 0 && ledger.failed() == 0) return "";
+  std::string out = fmt::format("{} simulations, {} failed\n", ledger.solves(), ledger.failed());
+  for (Failure const& failure : ledger.failures())
+    out += fmt::format("  {} x {}: {} (first at t = {} s)\n", failure.count, name(failure.kind), failure.where,
+                       significant(failure.time, 4));
+  return out;
+}
+
+}  // namespace
+
+std::string terminal_summary(Report const& report) {
+  std::string out = report.task;
+  if (!report.what.empty()) out += ": " + report.what;
+  std::string const draws = draws_line(report.draws);
+  out += fmt::format("\n{}{}seed {}\n", draws, draws.empty() ? "" : ", ", report.seed);
+  if (!report.summary.empty()) out += "\n" + summary_table(report);
+  for (ReportTable const& table : report.tables) {
+    std::vector<std::vector<std::string>> rows = {table.header};
+    rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+    out += fmt::format("\n{}\n{}", table.title, align_columns(rows, 1));
+  }
+  std::string facts;
+  if (!report.fit.empty()) facts += fmt::format("fit: {}\n", scores_line(report.fit));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (auto const found = scores(quantity, prediction.scored); !found.empty())
+        facts += fmt::format("{} on {}: {}\n", quantity.name, prediction.experiment, scores_line(found));
+  facts += ledger_text(report.ledger);
+  if (!facts.empty()) out += "\n" + facts;
+  if (has_verdict(report)) {
+    std::string const judged = judge(report.findings).text;
+    std::string const list = judged.substr(std::min(judged.find('\n'), judged.size()));
+    out += fmt::format("\nverdict: {}{}\n", verdict_headline(report), list);
+  }
+  return out;
+}
+
+}  // namespace sysid
