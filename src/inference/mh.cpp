@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "inference/adaptation.hpp"
+#include "inference/bound_check.hpp"
 #include "inference/chain_checks.hpp"
 #include "inference/chain_record.hpp"
 #include "inference/checkpoint.hpp"
@@ -259,6 +260,7 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
   if (result.draws.total() > 0) {
     for (Finding& finding : check_chains({summarise(result), result.acceptance_rate, result.distinct_states, plan.adaptive}))
       result.findings.push_back(std::move(finding));
+    for (Finding& finding : check_bounds(target.parameters(), result.draws)) result.findings.push_back(std::move(finding));
   }
   return result;
 }

@@ -1,0 +1,49 @@
+// What residuals say about a model: are they noise of the stated size, and has the input anything left to explain in them.
+// Pure functions on plain vectors; NaN is a missing sample and breaks the record there.
+#pragma once
+#include <span>
+#include <vector>
+
+namespace sysid {
+
+/// Correlations lag by lag, and one answer over all of them.
+struct CorrelationTest {
+  int first_lag = 0;
+  std::vector<double> correlation;  // of lag first_lag + i
+  std::vector<double> bound;        // 99 % of noise has |correlation| below this, lag by lag
+  int outside = 0;                  // lags beyond their bound; 1 % of them is expected
+  double p_value = 1;               // of what is seen, or worse, were the residuals noise; 1 when there are too few samples
+  bool fires() const { return p_value < 1e-3; }
+};
+
+/// Whether residuals are uncorrelated in time, lags 1 .. lags (at most a quarter of the samples). The mean is not removed: an
+/// offset is a misfit too.
+///
+///   r_k = sum e_t e_(t+k) / sum e_t^2,   Q = n (n + 2) sum r_k^2 / n_k ~ chi^2(lags),   n_k the pairs at lag k          Ljung and
+///   Box 1978
+CorrelationTest whiteness(std::span<double const> residuals, int lags = 25);
+
+/// Whether past input (lags 0 .. lags) still shows in the residuals; both without their means.
+///
+///   z_k = sum (e_(t+k) - e)(u_t - u) / sqrt(n_k P) / (sd e sd u) ~ N(0, 1),   P = 1 + 2 sum r_e(k) r_u(k)          Ljung 1999,
+///   eq. 16.63
+///
+/// P widens the bounds when residuals and input are both coloured. p: the largest |z| among lags + 1 (Sidak), conservative when the
+/// input is coloured, as neighbouring lags then say the same.
+CorrelationTest input_correlation(std::span<double const> residuals, std::span<double const> input, int lags = 25);
+
+/// (8.18): 100 / (N var y) sum (y - y*)^2, var with divisor N and of the *observed* record, mean removed. Below 5 good, below 1
+/// excellent; the true model reaches 100 r^2 for noise of a fraction r. NaN when the observed record is constant or empty.
+double nmse(std::span<double const> observed, std::span<double const> predicted);
+
+/// Mean square of standardised residuals, 1 for noise of the stated size.
+struct ChiSquaredTest {
+  double per_sample = 0;
+  double low = 0, high = 0;  // 99.9 % of noise lies between
+  bool fires() const { return per_sample < low || per_sample > high; }
+};
+
+/// standardised: (y - location) / sd, independent under the model. n * per_sample ~ chi^2(n).
+ChiSquaredTest chi_squared(std::span<double const> standardised);
+
+}  // namespace sysid

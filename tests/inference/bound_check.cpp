@@ -1,0 +1,67 @@
+// The bound check fires where a bound decides the posterior, and only there.
+#include "inference/bound_check.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/random.hpp"
+
+using namespace sysid;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::vector<double> draws_of(std::function<double(Stream&)> const& draw, int n = 2000) {
+  Stream stream({5, Purpose::test, 0, 0});
+  std::vector<double> x;
+  for (int i = 0; i < n; ++i) x.push_back(draw(stream));
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("a posterior that leans on a bound of its prior is found, at the right side") {
+  auto const near_zero = draws_of([](Stream& s) { return 0.1 * std::fabs(s.normal()); });
+  CHECK(check_bounds(near_zero, 0, 1).at_lower);
+  CHECK_FALSE(check_bounds(near_zero, 0, 1).at_upper);
+  auto const near_ten = draws_of([](Stream& s) { return 10 + std::log(s.uniform()); });
+  CHECK(check_bounds(near_ten, 0, 10).at_upper);
+  CHECK_FALSE(check_bounds(near_ten, 0, 10).at_lower);
+}
+
+TEST_CASE("over decades the bounds are judged on a log scale") {
+  // Log-normal about 3, sd 0.5 in ln: on a linear scale it would seem to sit at the lower bound of (1e-3, 1e3).
+  auto const middle = draws_of([](Stream& s) { return 3 * std::exp(0.5 * s.normal()); });
+  CHECK_FALSE(check_bounds(middle, 1e-3, 1e3).at_lower);
+  auto const low = draws_of([](Stream& s) { return 1e-3 * std::exp(0.5 * std::fabs(s.normal())); });
+  CHECK(check_bounds(low, 1e-3, 1e3).at_lower);
+}
+
+TEST_CASE("sound, flat, one-sided and standing posteriors are left alone") {
+  auto const sound = draws_of([](Stream& s) { return 5 + s.normal(); });
+  CHECK_FALSE(check_bounds(sound, 0, 10).at_lower);
+  CHECK_FALSE(check_bounds(sound, 0, 10).at_upper);
+  auto const flat = draws_of([](Stream& s) { return s.uniform(); });
+  CHECK_FALSE(check_bounds(flat, 0, 1).at_lower);
+  auto const scale = draws_of([](Stream& s) { return std::fabs(s.normal()); });
+  CHECK_FALSE(check_bounds(scale, 0, infinity).at_lower);
+  CHECK_FALSE(check_bounds(std::vector<double>(500, 0.0), 0, 1).at_lower);
+  CHECK_FALSE(check_bounds(std::vector<double>(10, 0.0), 0, 1).at_lower);
+  auto const three_sds_off = draws_of([](Stream& s) { return std::fabs(0.3 + 0.1 * s.normal()); });
+  CHECK_FALSE(check_bounds(three_sds_off, 0, 10).at_lower);
+}
+
+TEST_CASE("the finding names the parameter, the bound and its unit") {
+  auto const x = draws_of([](Stream& s) { return 1e5 - 100 * std::fabs(s.normal()); });
+  Draws draws{{"k", "c"}, {"N/m", ""}, {{}}, 2};
+  for (double const v : x) draws.chains[0].values.push_back({v, v});
+  std::vector<ParameterInfo> const infos = {{"k", "N/m", 1e3, 1e5}, {"c", "", -infinity, infinity}};
+  Findings const findings = check_bounds(infos, draws);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].code == "piles_up_at_bound");
+  CHECK(findings[0].message == "the posterior of k piles up at the upper bound of its prior, 1e+05 N/m");
+}

@@ -1,0 +1,82 @@
+// Each chain check fires on its planted fault and is silent on sound chains.
+#include "inference/chain_checks.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/random.hpp"
+
+using namespace sysid;
+
+namespace {
+
+ChainValues chains(int count, std::size_t length, double rho = 0, double shift_last = 0) {
+  ChainValues draws;
+  for (int c = 0; c < count; ++c) {
+    Stream stream({13, Purpose::test, static_cast<std::uint64_t>(c), 0});
+    std::vector<double> x(length);
+    for (std::size_t i = 0; i < length; ++i) x[i] = (i > 0 ? rho * x[i - 1] : 0) + std::sqrt(1 - rho * rho) * stream.normal();
+    if (c == count - 1)
+      for (double& v : x) v += shift_last;
+    draws.push_back(std::move(x));
+  }
+  return draws;
+}
+
+ChainReport report(ChainValues const& draws) {
+  return {
+      {summarise("k", "N/m", draws)}, std::vector<double>(draws.size(), 0.3), std::vector<std::uint64_t>(draws.size(), 5000), true};
+}
+
+}  // namespace
+
+TEST_CASE("sound chains raise nothing") { CHECK(check_chains(report(chains(4, 2000))).empty()); }
+
+TEST_CASE("a chain that accepts almost nothing did not move, and that is all that is said") {
+  ChainReport fixed = report(chains(4, 2000, 0, 50));
+  fixed.acceptance_rate = {0.3, 0.3, 0.3, 1e-4};
+  fixed.adaptive = false;
+  Findings const findings = check_chains(fixed);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].code == "chain_did_not_move");
+  CHECK(findings[0].severity == Severity::error);
+  CHECK(findings[0].message.find("chain 4 accepted 0.01 %") != std::string::npos);
+  CHECK(findings[0].help.find("proposal = adaptive") != std::string::npos);
+  fixed.adaptive = true;
+  CHECK(check_chains(fixed)[0].help.find("burn_in") != std::string::npos);
+}
+
+TEST_CASE("a chain with few distinct states is named with their number") {
+  ChainReport poor = report(chains(4, 2000));
+  poor.distinct_states[1] = 37;
+  Findings const findings = check_chains(poor);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].code == "few_distinct_states");
+  CHECK(findings[0].message.find("chain 2 visited only 37") != std::string::npos);
+}
+
+TEST_CASE("chains that disagree a little fail quietly, a lot loudly") {
+  Findings const little = check_chains(report(chains(4, 5000, 0, 0.4)));
+  REQUIRE_FALSE(little.empty());  // the variance of the half-chains' means is 0.034, so R-hat is near 1.017
+  CHECK(little[0].code == "chains_not_quite_agreed");
+  Findings const much = check_chains(report(chains(4, 2000, 0, 3)));
+  REQUIRE(much.size() == 1);
+  CHECK(much[0].code == "chains_disagree");
+  CHECK(much[0].message.find("k (") != std::string::npos);
+}
+
+TEST_CASE("too few independent draws are reported with how much longer to run") {
+  // AR(1) with 0.98: 4 x 6000 (1 - 0.98)/(1 + 0.98) = 242 effective draws for the mean.
+  Findings const findings = check_chains(report(chains(4, 6000, 0.98)));
+  bool low = false;
+  for (Finding const& f : findings) low = low || (f.code == "ess_bulk_low" && f.help.find("times as long") != std::string::npos);
+  CHECK(low);
+}
+
+TEST_CASE("draws that are all equal cannot be judged, which is a failure too") {
+  Findings const findings = check_chains(report(ChainValues(4, std::vector<double>(2000, 1.0))));
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].code == "no_diagnostics");
+}

@@ -1,0 +1,74 @@
+// Checkpoints come back bit for bit, through text and through CBOR.
+#include "inference/checkpoint.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "inference/targets.hpp"
+
+using namespace sysid;
+using namespace sysid::testing;
+
+TEST_CASE("doubles survive storing to the last bit, infinities, zeros and NaN included") {
+  using limits = std::numeric_limits<double>;
+  std::vector<double> const values = {0.1,          -0.0, 1.0 / 3, infinity, -infinity, limits::quiet_NaN(), limits::denorm_min(),
+                                      limits::max()};
+  for (std::size_t n = 0; n <= values.size(); ++n) {
+    std::vector<double> const part(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n));
+    nlohmann::json const stored = checkpoint::encode(part);
+    for (nlohmann::json const& back :
+         {nlohmann::json::parse(stored.dump()), nlohmann::json::from_cbor(nlohmann::json::to_cbor(stored))}) {
+      std::vector<double> const read = checkpoint::decode(back);
+      REQUIRE(read.size() == n);
+      if (n > 0) CHECK(std::memcmp(read.data(), part.data(), n * sizeof(double)) == 0);
+    }
+  }
+}
+
+TEST_CASE("damaged numbers are refused, not guessed") {
+  CHECK_THROWS_AS(checkpoint::decode("AAAA*AAA"), checkpoint::Mismatch);
+  CHECK_THROWS_AS(checkpoint::decode("AAAA"), checkpoint::Mismatch);
+  CHECK_THROWS_AS(checkpoint::decode(checkpoint::encode(std::vector<double>{1, 2, 3}), 2, 2), checkpoint::Mismatch);
+}
+
+TEST_CASE("ledgers and modes survive storing") {
+  Ledger ledger;
+  ledger.add_solves(12345678901234ULL);
+  ledger.add_failure(FailureClass::step_limit, "k3*y^3", infinity, {1, -0.0}, 7);
+  Ledger const back = checkpoint::decode_ledger(checkpoint::encode(ledger));
+  CHECK(back.solves() == ledger.solves());
+  REQUIRE(back.failures().size() == 1);
+  CHECK(back.failures()[0].where == "k3*y^3");
+  CHECK(back.failures()[0].kind == FailureClass::step_limit);
+  CHECK(back.failures()[0].count == 7);
+  CHECK(back.failures()[0].time == infinity);
+
+  Mode const mode{{1, 2}, {3, 4}, {5, 6}, {7, 8, 9, 10}, -1.5, 2.5, 0.125, 3, false};
+  Mode const read = checkpoint::decode_mode(checkpoint::encode(mode));
+  CHECK(read.theta == mode.theta);
+  CHECK(read.declared == mode.declared);
+  CHECK(read.sd == mode.sd);
+  CHECK(read.covariance == mode.covariance);
+  CHECK(read.log_density == mode.log_density);
+  CHECK(read.log_mass == mode.log_mass);
+  CHECK(read.share == mode.share);
+  CHECK(read.hits == mode.hits);
+  CHECK(read.well_defined == mode.well_defined);
+}
+
+TEST_CASE("a checkpoint knows its run, and says what differs") {
+  TestTarget const target({"x"}, {{Prior::normal, 0, 1}}, 1, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) { rows = w; });
+  Settings settings;
+  settings.set("samples", std::int64_t{10});
+  nlohmann::json const own = checkpoint::identity("mh", settings, 1, target);
+  CHECK_FALSE(checkpoint::refuse({{"identity", own}}, own));
+  settings.set("samples", std::int64_t{11});
+  auto const refused = checkpoint::refuse({{"identity", own}}, checkpoint::identity("mh", settings, 1, target));
+  REQUIRE(refused);
+  CHECK(refused->message.find("settings") != std::string::npos);
+  CHECK(checkpoint::refuse(nlohmann::json::array(), own));
+  CHECK(checkpoint::refuse({{"iteration", 3}}, own));
+}

@@ -1,0 +1,148 @@
+// One Metropolis step: proposals of the stated shape, detailed balance, failures rejected, lanes independent.
+#include "inference/metropolis.hpp"
+
+#include <doctest/doctest.h>
+
+#include "inference/adaptation.hpp"
+#include "inference/targets.hpp"
+
+using namespace sysid;
+using namespace sysid::testing;
+using namespace sysid::metropolis;
+
+namespace {
+
+TestTarget gaussian(int dimension) {
+  std::vector<std::string> names(static_cast<std::size_t>(dimension), "x");
+  return TestTarget(names, std::vector<Prior>(static_cast<std::size_t>(dimension), {Prior::normal, 0, 1e3}), dimension, 0,
+                    [](std::vector<double> const& w, std::vector<double>& rows) { rows = w; });
+}
+
+}  // namespace
+
+TEST_CASE("a flat density accepts every move, so states spread as the proposal says") {
+  // One step from 0 on a flat density: theta = s L z, covariance s^2 L L'.
+  TestTarget const flat({"a", "b"}, {{Prior::normal, 0, 1e9}, {Prior::normal, 0, 1e9}}, 1, 0,
+                        [](std::vector<double> const&, std::vector<double>& rows) { rows[0] = 0; });
+  constexpr int chains = 20000;
+  Proposal const proposal{2, {2, 0, 1, 0.5}, 0.1};
+  std::vector<Proposal const*> const proposals(chains, &proposal);
+  Ledger ledger;
+  State state = init(flat, LaneArray(2, chains), ledger);
+  Info const info = step(flat, proposals, {1, Purpose::proposal, 0, 0}, state, ledger);
+  double aa = 0, ab = 0, bb = 0, accepted = 0;
+  for (int w = 0; w < chains; ++w) {
+    aa += state.theta(0, w) * state.theta(0, w) / chains;
+    ab += state.theta(0, w) * state.theta(1, w) / chains;
+    bb += state.theta(1, w) * state.theta(1, w) / chains;
+    accepted += info.accepted[static_cast<std::size_t>(w)];
+  }
+  CHECK(accepted == chains);
+  CHECK(aa == doctest::Approx(0.04).epsilon(0.04));  // standard error 1 %
+  CHECK(ab == doctest::Approx(0.02).epsilon(0.05));
+  CHECK(bb == doctest::Approx(0.0125).epsilon(0.04));
+}
+
+TEST_CASE("one step leaves the target's distribution as it is") {
+  // 40,000 chains drawn from N(0, 1) still have its moments after a step; mean square has standard error sqrt(2/40000) = 0.7 %.
+  TestTarget const target = gaussian(1);
+  constexpr int chains = 40000;
+  LaneArray start(1, chains);
+  for (int w = 0; w < chains; ++w) start(0, w) = Stream({2, Purpose::test, static_cast<std::uint64_t>(w), 0}).normal();
+  Ledger ledger;
+  State state = init(target, std::move(start), ledger);
+  Proposal const proposal = spherical(1, 4);
+  std::vector<Proposal const*> const proposals(chains, &proposal);
+  double acceptance = 0;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    Info const info = step(target, proposals, {3, Purpose::proposal, 0, i}, state, ledger);
+    for (double const a : info.acceptance_probability) acceptance += a / (3.0 * chains);
+  }
+  double square = 0, fourth = 0;
+  for (double const x : state.theta.row(0)) {
+    square += x * x / chains;
+    fourth += x * x * x * x / chains;
+  }
+  CHECK(square == doctest::Approx(1).epsilon(0.025));
+  CHECK(fourth == doctest::Approx(3).epsilon(0.06));
+  // Acceptance of N(0, s^2) moves on N(0, 1): 2/pi atan(2/s), Gelman, Roberts and Gilks 1996; s = 2.
+  CHECK(acceptance == doctest::Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("small moves come in their share and size") {
+  TestTarget const flat({"a"}, {{Prior::normal, 0, 1e9}}, 1, 0,
+                        [](std::vector<double> const&, std::vector<double>& rows) { rows[0] = 0; });
+  constexpr int chains = 20000;
+  Proposal const proposal{1, {1}, 1, 0.1, 0.2};
+  std::vector<Proposal const*> const proposals(chains, &proposal);
+  Ledger ledger;
+  State state = init(flat, LaneArray(1, chains), ledger);
+  Info const info = step(flat, proposals, {1, Purpose::proposal, 0, 0}, state, ledger);
+  double small = 0, square = 0;
+  for (int w = 0; w < chains; ++w) {
+    if (!info.small[static_cast<std::size_t>(w)]) continue;
+    ++small;
+    square += state.theta(0, w) * state.theta(0, w);
+  }
+  CHECK(small / chains == doctest::Approx(0.1).epsilon(0.08));
+  CHECK(square / small == doctest::Approx(0.04).epsilon(0.12));
+}
+
+TEST_CASE("a move to a place that cannot be solved is rejected and marked") {
+  TestTarget const target({"x"}, {{Prior::normal, 0, 1}}, 1, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = w[0] == 0 ? 0 : infinity; });
+  Ledger ledger;
+  State state = init(target, LaneArray(1, 3), ledger);
+  Proposal const proposal = spherical(1, 1);
+  Info const info = step(target, std::vector<Proposal const*>(3, &proposal), {1, Purpose::proposal, 0, 0}, state, ledger);
+  for (int w = 0; w < 3; ++w) {
+    CHECK(state.theta(0, w) == 0);
+    CHECK(info.failed[static_cast<std::size_t>(w)]);
+    CHECK_FALSE(info.accepted[static_cast<std::size_t>(w)]);
+    CHECK(info.acceptance_probability[static_cast<std::size_t>(w)] == 0);
+  }
+  CHECK(ledger.failed() == 3);
+}
+
+TEST_CASE("many chains in one batch take the steps that each takes alone") {
+  TestTarget const target = gaussian(3);
+  Proposal const proposal = spherical(3, 0.5);
+  Ledger ledger;
+  State together = init(target, LaneArray(3, 5), ledger);
+  for (std::uint64_t i = 0; i < 20; ++i)
+    step(target, std::vector<Proposal const*>(5, &proposal), {1, Purpose::proposal, 0, i}, together, ledger);
+  for (int w = 0; w < 5; ++w) {
+    State alone = init(target, LaneArray(3, 1), ledger);
+    for (std::uint64_t i = 0; i < 20; ++i)
+      step(target, std::vector<Proposal const*>(1, &proposal), {1, Purpose::proposal, static_cast<std::uint64_t>(w), i}, alone,
+           ledger);
+    for (int p = 0; p < 3; ++p) CHECK(alone.theta(p, 0) == together.theta(p, w));
+    CHECK(alone.log_likelihood[0] == together.log_likelihood[static_cast<std::size_t>(w)]);
+  }
+}
+
+TEST_CASE("adaptation learns covariance and scale, and a failed move does not steer it") {
+  TestTarget const target({"a", "b"}, {{Prior::normal, 0, 1e3}, {Prior::normal, 0, 1e3}}, 2, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) {
+                            rows = {w[0] / 10, w[1] * 10};
+                          });
+  Ledger ledger;
+  State state = init(target, LaneArray(2, 4), ledger);
+  Adaptation adaptation({0, 1, 2, 3}, Eigen::MatrixXd::Identity(2, 2));
+  double late = 0;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    Info const info =
+        step(target, std::vector<Proposal const*>(4, &adaptation.proposal()), {1, Purpose::proposal, 0, i}, state, ledger);
+    for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info.small[w] ? 0 : info.acceptance_probability[w] / (0.9 * 2000 * 4);
+    adaptation.learn(state, info);
+  }
+  auto const& factor = adaptation.proposal().factor;
+  CHECK(factor[0] == doctest::Approx(10).epsilon(0.15));
+  CHECK(std::hypot(factor[2], factor[3]) == doctest::Approx(0.1).epsilon(0.15));
+  CHECK(late == doctest::Approx(0.234).epsilon(0.1));
+
+  double const scale = adaptation.proposal().scale;
+  Info failed{std::vector<double>(4, 0.0), std::vector<char>(4, 0), std::vector<char>(4, 1), std::vector<char>(4, 0)};
+  for (int i = 0; i < 10; ++i) adaptation.learn(state, failed);
+  CHECK(adaptation.proposal().scale == scale);
+}

@@ -1,0 +1,123 @@
+// Residual tests: each fires on the fault it is for and stays silent on noise.
+#include "inference/residual_tests.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/random.hpp"
+
+using namespace sysid;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> noise(std::size_t n, std::uint64_t index, double sd = 1) {
+  Stream stream({3, Purpose::test, index, 0});
+  std::vector<double> e(n);
+  for (double& v : e) v = sd * stream.normal();
+  return e;
+}
+
+std::vector<double> coloured(std::size_t n, std::uint64_t index, double rho) {
+  std::vector<double> e = noise(n, index);
+  for (std::size_t t = 1; t < n; ++t) e[t] += rho * e[t - 1];
+  return e;
+}
+
+/// Every seventh sample missing, and a hole.
+std::vector<double> with_gaps(std::vector<double> e) {
+  for (std::size_t t = 0; t < e.size(); t += 7) e[t] = missing;
+  for (std::size_t t = 100; t < 130 && t < e.size(); ++t) e[t] = missing;
+  return e;
+}
+
+}  // namespace
+
+TEST_CASE("white residuals pass the whiteness test as often as its level says") {
+  int fired = 0, outside = 0, lags = 0, small = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    CorrelationTest const test = whiteness(seed % 2 ? with_gaps(noise(500, seed)) : noise(500, seed));
+    fired += test.fires();
+    small += test.p_value < 0.05;
+    outside += test.outside;
+    lags += static_cast<int>(test.correlation.size());
+  }
+  CHECK(fired <= 6);  // at n = 500 the level 0.1 % is 0.3 % in truth: 1.2 expected, P(more than 6) = 3e-4
+  CHECK(small == doctest::Approx(20).epsilon(0.7));  // binomial, sd 4.4: within 3.2 sd
+  CHECK(static_cast<double>(outside) / lags == doctest::Approx(0.01).epsilon(0.3));
+}
+
+TEST_CASE("coloured residuals and an offset fail the whiteness test, gaps or not") {
+  CHECK(whiteness(coloured(500, 1, 0.3)).fires());
+  CHECK(whiteness(with_gaps(coloured(500, 1, 0.3))).fires());
+  std::vector<double> offset = noise(500, 2);
+  for (double& v : offset) v += 0.3;
+  CHECK(whiteness(offset).fires());
+  CorrelationTest const test = whiteness(coloured(2000, 1, 0.5));
+  // A moving average 1 + 0.5 z^-1 has correlation 0.5/1.25 at lag 1 and none beyond; standard error about 1/sqrt(2000).
+  CHECK(test.first_lag == 1);
+  CHECK(std::fabs(test.correlation[0] - 0.4) < 4 / std::sqrt(2000.0));
+  CHECK(std::fabs(test.correlation[4]) < 4 / std::sqrt(2000.0));
+}
+
+TEST_CASE("input that the model has used up does not show in the residuals, even when the input is coloured") {
+  int fired = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    std::vector<double> const u = coloured(500, 1000 + seed, 0.9);
+    fired += input_correlation(seed % 2 ? with_gaps(noise(500, seed)) : noise(500, seed), u).fires();
+  }
+  CHECK(fired <= 3);  // at most 0.3 expected
+}
+
+TEST_CASE("input that leaks into the residuals is found at its lag") {
+  std::vector<double> const u = noise(500, 50);
+  std::vector<double> e = noise(500, 51);
+  for (std::size_t t = 3; t < e.size(); ++t) e[t] += 0.3 * u[t - 3];
+  CorrelationTest const test = input_correlation(e, u);
+  CHECK(test.fires());
+  CHECK(test.correlation[3] > test.bound[3]);
+  // corr = 0.3 / sqrt(1.09); the standard error is about 1/sqrt(500).
+  CHECK(std::fabs(test.correlation[3] - 0.3 / std::sqrt(1.09)) < 4 / std::sqrt(500.0));
+  CHECK(input_correlation(with_gaps(e), u).fires());
+}
+
+TEST_CASE("future input, which no cause can read, is not tested for") {
+  std::vector<double> const u = noise(500, 60);
+  std::vector<double> e = noise(500, 61);
+  for (std::size_t t = 0; t + 5 < e.size(); ++t) e[t] += 0.5 * u[t + 5];
+  CHECK_FALSE(input_correlation(e, u).fires());
+}
+
+TEST_CASE("records too short or constant are not judged") {
+  CHECK_FALSE(whiteness({}).fires());
+  CHECK_FALSE(whiteness(std::vector<double>{1, 1, 1}).fires());
+  CHECK_FALSE(whiteness(std::vector<double>(50, 0.0)).fires());
+  CHECK_FALSE(whiteness(std::vector<double>(50, missing)).fires());
+  CHECK_FALSE(input_correlation(noise(50, 1), std::vector<double>(50, 2.0)).fires());
+}
+
+TEST_CASE("the normalised mean square error is that of (8.18)") {
+  std::vector<double> const y = {1, 2, 3, 4}, exact = y, mean(4, 2.5), off = {1, 2, 3, 5};
+  CHECK(nmse(y, exact) == 0);
+  CHECK(nmse(y, mean) == doctest::Approx(100).epsilon(1e-14));
+  CHECK(nmse(y, off) == doctest::Approx(100 * 1.0 / 5.0).epsilon(1e-14));  // N var y = 5
+  CHECK(nmse(std::vector<double>{1, missing, 3}, std::vector<double>{1, 9, 2}) == doctest::Approx(100 * 1.0 / 2.0).epsilon(1e-14));
+  CHECK(std::isnan(nmse(std::vector<double>{2, 2}, std::vector<double>{1, 2})));
+  CHECK(std::isnan(nmse({}, {})));
+}
+
+TEST_CASE("residuals of the stated size pass the chi-squared test, others do not") {
+  CHECK_FALSE(chi_squared(noise(500, 70)).fires());
+  CHECK_FALSE(chi_squared(with_gaps(noise(500, 71))).fires());
+  CHECK(chi_squared(noise(500, 70, 1.3)).fires());
+  CHECK(chi_squared(noise(500, 70, 0.7)).fires());
+  ChiSquaredTest const test = chi_squared(noise(1000, 72));
+  // Wilson and Hilferty: chi^2(n)/n = (1 - 2/(9n) + z sqrt(2/(9n)))^3 with z = 3.2905 for 99.95 %.
+  double const a = 2.0 / 9000;
+  CHECK(test.high == doctest::Approx(std::pow(1 - a + 3.290526731 * std::sqrt(a), 3)).epsilon(1e-4));
+  CHECK(test.low == doctest::Approx(std::pow(1 - a - 3.290526731 * std::sqrt(a), 3)).epsilon(1e-4));
+  CHECK_FALSE(chi_squared({}).fires());
+}

@@ -1,0 +1,168 @@
+// The global search: finds the optimum from the prior alone, weighs modes, spreads chains, and says when there is nothing to find.
+#include "inference/search.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <set>
+
+#include "inference/laplace.hpp"
+#include "inference/targets.hpp"
+
+using namespace sysid;
+using namespace sysid::testing;
+
+namespace {
+
+/// log of sum_i share_i N(x | centre_i, sd_i^2) as one residual row, under a nearly flat prior.
+TestTarget mixture(std::vector<double> share, std::vector<double> centre, std::vector<double> sd) {
+  return TestTarget({"x"}, {{Prior::normal, 0, 30}}, 1, 500, [=](std::vector<double> const& w, std::vector<double>& rows) {
+    double best = -infinity, sum = 0;
+    std::vector<double> terms;
+    for (std::size_t i = 0; i < share.size(); ++i) {
+      double const z = (w[0] - centre[i]) / sd[i];
+      terms.push_back(std::log(share[i] / sd[i]) - 0.5 * z * z);
+      best = std::max(best, terms.back());
+    }
+    for (double const t : terms) sum += std::exp(t - best);
+    // A floor, as a residual must stay below the ceiling's reach.
+    rows[0] = as_residual(std::max(best + std::log(sum), -1e6), 500);
+  });
+}
+
+Mode mode_with_share(double share) {
+  Mode mode;
+  mode.share = share;
+  return mode;
+}
+
+}  // namespace
+
+TEST_CASE("Duffing's oscillator is found from draws two decades wide, for every record and seed") {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    CAPTURE(seed);
+    TestTarget const target = duffing(seed);
+    Bench bench(1000 + seed);
+    SearchResult const result = search(target, Aim::posterior, bench.context);
+    REQUIRE_FALSE(result.modes.empty());
+    Mode const& best = result.modes.front();
+    double const truth[] = {1, 20, 1e4, 5e9};
+    for (std::size_t p = 0; p < 4; ++p) {
+      CHECK(std::fabs(best.declared[p] - truth[p]) < 4 * best.sd[p]);
+      CHECK(best.sd[p] < 0.01 * truth[p]);
+    }
+    CHECK(best.share > 0.999);
+    CHECK(best.well_defined);
+    CHECK(result.findings.empty());
+  }
+}
+
+TEST_CASE("modes are weighed by the mass below them, not by their height") {
+  // The narrow mode is 7.5 times as high and holds a quarter; the third is too small to mention.
+  TestTarget const target = mixture({0.746, 0.25, 0.004}, {-20, 10, 40}, {2, 0.0894, 1});
+  Bench bench;
+  SearchResult const result = search(target, Aim::posterior, bench.context);
+  REQUIRE(result.modes.size() >= 2);
+  // The prior tilts each Gaussian: N(x | c, s^2) N(x | 0, t^2) integrates to N(c | 0, s^2 + t^2).
+  auto const mass = [&](double share, double c, double s) {
+    return share * std::exp(-0.5 * c * c / (900 + s * s)) / std::sqrt(1 + s * s / 900);
+  };
+  double const wide = mass(0.746, -20, 2), narrow = mass(0.25, 10, 0.0894), small = mass(0.004, 40, 1);
+  CHECK(result.modes[0].share == doctest::Approx(wide / (wide + narrow + small)).epsilon(2e-3));
+  CHECK(result.modes[1].share == doctest::Approx(narrow / (wide + narrow + small)).epsilon(6e-3));
+  REQUIRE(result.findings.size() == 1);
+  CHECK(result.findings[0].code == "second_mode");
+  CHECK(result.findings[0].message.find("x = 10") != std::string::npos);
+}
+
+TEST_CASE("one mode alone raises no warning") {
+  TestTarget const target = mixture({1}, {3}, {0.5});
+  Bench bench;
+  SearchResult const result = search(target, Aim::posterior, bench.context);
+  CHECK(result.modes.size() == 1);
+  CHECK(result.findings.empty());
+  CHECK(result.modes[0].share == 1);
+}
+
+TEST_CASE("Laplace's mass of a Gaussian is its evidence") {
+  // y_i ~ N(a, 1), a ~ N(0, 5^2): the evidence is known, and Laplace is exact.
+  constexpr int n = 10;
+  std::vector<double> const y = {1.2, 0.3, 0.8, 1.9, -0.4, 1.1, 0.6, 1.4, 0.2, 0.9};
+  double const constant = -0.5 * n * std::log(2 * std::numbers::pi);
+  TestTarget const target({"a"}, {{Prior::normal, 0, 5}}, n, constant,
+                          [=](std::vector<double> const& w, std::vector<double>& rows) {
+                            for (std::size_t i = 0; i < n; ++i) rows[i] = y[i] - w[0];
+                          });
+  double sum = 0, square = 0;
+  for (double const v : y) {
+    sum += v;
+    square += v * v;
+  }
+  // Marginal covariance I + 25 11': determinant 1 + 25 n, inverse I - 25/(1 + 25 n) 11'.
+  double const evidence = constant - 0.5 * std::log(1 + 25.0 * n) - 0.5 * (square - 25 / (1 + 25.0 * n) * sum * sum);
+  Bench bench;
+  SearchResult const result = search(target, Aim::posterior, bench.context);
+  CHECK(result.modes.front().log_mass == doctest::Approx(evidence).epsilon(1e-8));
+  CHECK(result.modes.front().sd[0] == doctest::Approx(std::sqrt(1 / (n + 0.04))).epsilon(1e-6));
+}
+
+TEST_CASE("a combination that the data leave alone is reported") {
+  // Only a + b is measured; `ml` has no prior to lean on.
+  TestTarget const target({"a", "b"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] + w[1] - 1) / 0.01; });
+  Bench likelihood, posterior;
+  SearchResult const flat = search(target, Aim::likelihood, likelihood.context);
+  REQUIRE(flat.findings.size() == 1);
+  CHECK(flat.findings[0].code == "flat_direction");
+  CHECK_FALSE(flat.modes[0].well_defined);
+  CHECK(search(target, Aim::posterior, posterior.context).findings.empty());
+}
+
+TEST_CASE("a prior without a solvable point is a failure that names the place") {
+  TestTarget const target({"x"}, {{Prior::uniform, 0, 1}}, 1, 0,
+                          [](std::vector<double> const&, std::vector<double>& rows) { rows[0] = infinity; });
+  Bench bench;
+  SearchResult const result = search(target, Aim::posterior, bench.context);
+  REQUIRE(result.failure);
+  CHECK(result.failure->severity == Severity::error);
+  CHECK(result.failure->message.find("none of 8192 draws") != std::string::npos);
+  CHECK(result.failure->message.find("the test's residual (8192 times)") != std::string::npos);
+}
+
+TEST_CASE("solvable points are used however rare they are") {
+  // Finite for one draw in two hundred.
+  TestTarget const target({"x"}, {{Prior::uniform, 0, 1}}, 1, 0, [](std::vector<double> const& w, std::vector<double>& rows) {
+    rows[0] = w[0] < 0.005 ? (w[0] - 0.002) / 0.0005 : infinity;
+  });
+  Bench bench;
+  SearchResult const result = search(target, Aim::posterior, bench.context);
+  REQUIRE_FALSE(result.failure);
+  CHECK(result.modes.front().declared[0] == doctest::Approx(0.002).epsilon(0.2));
+  CHECK(bench.ledger.failed() > 1000);
+}
+
+TEST_CASE("chains are spread over modes by mass, and a notable mode is never left out") {
+  std::vector<Mode> const two = {mode_with_share(0.97), mode_with_share(0.03)};
+  CHECK(spread_over_modes(two, 4) == std::vector<int>{0, 0, 0, 1});
+  CHECK(spread_over_modes(two, 1) == std::vector<int>{0});
+  std::vector<Mode> const even = {mode_with_share(0.5), mode_with_share(0.5)};
+  CHECK(spread_over_modes(even, 4) == std::vector<int>{0, 0, 1, 1});
+  std::vector<Mode> const faint = {mode_with_share(0.995), mode_with_share(0.005)};
+  CHECK(spread_over_modes(faint, 4) == std::vector<int>{0, 0, 0, 0});
+}
+
+TEST_CASE("starts are wider than the posterior and differ from each other") {
+  TestTarget const target = mixture({1}, {3}, {0.5});
+  Bench bench;
+  SearchResult const result = search(target, Aim::posterior, bench.context);
+  constexpr int chains = 400;
+  LaneArray const starts = overdispersed_starts(target, result.modes, std::vector<int>(chains, 0), bench.context);
+  double square = 0;
+  std::set<double> distinct;
+  for (double const x : starts.row(0)) {
+    square += (x - 3) * (x - 3) / chains;
+    distinct.insert(x);
+  }
+  CHECK(distinct.size() == chains);
+  CHECK(std::sqrt(square) == doctest::Approx(1.5).epsilon(0.15));  // three sds; standard error 3.5 %
+}
