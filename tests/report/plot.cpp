@@ -1,0 +1,72 @@
+// Axes and script pieces.
+#include "report/plot.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace sysid;
+using namespace sysid::plot;
+
+TEST_CASE("ticks are round numbers inside the range, with equal digits") {
+  Axis const a = axis(0.9983, 1.0021, 4);
+  REQUIRE(a.ticks.size() == 4);
+  CHECK(a.ticks[0].second == "0.999");
+  CHECK(a.ticks[3].second == "1.002");
+  CHECK(a.exponent == 0);
+  for (auto const& [value, text] : axis(-7.3, 12.1, 5).ticks) CHECK(std::fabs(std::remainder(value, 5.0)) < 1e-12);
+}
+
+TEST_CASE("large and small numbers share a power of ten that is a multiple of three") {
+  Axis const a = axis(4.9e9, 5.1e9, 4);
+  CHECK(a.exponent == 9);
+  CHECK(a.low == doctest::Approx(4.9));
+  CHECK(a.scaled(5e9) == doctest::Approx(5));
+  CHECK(axis(-2e-4, 3e-4, 4).exponent == -6);
+  CHECK(axis(0, 500, 4).exponent == 0);
+  CHECK(axis_label("k3", "N/m^3", 9) == "k3 [10⁹ N/m³]");
+  CHECK(axis_label("x", "", 0) == "x");
+  CHECK(axis_label("ratio", "-", 0) == "ratio");
+  CHECK(axis_label("n", "", 6) == "n [10⁶]");
+}
+
+TEST_CASE("a constant has an axis with room around it") {
+  for (double const value : {0.0, 3.0, -2e9}) {
+    Axis const a = axis(value, value, 3);
+    CHECK(a.low < a.scaled(value));
+    CHECK(a.high > a.scaled(value));
+    CHECK_FALSE(a.ticks.empty());
+  }
+}
+
+TEST_CASE("a negative tick has a real minus and zero has none") {
+  Axis const a = axis(-1, 1, 2);
+  REQUIRE(a.ticks.size() == 3);
+  CHECK(a.ticks[0].second == "−1");
+  CHECK(a.ticks[1].second == "0");
+}
+
+TEST_CASE("a range that falls short of a tick by a hair is lengthened") {
+  Axis a = axis(0, 0.499, 5);
+  a.reach_ticks();
+  CHECK(a.high == doctest::Approx(0.5));
+  CHECK(a.ticks.back().second == "0.5");
+  Axis b = axis(0, 0.46, 5);
+  b.reach_ticks();
+  CHECK(b.high == doctest::Approx(0.46));
+}
+
+TEST_CASE("a text cannot leave its quotes") {
+  CHECK(quote("y''") == "'y'''''");
+  CHECK(quote("a\nplot 1") == "'aplot 1'");
+}
+
+TEST_CASE("names of files and identifiers are plain") {
+  CHECK(identifier("bench.train y'") == "bench_train_y_dot");
+  CHECK(identifier("../x;rm") == "___x_rm");
+}
+
+TEST_CASE("the range ignores what is not finite") {
+  CHECK(range({std::nan(""), 2, -1, INFINITY}) == std::pair(-1.0, 2.0));
+  CHECK(range({std::nan("")}) == std::pair(0.0, 1.0));
+}

@@ -1,0 +1,99 @@
+// The result folder: complete, never overwritten unasked, the same bytes twice.
+#include "report/result.hpp"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <map>
+
+#include "core/diagnostic.hpp"
+#include "core/files.hpp"
+#include "example.hpp"
+#include "report/gnuplot.hpp"
+
+using namespace sysid;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Folder {
+  Folder() {
+    char name[] = "/tmp/sysid-result-XXXXXX";
+    path = mkdtemp(name);
+  }
+  ~Folder() { fs::remove_all(path); }
+  fs::path path;
+};
+
+std::map<std::string, std::string> contents(fs::path const& folder) {
+  std::map<std::string, std::string> out;
+  for (fs::directory_entry const& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) out[fs::relative(entry.path(), folder)] = read_file(entry.path());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a result folder holds draws per chain, prediction, summary, timing, report and the resolved file") {
+  Folder const folder;
+  write_result(example::duffing(10), folder.path / "posterior");
+  auto const files = contents(folder.path / "posterior");
+  for (char const* name : {"draws_1.csv", "draws_4.csv", "predict.csv", "summary.json", "timing.json", "report.html",
+                           "resolved.sysid", "figures/posterior.gnuplot"})
+    CHECK_MESSAGE(files.contains(name), name);
+  CHECK_FALSE(files.contains("draws_5.csv"));
+  for (auto const& [name, bytes] : files) CHECK_MESSAGE(name.find("partial") == std::string::npos, name);
+  CHECK(files.contains("figures/posterior.svg") == gnuplot_installed());
+}
+
+TEST_CASE("the same result is the same bytes but for the timing") {
+  Folder const folder;
+  Report report = example::duffing(10);
+  write_result(report, folder.path / "a");
+  report.timing = {{"wall_s", 7.5}};
+  write_result(report, folder.path / "b");
+  auto a = contents(folder.path / "a"), b = contents(folder.path / "b");
+  CHECK(a["timing.json"] != b["timing.json"]);
+  a.erase("timing.json");
+  b.erase("timing.json");
+  CHECK(a == b);
+}
+
+TEST_CASE("a result is not overwritten unless forced, and then nothing of it stays") {
+  Folder const folder;
+  fs::path const path = folder.path / "posterior";
+  prepare_result(path, false);
+  write_file(path / "checkpoint", "kept");
+  prepare_result(path, false);  // a checkpoint is no result
+  write_result(example::duffing(10), path);
+  write_file(path / "notes.txt", "mine");
+  try {
+    prepare_result(path, false);
+    FAIL("overwritten");
+  } catch (UserError const& error) {
+    CHECK(error.diagnostic().message.find("holds results already") != std::string::npos);
+    CHECK(error.diagnostic().help.find("--force") != std::string::npos);
+  }
+  prepare_result(path, true);
+  auto const left = contents(path);
+  CHECK(left.size() == 2);
+  CHECK(left.at("notes.txt") == "mine");
+  CHECK(left.at("checkpoint") == "kept");
+}
+
+TEST_CASE("predictions of several experiments have a file each") {
+  Folder const folder;
+  Report report = example::duffing(10);
+  report.predictions.push_back(report.predictions[0]);
+  report.predictions[1].experiment = "bench.test";
+  write_result(report, folder.path);
+  CHECK(fs::exists(folder.path / "predict_bench_train.csv"));
+  CHECK(fs::exists(folder.path / "predict_bench_test.csv"));
+  CHECK_FALSE(fs::exists(folder.path / "predict.csv"));
+}
+
+TEST_CASE("a folder that cannot be written is an I/O error") {
+  Folder const folder;
+  write_file(folder.path / "file", "");
+  CHECK_THROWS_AS(write_result(example::duffing(2), folder.path / "file"), IoError);
+}
