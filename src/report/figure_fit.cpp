@@ -117,7 +117,7 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
 
   if (has_data)
     out.caption = fmt::format("Measured and modelled {}. The residuals below should scatter without pattern; {}", quantity.name,
-                              has_noise ? "about one in twenty lies outside the light response_band, which includes the noise."
+                              has_noise ? "about one in twenty lies outside the light band, which includes the noise."
                                         : "the band is that of the response, without noise.");
   else
     out.caption = fmt::format("The model's account of {}, which is not measured, with its 95 % band.", quantity.name);

@@ -214,7 +214,7 @@ Figure rank_figure(Draws const& draws) {
   out.caption =
       "How often each chain's draws fall into each twentieth of all draws (ranks as shares of the whole). Converged chains are "
       "level and "
-      "inside the response_band, which holds for independent draws; a slope or a hump is a chain that sits elsewhere or spreads "
+      "inside the band, which holds for independent draws; a slope or a hump is a chain that sits elsewhere or spreads "
       "otherwise "
       "than the rest." +
       left_out(draws);

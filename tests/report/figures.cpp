@@ -112,3 +112,10 @@ TEST_CASE("missing samples do not spoil the autocorrelation") {
   CHECK(std::isfinite(values[1]));
   CHECK(values[1] < 0);
 }
+
+TEST_CASE("captions are prose: no names of our own stand in them") {
+  for (plot::Figure const& figure : figures(example::duffing(40))) {
+    CHECK_MESSAGE(figure.caption.find('_') == std::string::npos, figure.caption);
+    CHECK_MESSAGE(figure.caption.ends_with('.'), figure.caption);
+  }
+}
