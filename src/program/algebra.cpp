@@ -251,6 +251,7 @@ void Algebra::collect(NodeId id, int exponent, Product& into, bool open) {
     }
   }
   NodeId base = rewrite(id);
+  if (!may_open(id)) waiting_.insert(base);
   if (!binding_.is_step(base)) return multiply_atom(into, base, exponent);  // algebra may find it constant after all
   if (graph_[base].operation == Operation::negate) {
     into.negative ^= exponent % 2 != 0;
@@ -270,33 +271,54 @@ int Algebra::depth(NodeId id) {
   return depth_[id];
 }
 
-/// The product of the factors, those known first multiplied first.
+/// Order of factors: those that wait in registers (states, and values with several users) by number, so that equal products meet;
+/// then what is known early; then those computed for this product alone.
+int Algebra::rank(NodeId factor) {
+  if (!binding_.is_step(factor)) return 1;
+  return graph_[factor].operation == Operation::leaf || waiting_.contains(factor) ? 0 : 2 + depth(factor);
+}
+
+/// The product of the factors. One that must be computed goes ahead of several that need not be, so that the product stays in the
+/// accumulator all along.
 NodeId Algebra::multiplied(std::vector<NodeId> factors) {
   if (factors.empty()) return one_;
-  std::stable_sort(factors.begin(), factors.end(), [this](NodeId a, NodeId b) { return depth(a) < depth(b); });
+  std::sort(factors.begin(), factors.end(), [this](NodeId a, NodeId b) { return std::pair(rank(a), a) < std::pair(rank(b), b); });
+  auto const computed = std::find_if(factors.begin(), factors.end(), [this](NodeId factor) { return rank(factor) > 1; });
+  if (computed - factors.begin() > 1 && computed != factors.end()) std::rotate(factors.begin(), computed, computed + 1);
   NodeId result = factors.front();
   for (std::size_t i = 1; i < factors.size(); ++i) result = graph_.multiply(result, factors[i]);
   return result;
 }
 
-/// |product| as a * b, for a fused multiply-add; b is the factor known last.
+/// Factors as nodes: powers as products, |a| |b| as |a b|.
+std::vector<NodeId> Algebra::factors_of(std::vector<Product::Factor> const& factors) {
+  std::vector<NodeId> result, magnitudes;
+  for (Product::Factor const& factor : factors) {
+    bool const magnitude = graph_[factor.base].operation == Operation::absolute && factor.exponent == 1;
+    if (magnitude)
+      magnitudes.push_back(graph_[factor.base].a);
+    else
+      result.push_back(integer_power(graph_, factor.base, factor.exponent));
+  }
+  if (!magnitudes.empty()) result.push_back(graph_.unary(Operation::absolute, multiplied(magnitudes)));
+  return result;
+}
+
+/// |product| as a * b, for a fused multiply-add; b is the last factor in the order above.
 Algebra::Pair Algebra::split(Product const& product) {
-  std::vector<NodeId> factors;
+  std::vector<NodeId> factors = factors_of(product.numerator);
   if (product.parameter != one_) factors.push_back(product.parameter);
   if (product.data != one_) factors.push_back(product.data);
-  if (product.numerator.size() == 1 && product.denominator.empty() && factors.empty() && product.numerator.front().exponent > 1) {
+  if (!product.denominator.empty())
+    return {graph_.divide(multiplied(factors), multiplied(factors_of(product.denominator))), one_, true};
+  if (factors.size() == 1 && product.numerator.size() == 1 && product.numerator.front().exponent > 1) {
     auto const [base, exponent] = product.numerator.front();
     int const half = exponent % 2 == 0 ? exponent / 2 : exponent - 1;
     return {integer_power(graph_, base, exponent - half), integer_power(graph_, base, half), false};
   }
-  for (Product::Factor const& factor : product.numerator) factors.push_back(integer_power(graph_, factor.base, factor.exponent));
-  if (!product.denominator.empty()) {
-    std::vector<NodeId> below;
-    for (Product::Factor const& factor : product.denominator) below.push_back(integer_power(graph_, factor.base, factor.exponent));
-    return {graph_.divide(multiplied(factors), multiplied(below)), one_, true};
-  }
   if (factors.size() < 2) return {multiplied(factors), one_, true};
-  auto const last = std::max_element(factors.begin(), factors.end(), [this](NodeId a, NodeId b) { return depth(a) < depth(b); });
+  auto const last = std::max_element(factors.begin(), factors.end(),
+                                     [this](NodeId a, NodeId b) { return std::pair(rank(a), a) < std::pair(rank(b), b); });
   NodeId const b = *last;
   factors.erase(last);
   return {multiplied(factors), b, false};
@@ -357,13 +379,17 @@ void Algebra::expand_below(NodeId id, Product const& scale, std::vector<Product>
 ///   k y + k3 y^3 = y (k + k3 y^2)
 void Algebra::factor_out(std::vector<Product>& terms) {
   for (;;) {
-    std::map<NodeId, int> counts;
-    for (Product const& term : terms)
-      if (term.denominator.empty())
-        for (Product::Factor const& factor : term.numerator) ++counts[factor.base];
-    auto const best =
-        std::max_element(counts.begin(), counts.end(), [](auto const& a, auto const& b) { return a.second < b.second; });
-    if (best == counts.end() || best->second < 2) return;
+    std::map<NodeId, std::pair<int, int>> counts;  // of terms; of exponents, which decide between equals
+    for (Product const& term : terms) {
+      if (!term.denominator.empty()) continue;
+      for (Product::Factor const& factor : term.numerator) {
+        ++counts[factor.base].first;
+        counts[factor.base].second += factor.exponent;
+      }
+    }
+    auto const fewer = [](auto const& a, auto const& b) { return a.second < b.second; };
+    auto const best = std::max_element(counts.begin(), counts.end(), fewer);
+    if (best == counts.end() || best->second.first < 2) return;
     NodeId const base = best->first;
 
     auto const find = [base](Product& term) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "expression/graph.hpp"
@@ -67,7 +68,9 @@ class Algebra {
     bool single;  // only a
   };
   Pair split(Product const& product);
+  int rank(NodeId factor);
   NodeId multiplied(std::vector<NodeId> factors);
+  std::vector<NodeId> factors_of(std::vector<Product::Factor> const& factors);
   int depth(NodeId id);
   void find_shared_powers(std::span<NodeId const> roots);
 
@@ -77,6 +80,7 @@ class Algebra {
   std::vector<int> uses_;  // of the nodes below the roots, as they were given
   std::unordered_map<NodeId, NodeId> rewritten_;
   std::unordered_map<NodeId, Shared> shared_;
+  std::unordered_set<NodeId> waiting_;  // rewritten nodes that have several users
   std::vector<int> depth_;
 };
 

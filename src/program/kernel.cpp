@@ -17,7 +17,7 @@ void run_block(Kernel const& kernel, Executor executor, double* file, ConstLanes
   double* const rows = file + uniform_space(static_cast<int>(kernel.constants.size()));
   int const lanes = inputs.rows() > 0 ? inputs.width() : out.width();
   for (int r = 0; r < kernel.inputs; ++r) {
-    double* const row = rows + r * executor.width;
+    double* const row = rows + r * executor.stride();
     for (int w = 0; w < executor.width; ++w) row[w] = inputs(r, std::min(w, lanes - 1));
   }
   run(*kernel.linked, executor, file);
@@ -25,7 +25,7 @@ void run_block(Kernel const& kernel, Executor executor, double* file, ConstLanes
     Operand const result = kernel.results[static_cast<std::size_t>(r)];
     for (int w = 0; w < lanes; ++w)
       out(r, w) = result.place == OperandPlace::uniform ? kernel.constants[result.index]
-                                                        : rows[static_cast<int>(result.index) * executor.width + w];
+                                                        : rows[static_cast<int>(result.index) * executor.stride() + w];
   }
 }
 
@@ -64,7 +64,7 @@ void run(Kernel const& kernel, ConstLanes inputs, Lanes out) {
   if (width == 0 || kernel.outputs == 0) return;
   Executor const executor = choose_executor(width);
   int const uniforms = uniform_space(static_cast<int>(kernel.constants.size()));
-  LaneArray memory(1, uniforms + kernel.registers * executor.width);
+  LaneArray memory(1, uniforms + kernel.registers * executor.stride());
   double* const file = memory.view().data();
   std::copy(kernel.constants.begin(), kernel.constants.end(), file);
   for (int first = 0; first < width; first += executor.width) {

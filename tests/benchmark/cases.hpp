@@ -20,6 +20,7 @@ struct Case {
   std::shared_ptr<SimulationProgram const> program;
   Experiment experiment;
   std::vector<double> centre;  // parameters, spread by a few percent over lanes
+  /// The hand-written loop; nullptr: there is none.
   double (*loop)(baseline::Record const&, std::vector<double> const&);
 
   LaneArray parameters(int width) const {
@@ -76,6 +77,16 @@ inline Case bouc_wen() {
       std::move(experiment),
       {2, 10, 5e4, 0.8, -1.1},
       [](baseline::Record const& r, std::vector<double> const& p) { return baseline::bouc_wen(r, p[0], p[1], p[2], p[3], p[4]); }};
+}
+
+/// The same record with the exponent n = 1.5 a parameter: powers dominate; nobody writes that loop by hand.
+inline Case bouc_wen_with_powers() {
+  Case result = bouc_wen();
+  result.name = "Bouc-Wen n estimated, 1001 samples";
+  result.program = std::make_shared<SimulationProgram const>(compile(systems::bouc_wen(0)));
+  result.centre = {2, 10, 5e4, 0.8, -1.1, 1.5};
+  result.loop = nullptr;
+  return result;
 }
 
 }  // namespace benchmark_cases

@@ -20,7 +20,7 @@ constexpr Executor wide_executors[] = {{InstructionSet::avx2, 4},
 std::vector<Step> link_for(Code const& code, int uniforms, Executor executor) {
   bool const wide = executor.set == InstructionSet::avx512;
   std::uint32_t const rows = static_cast<std::uint32_t>(uniform_space(uniforms)) * 8;
-  std::uint32_t const row = static_cast<std::uint32_t>(executor.width) * 8;
+  std::uint32_t const row = static_cast<std::uint32_t>(executor.stride()) * 8;
   auto const offset = [&](Operand const& operand) {
     return operand.place == OperandPlace::uniform ? operand.index * 8 : rows + operand.index * row;
   };

@@ -14,6 +14,10 @@ namespace sysid {
 struct Executor {
   InstructionSet set = InstructionSet::avx2;
   int width = 4;
+
+  /// Doubles from one row of a register file to the next. Rows of wide blocks are a cache line apart: at multiples of 4096 bytes a
+  /// load would seem to depend on every store a whole number of pages away.
+  int stride() const { return width >= 16 ? width + 8 : width; }
 };
 
 /// The executors of a set, narrow to wide.
