@@ -27,6 +27,12 @@ std::string_view word(Severity severity) {
   return "error";
 }
 
+/// Number of characters of UTF-8: what a text takes on the screen.
+int width(std::string_view text) {
+  return static_cast<int>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 /// ANSI colours, or nothing.
 struct Paint {
   bool on;
@@ -108,9 +114,8 @@ std::vector<std::string> mark_rows(std::vector<Mark> marks, Severity severity, P
       continue;
     }
     // Texts are placed from right to left, so a row is free when its leftmost piece begins behind this one.
-    std::size_t const length = mark.text.size();
     std::size_t row = 1;
-    while (row < rows.size() && !rows[row].empty() && mark.begin + static_cast<int>(length) + 1 > rows[row].front().begin) ++row;
+    while (row < rows.size() && !rows[row].empty() && mark.begin + width(mark.text) + 1 > rows[row].front().begin) ++row;
     if (row == rows.size()) rows.emplace_back();
     rows[row].insert(rows[row].begin(), {mark.begin, mark.text, mark.primary});
   }
@@ -121,7 +126,7 @@ std::vector<std::string> mark_rows(std::vector<Mark> marks, Severity severity, P
     for (Piece const& piece : row) {
       text.append(static_cast<std::size_t>(std::max(piece.begin - column, 0)), ' ');
       text += piece.primary ? paint.severity(severity, piece.text) : paint("36", piece.text);
-      column = std::max(column, piece.begin) + static_cast<int>(piece.text.size());
+      column = std::max(column, piece.begin) + width(piece.text);
     }
     out.push_back(std::move(text));
   }

@@ -78,6 +78,17 @@ TEST_CASE("tabs and letters of two bytes do not shift the carets") {
         "more: sysid explain E2001\n");
 }
 
+TEST_CASE("units of two-byte letters do not shift what stands to their right") {
+  Source const source("a", "a     + b     + c");
+  Diagnostic const diagnostic{
+      Severity::error, "", "units", Label{{16, 17}, "x"}, {Label{{0, 1}, "[\xC2\xB5m]"}, Label{{8, 9}, "[s]"}}, ""};
+  CHECK(render(diagnostic, source) ==
+        "a:1:17: error: units\n"
+        "   1 | a     + b     + c\n"
+        "     | -       -       ^ x\n"
+        "     | [\xC2\xB5m]    [s]\n");
+}
+
 TEST_CASE("a span over several lines is underlined to the end of its first line") {
   Source const source("a", "k = (1 +\n  2)\n");
   Diagnostic const diagnostic{Severity::error, "", "too long", Label{{4, 13}, ""}, {}, ""};
