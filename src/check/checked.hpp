@@ -1,4 +1,5 @@
-// A checked file: what every later stage works from. Models are typed and first order; data blocks and tasks refer to them by index.
+// A checked file: what every later stage works from. Models are typed and first order; data blocks and tasks refer to them by
+// index.
 #pragma once
 #include <map>
 #include <optional>
@@ -40,10 +41,10 @@ struct DataPart {
 struct DataBlock {
   std::string name;
   Span span;
-  std::string path;       // as written, relative to the .sysid file
+  std::string path;  // as written, relative to the .sysid file
   Span path_span;
   std::optional<ColumnUse> time;
-  double step = 0;        // [s], when there is no time column
+  double step = 0;  // [s], when there is no time column
   std::vector<DataInputUse> inputs;
   std::vector<DataMeasureUse> measured;
   std::vector<DataPart> parts;
@@ -70,33 +71,33 @@ struct InputGenerator {
 
 struct SimulateTask {
   int model = 0;
-  std::vector<std::optional<double>> values;    // per model parameter, SI; absent: not given
-  std::vector<InputGenerator> inputs;           // per model input
-  double noise_fraction = -1;                   // of the standard deviation of each clean channel; negative: the model's own noise
+  std::vector<std::optional<double>> values;  // per model parameter, SI; absent: not given
+  std::vector<InputGenerator> inputs;         // per model input
+  double noise_fraction = -1;                 // of the standard deviation of each clean channel; negative: the model's own noise
   int samples = 0;
-  double step = 0;                              // [s]
+  double step = 0;  // [s]
   int substeps = 1;
   std::optional<std::uint64_t> seed;
-  std::string file;                             // name of the CSV in the result folder
+  std::string file;  // name of the CSV in the result folder
 };
 
 struct FitTask {
   int model = 0;
   int data = 0;
-  int part = -1;                                // -1: all rows
+  int part = -1;  // -1: all rows
   std::string backend;
-  Settings settings;                            // of the back end
+  Settings settings;  // of the back end
   StartRule start;
-  int substeps = 0;                             // 0: chosen by the tolerance guard
+  int substeps = 0;  // 0: chosen by the tolerance guard
   std::optional<std::uint64_t> seed;
 };
 
 struct PredictTask {
-  int fit = 0;                                  // index into CheckedFile::tasks
+  int fit = 0;  // index into CheckedFile::tasks
   int data = 0;
   int part = -1;
   int draws = 200;
-  bool redraw_each_step = false;                // the tutorial's Fig. 8.4; the default is one draw per trajectory
+  bool redraw_each_step = false;  // the tutorial's Fig. 8.4; the default is one draw per trajectory
   StartRule start;
   std::optional<std::uint64_t> seed;
 };

@@ -29,8 +29,7 @@ class DataChecker {
   std::optional<DataBlock> run() {
     block_.name = tree_.name.text;
     block_.span = tree_.name.span;
-    for (ast::DataStatement const& statement : tree_.statements)
-      std::visit([&](auto const& each) { take(each); }, statement);
+    for (ast::DataStatement const& statement : tree_.statements) std::visit([&](auto const& each) { take(each); }, statement);
     if (!file_) diagnostics_.add(errors::no_file(tree_.name));
     if (!times_) diagnostics_.add(errors::no_time(tree_.name));
     if (diagnostics_.all().size() > before_) return std::nullopt;
@@ -125,19 +124,22 @@ class DataChecker {
 
 }  // namespace
 
-std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnostics) { return DataChecker(tree, diagnostics).run(); }
+std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnostics) {
+  return DataChecker(tree, diagnostics).run();
+}
 
 void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics) {
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
     if (!column.unit || !declared.unit) return;
     if (column.unit->dimension != declared.unit->dimension || cycles_against_radians(*column.unit, *declared.unit))
-      diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text,
-                                            declared.unit->text.empty() ? format_dimension(declared.unit->dimension)
-                                                                        : declared.unit->text));
+      diagnostics.add(
+          errors::unit_mismatch(column.span, what, column.unit->text,
+                                declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text));
   };
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     Quantity const& input = model.inputs[i];
-    auto const bound = std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
+    auto const bound =
+        std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
     if (bound == block.inputs.end()) {
       diagnostics.add(errors::input_not_bound(use, input.name, model.name, block.name));
       continue;

@@ -61,8 +61,9 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
                guess_or(name.text, known, "define it: `function f(a, b) = ...`; built-in ones: sysid list functions"));
 }
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {
-  std::string const wanted = least == most ? fmt::format("{}", least) : most > 100 ? fmt::format("{} or more", least)
-                                                                                   : fmt::format("{} to {}", least, most);
+  std::string const wanted = least == most ? fmt::format("{}", least)
+                             : most > 100  ? fmt::format("{} or more", least)
+                                           : fmt::format("{} to {}", least, most);
   return error("E2004", function.span,
                fmt::format("`{}` takes {} argument{}, here it has {}", function.text, wanted, wanted == "1" ? "" : "s", given),
                "give each argument once, separated by commas");
@@ -91,11 +92,13 @@ Diagnostic constant_needed(Span span, std::string const& what) {
                "use numbers, constants and functions of them only");
 }
 Diagnostic unknown_unit(ast::Name const& name) {
-  return error("E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
-               guess_or(name.text, common_unit_names(), "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));
+  return error(
+      "E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
+      guess_or(name.text, common_unit_names(), "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));
 }
 Diagnostic unit_exponent(Span span) {
-  return error("E2012", span, "the exponent of a unit must be a fraction of small whole numbers", "for example [m^2], [N^(1/2)], [s^-1]");
+  return error("E2012", span, "the exponent of a unit must be a fraction of small whole numbers",
+               "for example [m^2], [N^(1/2)], [s^-1]");
 }
 Diagnostic list_here(Span span) {
   return error("E2013", span, "a list cannot stand in an expression", "parentheses with a comma make a list; remove the comma");
@@ -115,7 +118,8 @@ Diagnostic unknown_argument(ast::Name const& argument, std::string const& distri
 }
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other) {
   if (spelling == other)
-    return conflict("E2104", second, "again here", first, "first given here", fmt::format("`{}` is given twice", spelling), "keep one");
+    return conflict("E2104", second, "again here", first, "first given here", fmt::format("`{}` is given twice", spelling),
+                    "keep one");
   return conflict("E2104", second, fmt::format("`{}`", spelling), first, fmt::format("`{}`", other),
                   fmt::format("`{}` and `{}` say the same thing twice", other, spelling),
                   "keep one: precision = 1/variance, variance = sd^2");
@@ -136,6 +140,10 @@ Diagnostic not_a_noise(ast::Call const& call, Names const& known) {
   return error("E2108", call.function.span, fmt::format("`{}` cannot be the noise of a channel", call.function.text),
                fmt::format("use {}", quoted(known, "or")));
 }
+Diagnostic truncated_noise(ast::Call const& call) {
+  return error("E2116", call.span, "the noise of a channel cannot be truncated",
+               "leave out `lower` and `upper`; bound the parameters instead");
+}
 Diagnostic cannot_truncate(Span span, std::string const& distribution) {
   return error("E2109", span, fmt::format("`{}` cannot be truncated", distribution), "leave out `lower` and `upper`");
 }
@@ -148,7 +156,8 @@ Diagnostic prior_cycle(Span span, Names const& loop) {
                "one of them must stand without the others");
 }
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason) {
-  return error("E2112", span, fmt::format("these arguments of `{}` are impossible: {}", distribution, reason), "correct the numbers");
+  return error("E2112", span, fmt::format("these arguments of `{}` are impossible: {}", distribution, reason),
+               "correct the numbers");
 }
 Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter) {
   std::string const& name = parameter.name.name.text;
@@ -161,8 +170,9 @@ Diagnostic state_without_equation(Span declaration, std::string const& state, st
                fmt::format("write the equation that contains {}", highest));
 }
 Diagnostic algebraic_state(Span declaration, std::string const& state) {
-  return error("E3002", declaration, fmt::format("no derivative of state `{}` appears in any equation", state),
-               fmt::format("give an equation with `{}'`; a quantity without memory is a local definition: `let {} = ...`", state, state));
+  return error(
+      "E3002", declaration, fmt::format("no derivative of state `{}` appears in any equation", state),
+      fmt::format("give an equation with `{}'`; a quantity without memory is a local definition: `let {} = ...`", state, state));
 }
 Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
   return error("E3003", equation.span, "one equation too many: the others already determine every state",
@@ -182,20 +192,23 @@ Diagnostic initial_of_highest(ast::Reference const& reference, std::string const
                            order > 1 ? fmt::format(" to its derivative {}", order - 1) : std::string()));
 }
 Diagnostic initial_missing(Span declaration, std::string const& component) {
-  return error("E3007", declaration, fmt::format("`{}` has no initial value", component), fmt::format("write `initial {} = 0`", component));
+  return error("E3007", declaration, fmt::format("`{}` has no initial value", component),
+               fmt::format("write `initial {} = 0`", component));
 }
 Diagnostic initial_twice(Span second, Span first, std::string const& component) {
-  return conflict("E3008", second, "again here", first, "first given here", fmt::format("the initial value of `{}` is given twice", component),
-                  "keep one");
+  return conflict("E3008", second, "again here", first, "first given here",
+                  fmt::format("the initial value of `{}` is given twice", component), "keep one");
 }
 Diagnostic initial_moves(Span span) {
   return error("E3009", span, "an initial value cannot read states, inputs or time", "use numbers, constants and parameters");
 }
 Diagnostic not_a_state(ast::Name const& name, Names const& states) {
-  return error("E3010", name.span, fmt::format("`{}` is not a state", name.text), guess_or(name.text, states, choose(states, "state")));
+  return error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
+               guess_or(name.text, states, choose(states, "state")));
 }
 Diagnostic channel_twice(ast::Name const& name, Span first) {
-  return conflict("E3011", name.span, "again here", first, "first observed here", fmt::format("channel `{}` is observed twice", name.text),
+  return conflict("E3011", name.span, "again here", first, "first observed here",
+                  fmt::format("channel `{}` is observed twice", name.text),
                   "one `observe` per channel; two sensors are two channels");
 }
 Diagnostic nothing_observed(ast::Name const& model) {
@@ -203,8 +216,8 @@ Diagnostic nothing_observed(ast::Name const& model) {
                "say how data arise: `observe displacement ~ normal(y, sd = sigma)`");
 }
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first) {
-  return conflict("E3013", name.span, "again here", first, "first here", fmt::format("there are two {}s named `{}`", kind, name.text),
-                  "rename one of the two");
+  return conflict("E3013", name.span, "again here", first, "first here",
+                  fmt::format("there are two {}s named `{}`", kind, name.text), "rename one of the two");
 }
 Diagnostic time_twice(Span second, Span first) {
   return conflict("E3014", second, "again here", first, "first declared here", "time is declared twice", "keep one");
@@ -218,14 +231,16 @@ Diagnostic no_time(ast::Name const& block) {
                "add `time t [s]` (a column) or `rate 1000 [Hz]`");
 }
 Diagnostic time_and_rate(Span second, Span first) {
-  return conflict("E4103", second, "and here", first, "here", "times are given twice, by a column and by a rate", "keep one of them");
+  return conflict("E4103", second, "and here", first, "here", "times are given twice, by a column and by a rate",
+                  "keep one of them");
 }
 Diagnostic stated_twice(Span second, Span first, std::string const& what) {
   return conflict("E4104", second, "again here", first, "first here", fmt::format("{} is given twice", what), "keep one");
 }
 Diagnostic rule_missing(ast::DataInput const& input) {
-  return error("E4105", input.span, fmt::format("what does input `{}` do between its samples?", input.input.text),
-               "add `hold zero_order`, `hold linear`, `hold cubic` or `hold band_limited`: it changes the answer more than anything else");
+  return error(
+      "E4105", input.span, fmt::format("what does input `{}` do between its samples?", input.input.text),
+      "add `hold zero_order`, `hold linear`, `hold cubic` or `hold band_limited`: it changes the answer more than anything else");
 }
 Diagnostic unknown_rule(ast::Name const& rule) {
   Names const known = {"zero_order", "linear", "cubic", "band_limited"};
@@ -234,10 +249,12 @@ Diagnostic unknown_rule(ast::Name const& rule) {
   return error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help));
 }
 Diagnostic rate_not_positive(Span span) {
-  return error("E4107", span, "the sampling rate or step must be a positive number", "for example `rate 1000 [Hz]` or `step 1 [ms]`");
+  return error("E4107", span, "the sampling rate or step must be a positive number",
+               "for example `rate 1000 [Hz]` or `step 1 [ms]`");
 }
 Diagnostic bad_rows(Span span) {
-  return error("E4108", span, "rows are whole numbers from 1, the first not after the last", "for example `split train = rows 1..500`");
+  return error("E4108", span, "rows are whole numbers from 1, the first not after the last",
+               "for example `split train = rows 1..500`");
 }
 Diagnostic input_not_bound(Span span, std::string const& input, std::string const& model, std::string const& data) {
   return error("E4109", span, fmt::format("data `{}` does not give input `{}` of model `{}`", data, input, model),

@@ -34,6 +34,7 @@ Diagnostic argument_missing(ast::Call const& call, Names const& spellings);
 Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings);
 Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature);
 Diagnostic not_a_noise(ast::Call const& call, Names const& known);
+Diagnostic truncated_noise(ast::Call const& call);
 Diagnostic cannot_truncate(Span span, std::string const& distribution);
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
 Diagnostic prior_cycle(Span span, Names const& loop);

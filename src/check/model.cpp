@@ -213,11 +213,13 @@ class ModelChecker {
     std::vector<std::vector<std::size_t>> unknowns(trees.size());
     for (std::size_t i = 0; i < trees.size(); ++i)
       for (std::size_t j = 0; j < n; ++j)
-        if (model_.graph.depends(residuals[i], [&](Node const& node) {
-              return is_leaf(node, LeafKind::unknown) && node.index == static_cast<int>(j);
-            }) && states_[j].second.order > 0)
+        if (model_.graph.depends(
+                residuals[i],
+                [&](Node const& node) { return is_leaf(node, LeafKind::unknown) && node.index == static_cast<int>(j); }) &&
+            states_[j].second.order > 0)
           unknowns[i].push_back(j);
-    // Kuhn's matching of equations to states, in the user's order, so that the surplus equation is the last one that finds no place.
+    // Kuhn's matching of equations to states, in the user's order, so that the surplus equation is the last one that finds no
+    // place.
     std::vector<int> equation_of(n, -1);
     std::vector<std::size_t> surplus;
     for (std::size_t i = 0; i < trees.size(); ++i) {
@@ -390,9 +392,11 @@ class ModelChecker {
         diagnostics_.add(errors::not_a_noise(observation.noise, known));
         return;
       }
+      if (use->lower || use->upper) {
+        diagnostics_.add(errors::truncated_noise(observation.noise));
+        return;
+      }
       for (NodeId& argument : use->arguments) argument = solved(argument);
-      if (use->lower) use->lower = solved(*use->lower);
-      if (use->upper) use->upper = solved(*use->upper);
       channel.noise = std::move(*use);
       model_.channels.push_back(std::move(channel));
     });

@@ -62,8 +62,7 @@ Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> c
 Typed add(Graph& graph, Typed a, Typed b, bool subtract) {
   Typed operands[] = {std::move(a), std::move(b)};
   auto const unit = unify(graph, operands);
-  NodeId const node =
-      subtract ? graph.subtract(operands[0].node, operands[1].node) : graph.add(operands[0].node, operands[1].node);
+  NodeId const node = subtract ? graph.subtract(operands[0].node, operands[1].node) : graph.add(operands[0].node, operands[1].node);
   return shared(node, operands, unit);
 }
 
@@ -135,7 +134,8 @@ Typed call(Graph& graph, FunctionRow const& row, std::vector<Typed> arguments) {
   NodeId const node = row.build(graph, nodes);
   Typed result = shared(node, arguments, unit);
   switch (row.unit_rule) {
-    case UnitRule::same: break;
+    case UnitRule::same:
+      break;
     case UnitRule::root:
       if (arguments[0].kind == Kind::known) {
         result.kind = Kind::known;

@@ -1,5 +1,5 @@
-// A checked expression: a node of the model's graph in coherent SI, and what is known of its unit. Literals stay adaptable until they
-// meet something with a unit.
+// A checked expression: a node of the model's graph in coherent SI, and what is known of its unit. Literals stay adaptable until
+// they meet something with a unit.
 #pragma once
 #include <optional>
 #include <span>
@@ -28,7 +28,8 @@ Typed literal(Graph& graph, double value, Span span);
 Typed tagged(Graph& graph, double value, Unit const& unit, Span span);
 Typed with_unit(NodeId node, std::optional<Unit> const& unit, Span span);
 
-/// `typed` where a quantity of `unit` is expected: a literal is scaled; degrees are shifted between temperature units; else unchanged.
+/// `typed` where a quantity of `unit` is expected: a literal is scaled; degrees are shifted between temperature units; else
+/// unchanged.
 NodeId adapt(Graph& graph, Typed const& typed, std::optional<Unit> const& unit);
 /// Brings operands that must share a unit (addends, sides, branches) to it: literals adapt to the first known unit.
 std::optional<Unit> unify(Graph& graph, std::span<Typed> operands);

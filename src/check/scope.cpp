@@ -131,8 +131,9 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
     return with_unit(node, rate_unit(symbol->unit, reference.primes), span);
   }
   if (auto const* parameter = std::get_if<ParameterSymbol>(&symbol->what))
-    return no_primes("a parameter") ? std::optional(with_unit(graph_.leaf(LeafKind::parameter, parameter->index), symbol->unit, span))
-                                    : std::nullopt;
+    return no_primes("a parameter")
+               ? std::optional(with_unit(graph_.leaf(LeafKind::parameter, parameter->index), symbol->unit, span))
+               : std::nullopt;
   if (std::holds_alternative<TimeSymbol>(symbol->what))
     return no_primes("time") ? std::optional(with_unit(graph_.leaf(LeafKind::time), symbol->unit, span)) : std::nullopt;
   auto const& definition_symbol = std::get<DefinitionSymbol>(symbol->what);

@@ -38,8 +38,14 @@ class TaskChecker {
  public:
   TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile const& file, std::span<BackendSettings const> backends,
               std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics)
-      : tree_(tree), names_(names), file_(file), backends_(backends), all_tasks_(all_tasks), diagnostics_(diagnostics),
-        before_(diagnostics.all().size()), scope_(graph_, diagnostics, {}) {}
+      : tree_(tree),
+        names_(names),
+        file_(file),
+        backends_(backends),
+        all_tasks_(all_tasks),
+        diagnostics_(diagnostics),
+        before_(diagnostics.all().size()),
+        scope_(graph_, diagnostics, {}) {}
 
   std::optional<Task> run() {
     Task task;
@@ -58,7 +64,8 @@ class TaskChecker {
   }
 
  private:
-  // --- references -----------------------------------------------------------------------------------------------------------------
+  // --- references
+  // -----------------------------------------------------------------------------------------------------------------
   std::optional<int> item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items, std::string const& kind) {
     auto const place = items.find(name.text);
     if (place == items.end()) {
@@ -94,7 +101,8 @@ class TaskChecker {
     if (model != nullptr) check_binding(block, *model, tree_.data->span, diagnostics_);
   }
 
-  // --- numbers --------------------------------------------------------------------------------------------------------------------
+  // --- numbers
+  // --------------------------------------------------------------------------------------------------------------------
   std::optional<double> number(ast::Expression const& tree, std::string const& name, Unit const& unit, double least, double most,
                                bool whole = false) {
     auto const value = scope_.expression(tree);
@@ -167,7 +175,8 @@ class TaskChecker {
     std::map<std::string, Span> given;
     for (ast::Argument const& argument : call.arguments) {
       if (!argument.name) {
-        diagnostics_.add(errors::must_be_named(argument.span, call.function.text, known.empty() ? std::vector<std::string>{""} : known));
+        diagnostics_.add(
+            errors::must_be_named(argument.span, call.function.text, known.empty() ? std::vector<std::string>{""} : known));
         continue;
       }
       std::string const& name = argument.name->text;
@@ -211,7 +220,8 @@ class TaskChecker {
     }
   }
 
-  // --- the verbs ------------------------------------------------------------------------------------------------------------------
+  // --- the verbs
+  // ------------------------------------------------------------------------------------------------------------------
   FitTask fit() {
     FitTask task;
     std::vector<std::string> names;
@@ -246,7 +256,8 @@ class TaskChecker {
 
   PredictTask predict() {
     PredictTask task;
-    auto const fit = std::find_if(file_.tasks.begin(), file_.tasks.end(), [&](Task const& each) { return each.name == tree_.subject.text; });
+    auto const fit =
+        std::find_if(file_.tasks.begin(), file_.tasks.end(), [&](Task const& each) { return each.name == tree_.subject.text; });
     Model const* model = nullptr;
     if (fit == file_.tasks.end()) {
       std::vector<std::string> known;
@@ -279,7 +290,7 @@ class TaskChecker {
       }
       if (key == "draws") {
         ast::Call const* call = as_call(option.value);
-        ast::Expression const* count = option.key ? &option.value
+        ast::Expression const* count = option.key                                       ? &option.value
                                        : call != nullptr && call->arguments.size() == 1 ? &call->arguments[0].value
                                                                                         : nullptr;
         if (count == nullptr)
@@ -336,10 +347,12 @@ class TaskChecker {
     std::vector<std::string> names;
     for (GeneratorRow const& row : generators()) names.emplace_back(row.name);
     if (call == nullptr) {
-      diagnostics_.add(errors::option_kind(option.value.span, "input " + input.name, "a generated signal such as `gaussian(sd = 10)`"));
+      diagnostics_.add(
+          errors::option_kind(option.value.span, "input " + input.name, "a generated signal such as `gaussian(sd = 10)`"));
       return std::nullopt;
     }
-    auto const row = std::find_if(generators().begin(), generators().end(), [&](auto const& each) { return each.name == call->function.text; });
+    auto const row =
+        std::find_if(generators().begin(), generators().end(), [&](auto const& each) { return each.name == call->function.text; });
     if (row == generators().end()) {
       diagnostics_.add(errors::option_choice(call->function.span, "input " + input.name, call->function.text, names));
       return std::nullopt;
@@ -444,7 +457,8 @@ class TaskChecker {
       } else if (option.key && key == "seed") {
         seed(option, task.seed);
       } else if (option.key && key == "file") {
-        if (auto const* text = std::get_if<ast::Text>(&option.value.node); text != nullptr && text->value.find('/') == std::string::npos)
+        if (auto const* text = std::get_if<ast::Text>(&option.value.node);
+            text != nullptr && text->value.find('/') == std::string::npos)
           task.file = text->value;
         else
           diagnostics_.add(errors::option_kind(option.value.span, key, "a file name in quotes, without folders"));
@@ -458,7 +472,8 @@ class TaskChecker {
     if (task.step == 0) diagnostics_.add(errors::option_missing(tree_, "rate", "rate = 1000 [Hz]"));
     for (std::size_t i = 0; i < given.size(); ++i)
       if (!given[i])
-        diagnostics_.add(errors::option_missing(tree_, "input " + model.inputs[i].name, "input " + model.inputs[i].name + " = gaussian(sd = 1)"));
+        diagnostics_.add(errors::option_missing(tree_, "input " + model.inputs[i].name,
+                                                "input " + model.inputs[i].name + " = gaussian(sd = 1)"));
     if (auto const missing = values_needed(model, task); !missing.empty())
       diagnostics_.add(errors::value_missing(tree_.verb.span, missing));
     return task;

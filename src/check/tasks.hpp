@@ -14,7 +14,8 @@ struct TaskNames {
   std::map<std::string, std::optional<int>> models, data;
 };
 
-/// The task, or nothing when a diagnostic was added or it refers to something that failed. file: models, data and the tasks before it.
+/// The task, or nothing when a diagnostic was added or it refers to something that failed. file: models, data and the tasks before
+/// it.
 std::optional<Task> check_task(ast::Task const& tree, TaskNames const& names, CheckedFile const& file,
                                std::span<BackendSettings const> backends, std::span<ast::Task const* const> all_tasks,
                                Diagnostics& diagnostics);

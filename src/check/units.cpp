@@ -10,7 +10,8 @@ namespace sysid {
 namespace {
 
 std::optional<double> constant_exponent(ast::Expression const& expression) {
-  if (auto const* number = std::get_if<ast::Number>(&expression.node)) return number->unit ? std::nullopt : std::optional(number->value);
+  if (auto const* number = std::get_if<ast::Number>(&expression.node))
+    return number->unit ? std::nullopt : std::optional(number->value);
   if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&expression.node)) {
     auto const operand = constant_exponent(*(*unary)->operand);
     if (!operand || (*unary)->symbol != "-") return std::nullopt;

@@ -1,4 +1,5 @@
-// What an inference back end sees of a model: a prior and a likelihood over R^P, for a batch of parameter vectors. Nothing of the language passes.
+// What an inference back end sees of a model: a prior and a likelihood over R^P, for a batch of parameter vectors. Nothing of the
+// language passes.
 #pragma once
 #include <span>
 #include <string>
@@ -13,8 +14,9 @@ namespace sysid {
 /// A sampled parameter as the user declared it.
 struct ParameterInfo {
   std::string name;
-  std::string unit;           // as written; may be empty
-  double lower, upper;        // bounds of the prior's support, declared unit; infinite where there is none or it depends on other parameters
+  std::string unit;  // as written; may be empty
+  double lower,
+      upper;  // bounds of the prior's support, declared unit; infinite where there is none or it depends on other parameters
 };
 
 class Target {
@@ -26,17 +28,17 @@ class Target {
   virtual std::span<ParameterInfo const> parameters() const = 0;
   /// Draws theta [P x W], unconstrained, from the declared prior; lane w uses stream key.with_index(key.index + w) alone.
   virtual void sample_prior(StreamKey key, Lanes theta) const = 0;
-  /// log density of theta [P x W] under the prior, all constants kept. With `jacobian` it is the density on R^P (what samplers need);
-  /// without, the density of the declared parameters (what `map` maximises). out: [W].
+  /// log density of theta [P x W] under the prior, all constants kept. With `jacobian` it is the density on R^P (what samplers
+  /// need); without, the density of the declared parameters (what `map` maximises). out: [W].
   virtual void log_prior(ConstLanes theta, std::span<double> out, bool jacobian = true) const = 0;
-  /// log likelihood of theta [P x W]. out: [W], -infinity where a solve failed, never NaN, never an exception; the class and place of
-  /// each failure is added to `ledger`. Lane w depends on column w alone, whatever the width, threads or instruction set.
+  /// log likelihood of theta [P x W]. out: [W], -infinity where a solve failed, never NaN, never an exception; the class and place
+  /// of each failure is added to `ledger`. Lane w depends on column w alone, whatever the width, threads or instruction set.
   virtual void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const = 0;
   /// Number R of residual rows.
   virtual int residual_count() const = 0;
-  /// Deviance residuals r [R x W] with  -log likelihood = 1/2 sum r^2 + constant  for the log likelihood of theta [P x W]: per scored
-  /// sample sign(y - location) sqrt(2 (log p(centre) - log p(y))), and per channel one row sqrt(2 (C - sum log p(centre))) that carries
-  /// the scale. A failed lane is +infinity in every row.
+  /// Deviance residuals r [R x W] with  -log likelihood = 1/2 sum r^2 + constant  for the log likelihood of theta [P x W]: per
+  /// scored sample sign(y - centre) sqrt(2 (s - log p(y))), s the largest log density any location gives y, and per channel one row
+  /// sqrt(2 (C - sum s)) that carries the scale. A failed lane is +infinity in every row.
   virtual void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const = 0;
   /// Declared values [P x W] (declared units) of theta [P x W], and back.
   virtual void constrain(ConstLanes theta, Lanes declared) const = 0;

@@ -7,7 +7,8 @@ namespace sysid {
 namespace {
 
 bool has_unknown(Graph const& graph, NodeId root) {
-  return graph.depends(root, [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::unknown; });
+  return graph.depends(root,
+                       [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::unknown; });
 }
 
 // The smaller, the better a pivot: exact one, other constants, expressions of parameters, anything that moves with the state.
@@ -15,9 +16,8 @@ int pivot_rank(Graph const& graph, NodeId id) {
   if (graph.is_constant(id, 0)) return 4;
   if (graph.is_constant(id, 1) || graph.is_constant(id, -1)) return 0;
   if (graph.constant_value(id)) return 1;
-  bool const moves = graph.depends(id, [](Node const& node) {
-    return node.operation == Operation::leaf && node.leaf_kind != LeafKind::parameter;
-  });
+  bool const moves = graph.depends(
+      id, [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind != LeafKind::parameter; });
   return moves ? 3 : 2;
 }
 
@@ -56,8 +56,7 @@ std::variant<std::vector<NodeId>, ReductionFailure> solve_for_unknowns(Graph& gr
       if (used[i] || graph.is_constant(matrix[i][j], 0)) continue;
       NodeId const factor = graph.divide(matrix[i][j], matrix[best][j]);
       matrix[i][j] = zero;
-      for (std::size_t k = j + 1; k < n; ++k)
-        matrix[i][k] = graph.subtract(matrix[i][k], graph.multiply(factor, matrix[best][k]));
+      for (std::size_t k = j + 1; k < n; ++k) matrix[i][k] = graph.subtract(matrix[i][k], graph.multiply(factor, matrix[best][k]));
       right[i] = graph.subtract(right[i], graph.multiply(factor, right[best]));
     }
   }

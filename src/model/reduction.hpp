@@ -12,8 +12,8 @@ namespace sysid {
 /// Why a system cannot be solved for its highest derivatives; indices into the arguments of `solve_for_unknowns`.
 struct ReductionFailure {
   enum class Kind {
-    nonlinear,   // `equation` is not linear in `unknown`
-    singular,    // no equation is left that determines `unknown`
+    nonlinear,  // `equation` is not linear in `unknown`
+    singular,   // no equation is left that determines `unknown`
   };
   Kind kind = Kind::nonlinear;
   int equation = 0;
@@ -25,8 +25,8 @@ struct ReductionFailure {
 ///   residual = b - M u  =>  u = M^-1 b,   M_ij = - d residual_i / d u_j
 ///
 /// by elimination on expressions: exact, whatever the parameters are, except that a pivot which is zero for some parameter values
-/// gives non-finite derivatives there (counted as failed solves). Pivots are taken constant before parametric before state-dependent.
-/// Returns the n solutions, free of unknowns.
+/// gives non-finite derivatives there (counted as failed solves). Pivots are taken constant before parametric before
+/// state-dependent. Returns the n solutions, free of unknowns.
 std::variant<std::vector<NodeId>, ReductionFailure> solve_for_unknowns(Graph& graph, std::span<NodeId const> residuals);
 
 }  // namespace sysid

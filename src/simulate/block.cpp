@@ -11,7 +11,7 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
       schedule_(schedule),
       executor_(executor),
       lanes_(lanes),
-      file_(1, uniform_space(program.uniforms) + program.registers.total() * executor.width),
+      file_(1, uniform_space(program.uniforms) + program.registers.total() * executor.stride()),
       death_(static_cast<std::size_t>(lanes), -1) {
   double* const file = file_.view().data();
   std::copy(program.constants.begin(), program.constants.end(), file);
@@ -23,7 +23,7 @@ void Block::load_row(double const* row, int width) { std::copy(row, row + width,
 
 void Block::set_parameters(ConstLanes parameters) {
   for (int r = 0; r < program_.registers.parameters; ++r) {
-    double* const row = rows_ + r * executor_.width;
+    double* const row = rows_ + r * executor_.stride();
     for (int w = 0; w < executor_.width; ++w) row[w] = parameters(r, std::min(w, lanes_ - 1));
   }
   run(*program_.prologue.linked, executor_, file_.view().data());
@@ -31,8 +31,8 @@ void Block::set_parameters(ConstLanes parameters) {
 
 void Block::start() {
   run(*program_.start.linked, executor_, file_.view().data());
-  double* const accumulators = rows_ + program_.registers.first_accumulator() * executor_.width;
-  std::fill(accumulators, accumulators + program_.registers.accumulators * executor_.width, 0.0);
+  double* const accumulators = rows_ + program_.registers.first_accumulator() * executor_.stride();
+  std::fill(accumulators, accumulators + program_.registers.accumulators * executor_.stride(), 0.0);
   std::fill(death_.begin(), death_.end(), -1);
 }
 
@@ -77,7 +77,7 @@ bool Block::bury(int sample) {
   if (live < 0 || !found_dead) return live >= 0;
   // Infinities and NaNs can be slow in elementary functions: nothing but live values is computed from here on.
   for (int r = 0; r < program_.registers.first_record(); ++r) {
-    double* const row = rows_ + r * executor_.width;
+    double* const row = rows_ + r * executor_.stride();
     for (int w = 0; w < executor_.width; ++w)
       if (w >= lanes_ || death_[static_cast<std::size_t>(w)] >= 0) row[w] = row[live];
   }

@@ -38,7 +38,7 @@ class Block {
   std::vector<int> const& death() const { return death_; }
 
  private:
-  ConstLanes rows(int first, int count) const { return {rows_ + first * executor_.width, count, lanes_, executor_.width}; }
+  ConstLanes rows(int first, int count) const { return {rows_ + first * executor_.stride(), count, lanes_, executor_.stride()}; }
   void load_row(double const* row, int width);
 
   SimulationProgram const& program_;

@@ -1,0 +1,98 @@
+// Columns are matched to the model's inputs and channels by name, in the model's order.
+#include "app/experiments.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sysid {
+
+std::string_view rule_name(InputRule rule) {
+  switch (rule) {
+    case InputRule::zero_order:
+      return "zero_order";
+    case InputRule::linear:
+      return "linear";
+    case InputRule::cubic:
+      return "cubic";
+    case InputRule::band_limited:
+      return "band_limited";
+  }
+  return "?";
+}
+
+std::string data_name(DataBlock const& block, int part) {
+  return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
+}
+
+std::optional<Record> load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder,
+                                  Diagnostics& diagnostics) {
+  RecordRequest request;
+  request.path = (folder / block.path).string();
+  request.mention = block.path_span;
+  request.step = block.step;
+  if (block.time) request.time = ColumnRequest{block.time->column, block.time->unit, std::nullopt, block.time->span};
+  for (Quantity const& input : model.inputs) {
+    auto const bound =
+        std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
+    InputRequest column;
+    static_cast<ColumnRequest&>(column) = {bound->column, bound->unit, input.unit, bound->span};
+    column.rule = bound->rule;
+    request.inputs.push_back(std::move(column));
+  }
+  for (Channel const& channel : model.channels) {
+    auto const bound =
+        std::find_if(block.measured.begin(), block.measured.end(), [&](auto const& each) { return each.channel == channel.name; });
+    if (bound == block.measured.end())
+      request.measured.emplace_back();
+    else
+      request.measured.push_back(ColumnRequest{bound->column, bound->unit, channel.unit, bound->span});
+  }
+  return load(request, diagnostics);
+}
+
+Experiment cut(Record const& record, DataBlock const& block, int part, StartRule start) {
+  std::string const name = data_name(block, part);
+  DataPart whole;
+  whole.span = block.span;
+  DataPart const& rows = part < 0 ? whole : block.parts[static_cast<std::size_t>(part)];
+  RowRange range{rows.first, rows.last == 0 ? record.rows() : rows.last};
+  std::string const what = part < 0 ? "data `" + block.name + "`" : "part `" + rows.name + "`";
+  if (auto const wrong = check_rows(record, what, range, rows.span)) throw UserError(*wrong);
+  int from = 1;
+  if (start.kind != StartRule::Kind::record) from = range.first;
+  if (start.kind == StartRule::Kind::estimated) {
+    if (range.first + start.rows > range.last)
+      throw UserError(
+          {Severity::error,
+           "E4201",
+           fmt::format("{} has {} rows, its start needs {} and more to score", what, range.last - range.first + 1, start.rows),
+           Label{rows.span, {}},
+           {},
+           "take more rows, or estimate the start from fewer"});
+    range.first += start.rows;
+  }
+  return make_experiment(record, name, from, range, rows.span);
+}
+
+DataInfo describe_data(Record const& record, DataBlock const& block, int part, Model const& model, Experiment const& experiment) {
+  DataInfo info;
+  info.name = data_name(block, part);
+  info.file = block.path;
+  info.sha256 = record.digest;
+  info.rows = record.rows();
+  info.scored = static_cast<int>(std::count(experiment.scored.begin(), experiment.scored.end(), 1));
+  for (Quantity const& input : model.inputs)
+    for (DataInputUse const& use : block.inputs)
+      if (use.input == input.name)
+        info.notes.push_back(fmt::format("input {} = {}{}, {}", input.name, use.column,
+                                         use.unit ? fmt::format(" [{}]", use.unit->text) : std::string(), rule_name(use.rule)));
+  for (Channel const& channel : model.channels)
+    for (DataMeasureUse const& use : block.measured)
+      if (use.channel == channel.name)
+        info.notes.push_back(
+            fmt::format("{} = {}{}", channel.name, use.column, use.unit ? fmt::format(" [{}]", use.unit->text) : std::string()));
+  return info;
+}
+
+}  // namespace sysid

@@ -1,0 +1,29 @@
+// Data blocks to experiments: a record is read once per model and block, parts are cut from it for each task.
+#pragma once
+#include <filesystem>
+
+#include "check/checked.hpp"
+#include "core/diagnostic.hpp"
+#include "data/record.hpp"
+#include "report/report.hpp"
+
+namespace sysid {
+
+/// The record of a data block as a model reads it; `folder`: that of the .sysid file, from which paths are relative.
+/// UserError-free: what is wrong with the data goes to `diagnostics`. IoError when the file cannot be read.
+std::optional<Record> load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder,
+                                  Diagnostics& diagnostics);
+
+/// The rows of a part (-1: all), started as the task says. Throws UserError when they are outside the record or the start needs
+/// more rows.
+Experiment cut(Record const& record, DataBlock const& block, int part, StartRule start);
+
+/// Provenance for reports.
+DataInfo describe_data(Record const& record, DataBlock const& block, int part, Model const& model, Experiment const& experiment);
+
+/// "bench.train".
+std::string data_name(DataBlock const& block, int part);
+
+std::string_view rule_name(InputRule rule);
+
+}  // namespace sysid

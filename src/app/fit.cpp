@@ -1,0 +1,375 @@
+// `fit`: data to target, search, step size, sampling with checkpoints, checks, results.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/experiments.hpp"
+#include "app/fit_checks.hpp"
+#include "app/reporting.hpp"
+#include "app/resolved.hpp"
+#include "app/results.hpp"
+#include "app/session.hpp"
+#include "app/tolerance.hpp"
+#include "core/files.hpp"
+#include "inference/bound_check.hpp"
+#include "inference/checkpoint.hpp"
+#include "inference/search.hpp"
+#include "inference/verdict.hpp"
+#include "likelihood/trajectory.hpp"
+#include "report/result.hpp"
+#include "report/terminal.hpp"
+
+namespace sysid {
+
+// predict.cpp
+Prediction predict_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
+                         Model const& model);
+
+namespace {
+
+using json = nlohmann::json;
+
+// What is known before the first sample: enough to go on from a checkpoint without searching again.
+struct Preparation {
+  int substeps = 1;
+  std::vector<Mode> modes;
+  Findings findings;
+  Ledger ledger;
+  std::vector<std::pair<int, double>> moves;
+};
+
+json store(Preparation const& preparation) {
+  json modes = json::array(), findings = json::array(), moves = json::array();
+  for (Mode const& mode : preparation.modes) modes.push_back(checkpoint::encode(mode));
+  for (Finding const& f : preparation.findings) findings.push_back({static_cast<int>(f.severity), f.code, f.message, f.help});
+  for (auto const& [substeps, move] : preparation.moves) moves.push_back({substeps, move});
+  return {{"substeps", preparation.substeps},
+          {"modes", modes},
+          {"findings", findings},
+          {"ledger", checkpoint::encode(preparation.ledger)},
+          {"moves", moves}};
+}
+
+Preparation restore(json const& stored) {
+  Preparation preparation;
+  preparation.substeps = stored.at("substeps").get<int>();
+  for (auto const& mode : stored.at("modes")) preparation.modes.push_back(checkpoint::decode_mode(mode));
+  for (auto const& f : stored.at("findings"))
+    preparation.findings.push_back({static_cast<Severity>(f.at(0).get<int>()), f.at(1).get<std::string>(),
+                                    f.at(2).get<std::string>(), f.at(3).get<std::string>()});
+  preparation.ledger = checkpoint::decode_ledger(stored.at("ledger"));
+  for (auto const& move : stored.at("moves")) preparation.moves.emplace_back(move.at(0).get<int>(), move.at(1).get<double>());
+  return preparation;
+}
+
+std::vector<double> best_values(FitResult const& result) {
+  if (!result.modes.empty()) return result.modes.front().declared;
+  std::vector<double> const* best = nullptr;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (Chain const& chain : result.draws.chains)
+    for (std::size_t d = 0; d < chain.values.size(); ++d)
+      if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
+  return best == nullptr ? std::vector<double>{} : *best;
+}
+
+// Quantities derived from parameters alone, appended to every draw.
+void add_derived(CompiledModel const& compiled, Draws& draws) {
+  Model const& model = compiled.model;
+  int const count = static_cast<int>(compiled.derived_index.size());
+  if (count == 0) return;
+  for (int const index : compiled.derived_index) {
+    Derived const& quantity = model.derived[static_cast<std::size_t>(index)];
+    draws.names.push_back(quantity.name);
+    draws.units.push_back(quantity.unit_text());
+  }
+  for (Chain& chain : draws.chains) {
+    int const width = static_cast<int>(chain.values.size());
+    LaneArray parameters(static_cast<int>(model.parameters.size()), width), values(count, width);
+    for (std::size_t k = 0; k < compiled.sampled.size(); ++k) {
+      Parameter const& parameter = model.parameters[static_cast<std::size_t>(compiled.sampled[k])];
+      for (int w = 0; w < width; ++w)
+        parameters(compiled.sampled[k], w) = parameter.to_si(chain.values[static_cast<std::size_t>(w)][k]);
+    }
+    run(compiled.derived, parameters, values);
+    for (int w = 0; w < width; ++w)
+      for (int d = 0; d < count; ++d) chain.values[static_cast<std::size_t>(w)].push_back(values(d, w));
+  }
+}
+
+ChainValues column_of(Draws const& draws, std::size_t column) {
+  ChainValues values;
+  for (Chain const& chain : draws.chains) {
+    values.emplace_back();
+    for (auto const& draw : chain.values) values.back().push_back(draw[column]);
+  }
+  return values;
+}
+
+class Fit {
+ public:
+  Fit(Session& session, int index, Task const& task, FitTask const& what)
+      : session_(session),
+        index_(index),
+        task_(task),
+        what_(what),
+        folder_(session.result_folder(task)),
+        seed_(session.seed(task, what.seed)),
+        backend_(*find_backend(what.backend)),
+        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated)),
+        model_(compiled_->model),
+        block_(session.file.data[static_cast<std::size_t>(what.data)]),
+        record_(read_record()),
+        experiment_(cut(record_, block_, what.part, what.start)),
+        began_(std::chrono::steady_clock::now()) {}
+
+  ExitCode run() {
+    refuse();
+    RunContext context{seed_,   session_.progress,
+                       ledger_, [this] { return session_.interrupted(); },
+                       {},      session_.options.checkpoint_interval,
+                       {},      {},
+                       {}};
+    json const stored = stored_checkpoint();
+    if (stored.is_null()) {
+      if (!prepare(context)) return stop_early();
+    } else {
+      preparation_ = restore(stored.at("preparation"));
+      if (stored.contains("state")) context.resume = stored.at("state");
+      session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+    }
+    target_ = make_target(preparation_.substeps);
+    context.modes = preparation_.modes;
+    context.mode_findings = preparation_.findings;
+    context.checkpoint = [this](json const& state) { save(state); };
+    FitResult result = backend_.run(*target_, what_.settings, context);
+    if (result.failure) throw UserError(no_result(*result.failure));
+    if (result.interrupted && result.draws.total() == 0) return stop_early();
+    return finish(std::move(result));
+  }
+
+ private:
+  Record read_record() {
+    Diagnostics diagnostics;
+    auto record = load_record(block_, model_, session_.folder(), diagnostics);
+    if (!record) throw UserError(diagnostics.all().front());
+    return std::move(*record);
+  }
+
+  std::unique_ptr<ModelTarget> make_target(int substeps) const {
+    TargetOptions options;
+    options.substeps = substeps;
+    options.start_rows = what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0;
+    options.execution = session_.options.execution;
+    options.describe = [this](NodeId node, Graph const& graph) { return session_.describe(what_.model, graph, node); };
+    return std::make_unique<ModelTarget>(compiled_, experiment_, options);
+  }
+
+  // What cannot be sampled is refused before the first step.
+  void refuse() const {
+    auto const refused = [&](std::string code, std::string message, std::string help) {
+      return UserError({Severity::error, std::move(code), std::move(message), Label{task_.span, {}}, {}, std::move(help)});
+    };
+    if (backend_.refuse != nullptr)
+      if (std::string const why = backend_.refuse(what_.settings); !why.empty())
+        throw refused("E6203", fmt::format("these settings of `{}` do not go together: {}", backend_.name, why),
+                      "change one of them");
+    if (backend_.needs.proper_prior)
+      for (Parameter const& parameter : model_.parameters)
+        if (parameter.prior && !parameter.prior->row->proper)
+          throw refused("E6204",
+                        fmt::format("`{}` needs priors that can be drawn from; that of `{}` is {}", backend_.name, parameter.name,
+                                    parameter.prior->row->name),
+                        fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
+    if (compiled_->sampled.empty())
+      throw refused("E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model_.name),
+                    "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`");
+    bool any = false;
+    for (auto const& channel : experiment_.measured)
+      for (std::size_t i = 0; i < channel.size(); ++i) any = any || (experiment_.scored[i] != 0 && !std::isnan(channel[i]));
+    if (!any)
+      throw refused("E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment_.name),
+                    "choose other rows or columns");
+  }
+
+  // Search and, unless the user fixed it, the step. False: interrupted.
+  bool prepare(RunContext& context) {
+    MakeTarget const make = [this](int substeps) { return make_target(substeps); };
+    preparation_.substeps = what_.substeps > 0 ? what_.substeps : 1;
+    auto const target = make(preparation_.substeps);
+    RunContext search_context{
+        seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
+    SearchResult found = search(*target, Aim::posterior, search_context);
+    if (found.interrupted) return false;
+    if (found.failure) {
+      ledger_.merge(preparation_.ledger);
+      throw UserError(no_result(*found.failure));
+    }
+    preparation_.modes = std::move(found.modes);
+    preparation_.findings = std::move(found.findings);
+    if (what_.substeps > 0) return true;
+    SettledSubsteps settled = settle_substeps(make, std::move(preparation_.modes), seed_, preparation_.ledger);
+    preparation_.substeps = settled.substeps;
+    preparation_.modes = std::move(settled.modes);
+    preparation_.moves = std::move(settled.moves);
+    if (settled.substeps > 1)
+      session_.notices << fmt::format(
+          "{}: {} integrator steps per sample (with one, parameters move by up to {:.2g} sd when the step is halved)\n", task_.name,
+          settled.substeps, preparation_.moves.front().second);
+    if (!settled.settled)
+      preparation_.findings.push_back(
+          {Severity::error, "step_not_settled",
+           fmt::format("even {} integrator steps per sample do not settle the result", settled.substeps),
+           "the model may be stiff or chaotic on this record"});
+    return true;
+  }
+
+  Diagnostic no_result(Finding const& failure) const {
+    Diagnostic diagnostic{
+        Severity::error, failure.code == "no_finite_start" ? "E5002" : "E6206", failure.message, Label{task_.span, {}}, {},
+        failure.help};
+    for (Failure const& each : ledger_.failures())
+      if (each.where != "not traced") {
+        diagnostic.message += fmt::format("; first non-finite: {} at t = {:.4g} s", each.where, each.time);
+        break;
+      }
+    return diagnostic;
+  }
+
+  ExitCode stop_early() const {
+    session_.notices << fmt::format("{}: interrupted before there was anything to keep; --resume starts it again\n", task_.name);
+    return ExitCode::interrupted;
+  }
+
+  // --- checkpoints
+  // ----------------------------------------------------------------------------------------------------------------
+  json who() const {
+    return {{"model", std::string(session_.source.text())}, {"data", record_.digest}, {"task", task_.name}, {"seed", seed_}};
+  }
+
+  void save(json const& state) const {
+    json const all = {{"who", who()}, {"preparation", store(preparation_)}, {"state", state}};
+    std::vector<std::uint8_t> const bytes = json::to_cbor(all);
+    write_file(checkpoint_path(folder_), std::string_view(reinterpret_cast<char const*>(bytes.data()), bytes.size()));
+  }
+
+  json stored_checkpoint() const {
+    auto const path = checkpoint_path(folder_);
+    if (!session_.options.resume || !std::filesystem::exists(path)) return nullptr;
+    std::string const bytes = read_file(path);
+    json stored = json::from_cbor(bytes.begin(), bytes.end(), true, false);
+    if (!stored.is_object() || !stored.contains("who"))
+      throw UserError(
+          {Severity::error, "E6207", fmt::format("`{}` is damaged", path.string()), std::nullopt, {}, "start again with --force"});
+    if (stored.at("who") != who())
+      throw UserError({Severity::error,
+                       "E6208",
+                       fmt::format("`{}` is of another text, data or seed", path.string()),
+                       std::nullopt,
+                       {},
+                       "restore the files of that run, or start again with --force"});
+    return stored;
+  }
+
+  // --- the end
+  // --------------------------------------------------------------------------------------------------------------------
+  ExitCode finish(FitResult result) {
+    bool const interrupted = result.interrupted;
+    Report report = begin_report(session_, task_, what_.model,
+                                 fmt::format("fit {} to {} with {}", model_.name, experiment_.name, what_.backend), seed_);
+    report.data.push_back(describe_data(record_, block_, what_.part, model_, experiment_));
+    report.findings = result.findings;
+    if (what_.settings.all().contains("start") && what_.settings.word("start") == "prior")
+      report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
+    auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
+    report.summary = summarise(result);
+    Ledger extra;
+    std::vector<double> const best = best_values(result);
+    if (!interrupted) {
+      FitCheck check = check_residuals(*target_, best);
+      report.fit = std::move(check.scores);
+      add(check.findings);
+      if (!preparation_.modes.empty()) add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
+      if (result.draws.total() > 1)
+        add(tolerance_findings(check_tolerance(*target_, *make_target(2 * preparation_.substeps), result.draws, extra),
+                               preparation_.substeps));
+    } else {
+      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
+                                 "go on with --resume; it ends with the bytes of an unbroken run"});
+    }
+    add_failures(report);
+    if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
+    add_derived(*compiled_, result.draws);
+    for (std::size_t c = static_cast<std::size_t>(result.draws.parameter_count); c < result.draws.names.size(); ++c)
+      report.summary.push_back(summarise(result.draws.names[c], result.draws.units[c], column_of(result.draws, c)));
+    if (!interrupted) report.predictions.push_back(fitted_rows(result.draws));
+    report.modes = result.modes;
+    report.settings = {{"backend", what_.backend}};
+    for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
+    report.settings.emplace_back("start_state", start_text(what_.start));
+    report.settings.emplace_back("substeps", static_cast<std::int64_t>(preparation_.substeps));
+    report.resolved_text = resolved_fit(session_, task_, what_, result.settings, preparation_.substeps, seed_);
+    report.ledger = preparation_.ledger;
+    report.ledger.merge(ledger_);
+    report.draws = std::move(result.draws);
+    Verdict const verdict = judge(report.findings);
+    report.verdict = verdict.text;
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
+    report.timing = {{"wall_seconds", wall.count()},
+                     {"threads", static_cast<std::int64_t>(session_.options.execution.threads)},
+                     {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
+    write_result(report, folder_);
+    session_.out << terminal_summary(report);
+    if (interrupted) {
+      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
+      return ExitCode::interrupted;
+    }
+    remove_file(checkpoint_path(folder_));
+    session_.fitted[index_] = {std::move(report.draws), preparation_.substeps};
+    return verdict.pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  void add_failures(Report& report) const {
+    double const share = ledger_.solves() == 0 ? 0 : static_cast<double>(ledger_.failed()) / static_cast<double>(ledger_.solves());
+    if (share < 0.01) return;
+    report.findings.push_back(
+        {share < 0.2 ? Severity::warning : Severity::error, "failed_solves",
+         fmt::format("{:.1f} % of the solves while sampling failed, first in {}", 100 * share, ledger_.failures().front().where),
+         "the posterior reaches where the model diverges: narrow the prior or look at the equation there"});
+  }
+
+  // Bands over the fitted rows, for the report.
+  Prediction fitted_rows(Draws const& draws) const {
+    LaneArray const columns = spread(draws, 100);
+    Trajectory const trajectory(compiled_, experiment_, preparation_.substeps,
+                                what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
+    return predict_along(trajectory, trajectory.run(columns, {seed_, Purpose::noise, 0, 0}), experiment_, model_);
+  }
+
+  Session& session_;
+  int index_;
+  Task const& task_;
+  FitTask const& what_;
+  std::filesystem::path folder_;
+  std::uint64_t seed_;
+  BackendRow const& backend_;
+  std::shared_ptr<CompiledModel const> compiled_;
+  Model const& model_;
+  DataBlock const& block_;
+  Record record_;
+  Experiment experiment_;
+  std::chrono::steady_clock::time_point began_;
+  Preparation preparation_;
+  Ledger ledger_;
+  std::unique_ptr<ModelTarget> target_;
+};
+
+}  // namespace
+
+ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what) {
+  return Fit(session, index, task, what).run();
+}
+
+}  // namespace sysid

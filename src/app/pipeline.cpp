@@ -1,0 +1,84 @@
+// text -> syntax tree -> checked file -> tasks, one line each.
+#include "app/pipeline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/results.hpp"
+#include "app/session.hpp"
+#include "check/check.hpp"
+#include "inference/backend.hpp"
+#include "likelihood/compiled_model.hpp"
+#include "model/dump.hpp"
+#include "syntax/parse.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+std::vector<BackendSettings> backend_settings() {
+  std::vector<BackendSettings> rows;
+  for (BackendRow const& row : backends()) rows.push_back({row.name, row.settings});
+  return rows;
+}
+
+std::string verb_of(Task const& task) {
+  return std::holds_alternative<SimulateTask>(task.what) ? "simulate"
+         : std::holds_alternative<FitTask>(task.what)    ? "fit"
+                                                         : "predict";
+}
+
+}  // namespace
+
+std::optional<CheckedFile> load(Source const& source, Diagnostics& diagnostics) {
+  auto const tree = parse(source, diagnostics);
+  return tree ? check(*tree, backend_settings(), diagnostics) : std::nullopt;
+}
+
+std::string dump_stage(Source const& source, std::string const& stage, Diagnostics& diagnostics) {
+  auto const tree = parse(source, diagnostics);
+  if (!tree) return {};
+  if (stage == "ast") return unparse(*tree);
+  auto const file = check(*tree, backend_settings(), diagnostics);
+  if (!file) return {};
+  std::string text;
+  for (Model const& model : file->models) text += stage == "model" ? dump(model) : dump_program(*compile(model, false));
+  return text;
+}
+
+ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<std::string> const& verbs, RunOptions const& options,
+                   Progress& progress, std::ostream& out, std::ostream& notices) {
+  Session session(source, file, options, progress, out, notices);
+  auto const wanted = [&](Task const& task) {
+    return verbs.empty() || std::find(verbs.begin(), verbs.end(), verb_of(task)) != verbs.end();
+  };
+  for (Task const& task : file.tasks)
+    if (wanted(task) && !(options.resume && complete(session.result_folder(task))))
+      claim_results(session.result_folder(task), options);
+  ExitCode worst = ExitCode::success;
+  for (std::size_t i = 0; i < file.tasks.size(); ++i) {
+    Task const& task = file.tasks[i];
+    if (!wanted(task)) continue;
+    if (options.resume && complete(session.result_folder(task))) {
+      notices << fmt::format("{}: complete, kept\n", task.name);
+      continue;
+    }
+    ExitCode const code = std::visit(
+        [&](auto const& what) {
+          using What = std::decay_t<decltype(what)>;
+          if constexpr (std::is_same_v<What, SimulateTask>)
+            return run_simulate(session, task, what);
+          else if constexpr (std::is_same_v<What, FitTask>)
+            return run_fit(session, static_cast<int>(i), task, what);
+          else
+            return run_predict(session, task, what);
+        },
+        task.what);
+    if (code == ExitCode::interrupted) return code;
+    worst = std::max(worst, code);
+  }
+  return worst;
+}
+
+}  // namespace sysid

@@ -1,0 +1,31 @@
+// The stages from text to results, one line each; and what the command line can ask of them.
+#pragma once
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "app/options.hpp"
+#include "check/check.hpp"
+#include "core/diagnostic.hpp"
+
+namespace sysid {
+
+/// A file that passed the front end: its text, the checked models, data blocks and tasks.
+struct Loaded {
+  Source source;
+  CheckedFile file;
+};
+
+/// Reads, parses, checks. Nothing when there are errors in `diagnostics`, which refer to `source`. IoError when unreadable.
+std::optional<CheckedFile> load(Source const& source, Diagnostics& diagnostics);
+
+/// What `--dump STAGE` prints: ast, model or program.
+std::string dump_stage(Source const& source, std::string const& stage, Diagnostics& diagnostics);
+
+/// Runs the tasks of a file in order; verbs: which kinds ("simulate", "fit", "predict"); empty: all. Summaries go to `out`,
+/// progress to `progress`, notices to `notices`. UserError, IoError and InternalError leave through the caller.
+ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<std::string> const& verbs, RunOptions const& options,
+                   Progress& progress, std::ostream& out, std::ostream& notices);
+
+}  // namespace sysid

@@ -1,0 +1,87 @@
+// `predict`: trajectories of posterior draws along a record, condensed to bands with and without noise, and scored on its rows.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/experiments.hpp"
+#include "app/reporting.hpp"
+#include "app/stored_draws.hpp"
+#include "likelihood/trajectory.hpp"
+#include "report/result.hpp"
+#include "report/terminal.hpp"
+
+namespace sysid {
+Prediction predict_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
+                         Model const& model) {
+  Prediction prediction;
+  prediction.experiment = experiment.name;
+  prediction.time = experiment.time;
+  prediction.scored = experiment.scored;
+  for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
+    TrajectoryQuantity const& quantity = trajectory.quantities()[q];
+    PredictedQuantity predicted;
+    predicted.name = quantity.name;
+    predicted.unit = quantity.unit;
+    predicted.response = band(result.values[q]);
+    if (quantity.channel >= 0) {
+      auto const channel = static_cast<std::size_t>(quantity.channel);
+      predicted.noisy = band(result.noisy[channel]);
+      for (double const si : experiment.measured[channel]) predicted.measured.push_back(model.channels[channel].from_si(si));
+    }
+    prediction.quantities.push_back(std::move(predicted));
+  }
+  return prediction;
+}
+
+ExitCode run_predict(Session& session, Task const& task, PredictTask const& what) {
+  FittedModel const& fitted = fitted_model(session, what.fit);
+  FitTask const& fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
+  bool const free_start = what.start.kind == StartRule::Kind::estimated;
+  auto const compiled = session.compiled(fit.model, free_start);
+  Model const& model = compiled->model;
+  DataBlock const& block = session.file.data[static_cast<std::size_t>(what.data)];
+  Diagnostics diagnostics;
+  auto const record = load_record(block, model, session.folder(), diagnostics);
+  if (!record) throw UserError(diagnostics.all().front());
+  Experiment const experiment = cut(*record, block, what.part, what.start);
+  std::uint64_t const seed = session.seed(task, what.seed);
+
+  Trajectory const trajectory(compiled, experiment, fitted.substeps, free_start ? what.start.rows : 0, session.options.execution);
+  StreamKey const noise_key{seed, Purpose::noise, 0, 0};
+  int const wanted = std::min<int>(what.draws, static_cast<int>(fitted.draws.total()));
+  LaneArray const columns = spread(fitted.draws, what.redraw_each_step ? static_cast<int>(fitted.draws.total()) : wanted);
+  Trajectory::Result const result = what.redraw_each_step
+                                        ? trajectory.run_redrawn(columns, wanted, {seed, Purpose::redraw, 0, 0}, noise_key)
+                                        : trajectory.run(columns, noise_key);
+
+  Report report = begin_report(session, task, fit.model,
+                               fmt::format("predict {} on {} with draws({})",
+                                           session.file.tasks[static_cast<std::size_t>(what.fit)].name, experiment.name, wanted),
+                               seed);
+  report.data.push_back(describe_data(*record, block, what.part, model, experiment));
+  report.predictions.push_back(predict_along(trajectory, result, experiment, model));
+  for (PredictedQuantity const& quantity : report.predictions.front().quantities)
+    for (Score score : scores(quantity, experiment.scored)) {
+      if (model.channels.size() > 1) score.name += "(" + quantity.name + ")";
+      report.fit.push_back(std::move(score));
+    }
+  report.settings = {{"draws", static_cast<std::int64_t>(wanted)},
+                     {"redraw", std::string(what.redraw_each_step ? "step" : "trajectory")},
+                     {"start", std::string(free_start ? fmt::format("estimated(rows = {})", what.start.rows)
+                                           : what.start.kind == StartRule::Kind::rest ? "rest"
+                                                                                      : "record")},
+                     {"substeps", static_cast<std::int64_t>(fitted.substeps)}};
+  report.ledger.add_solves(static_cast<std::uint64_t>(wanted));
+  if (result.failed > 0) {
+    report.findings.push_back(
+        {result.failed == wanted ? Severity::error : Severity::warning, "failed_predictions",
+         fmt::format("{} of {} trajectories do not stay finite and are left out of the bands", result.failed, wanted),
+         "the posterior reaches where the model diverges on this input"});
+  }
+  report.verdict = result.failed == 0 ? "all trajectories stay finite" : "some trajectories do not stay finite";
+  write_result(report, session.result_folder(task));
+  session.out << terminal_summary(report);
+  return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
+}
+
+}  // namespace sysid

@@ -1,0 +1,69 @@
+// Provenance: the user's text goes into the report as it stands.
+#include "app/reporting.hpp"
+
+#include <fmt/format.h>
+
+#include "core/instruction_set.hpp"
+#include "syntax/parse.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+ast::Model const* find_model(ast::File const& tree, std::string const& name) {
+  for (ast::Item const& item : tree.items)
+    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
+  return nullptr;
+}
+
+// The density of a prior whose arguments are numbers, per declared unit.
+std::function<double(double)> prior_density(Parameter const& parameter, Model const& model) {
+  auto graph = std::make_shared<Graph>(model.graph);
+  NodeId const x = graph->leaf(LeafKind::unknown, 0);
+  NodeId const root = log_density(*graph, *parameter.prior, x);
+  bool const hierarchical = graph->depends(
+      root, [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter; });
+  if (hierarchical) return {};
+  Support const bounds = support(*graph, *parameter.prior);
+  auto const lower = bounds.lower ? graph->constant_value(*bounds.lower) : std::nullopt;
+  auto const upper = bounds.upper ? graph->constant_value(*bounds.upper) : std::nullopt;
+  double const scale = parameter.unit ? parameter.unit->scale : 1.0;
+  return [graph, root, lower, upper, scale](double declared) {
+    double const si = declared * scale;
+    if ((lower && si <= *lower) || (upper && si >= *upper)) return 0.0;
+    return scale * elementary::exp(graph->evaluate(root, [&](NodeId) { return si; }));
+  };
+}
+
+}  // namespace
+
+Report begin_report(Session const& session, Task const& task, int model_index, std::string what, std::uint64_t seed) {
+  Report report;
+  report.version = SYSID_VERSION;
+  report.task = task.name;
+  report.what = std::move(what);
+  report.seed = seed;
+  Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
+  report.model_name = model.name;
+  report.model_title = model.title;
+  report.versions = {{"sysid", std::string(SYSID_VERSION)}, {"random_numbers", std::string("Philox4x64-10")}};
+  Diagnostics ignored;
+  auto const tree = parse(session.source, ignored);
+  ast::Model const* text = tree ? find_model(*tree, model.name) : nullptr;
+  if (text == nullptr) return report;
+  report.model_text = std::string(session.source.text(text->span));
+  for (ast::ModelStatement const& statement : text->statements) {
+    if (auto const* equation = std::get_if<ast::Equation>(&statement))
+      report.equations.push_back(unparse(equation->left) + " = " + unparse(equation->right));
+    auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement);
+    if (parameter == nullptr || !parameter->prior) continue;
+    for (Parameter const& checked : model.parameters)
+      if (checked.name == parameter->name.name.text)
+        report.priors.push_back({checked.name, checked.unit_text(),
+                                 unparse(ast::Expression{{}, ast::Box<ast::Call>(*parameter->prior)}),
+                                 prior_density(checked, model)});
+  }
+  return report;
+}
+
+}  // namespace sysid

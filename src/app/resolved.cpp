@@ -1,0 +1,65 @@
+// Resolved settings as source text.
+#include "app/resolved.hpp"
+
+#include <fmt/format.h>
+
+#include "app/experiments.hpp"
+#include "report/number.hpp"
+#include "syntax/parse.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+std::string value_text(SettingValue const& value) {
+  return std::visit(
+      [](auto const& v) -> std::string {
+        using Value = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<Value, std::int64_t>)
+          return fmt::format("{}", v);
+        else if constexpr (std::is_same_v<Value, double>)
+          return shortest(v);
+        else if constexpr (std::is_same_v<Value, bool>)
+          return v ? "yes" : "no";
+        else
+          return v;
+      },
+      value);
+}
+
+}  // namespace
+
+std::string settings_text(std::string const& backend, Settings const& settings) {
+  std::string arguments;
+  for (auto const& [name, value] : settings.all())
+    arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, value_text(value));
+  return arguments.empty() ? backend : fmt::format("{}({})", backend, arguments);
+}
+
+std::string start_text(StartRule start) {
+  switch (start.kind) {
+    case StartRule::Kind::record:
+      return "record";
+    case StartRule::Kind::rest:
+      return "rest";
+    case StartRule::Kind::estimated:
+      return fmt::format("estimated(rows = {})", start.rows);
+  }
+  return "?";
+}
+
+std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings, int substeps,
+                         std::uint64_t seed) {
+  Diagnostics ignored;
+  auto tree = parse(session.source, ignored);
+  if (!tree) throw InternalError("a checked file does not parse again");
+  std::erase_if(tree->items, [](ast::Item const& item) { return std::holds_alternative<ast::Task>(item); });
+  return fmt::format(
+      "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
+      "start = {}, substeps = {}, seed = {}\n",
+      task.name, unparse(*tree), task.name, session.file.models[static_cast<std::size_t>(what.model)].name,
+      data_name(session.file.data[static_cast<std::size_t>(what.data)], what.part), settings_text(what.backend, settings),
+      start_text(what.start), substeps, seed);
+}
+
+}  // namespace sysid

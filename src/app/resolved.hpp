@@ -1,0 +1,15 @@
+// The file that reproduces a task: models and data as written, the task with every setting spelt out.
+#pragma once
+#include "app/session.hpp"
+
+namespace sysid {
+
+std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings, int substeps,
+                         std::uint64_t seed);
+
+/// "mh(samples = 25000, ...)", every setting in the order of the table.
+std::string settings_text(std::string const& backend, Settings const& settings);
+
+std::string start_text(StartRule start);
+
+}  // namespace sysid

@@ -1,0 +1,39 @@
+// Shared state of a run.
+#include "app/session.hpp"
+
+#include <fmt/format.h>
+
+#include <random>
+
+#include "core/interrupt.hpp"
+
+namespace sysid {
+
+std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start) {
+  auto& place = compiled_[{model, free_start}];
+  if (!place) place = compile(file.models[static_cast<std::size_t>(model)], free_start);
+  return place;
+}
+
+std::uint64_t Session::seed(Task const& task, std::optional<std::uint64_t> const& stated) {
+  if (options.seed) return *options.seed;
+  if (stated) return *stated;
+  if (!drawn_seed_) {
+    // Up to 2^53, so that the printed number may be written into a file as it stands.
+    std::random_device device;
+    drawn_seed_ = ((static_cast<std::uint64_t>(device()) << 32) | device()) >> 11;
+    notices << fmt::format("{}: seed {} (drawn; repeat this run with --seed {})\n", task.name, *drawn_seed_, *drawn_seed_);
+  }
+  return *drawn_seed_;
+}
+
+std::string Session::describe(int model, Graph const& graph, NodeId node) const {
+  return sysid::describe(file.models[static_cast<std::size_t>(model)], graph, node, source);
+}
+
+bool Session::interrupted() {
+  if (options.interrupt_after != 0 && ++polls_ == options.interrupt_after) request_interrupt();
+  return interrupt_requested();
+}
+
+}  // namespace sysid

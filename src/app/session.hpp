@@ -1,0 +1,60 @@
+// What the tasks of one run share: the checked file, compiled models, results of earlier tasks, where files go.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "app/options.hpp"
+#include "check/checked.hpp"
+#include "core/progress.hpp"
+#include "core/source.hpp"
+#include "inference/draws.hpp"
+#include "likelihood/compiled_model.hpp"
+
+namespace sysid {
+
+/// What a fit leaves for the tasks that refer to it.
+struct FittedModel {
+  Draws draws;
+  int substeps = 1;
+};
+
+class Session {
+ public:
+  Session(Source const& source, CheckedFile const& file, RunOptions const& options, Progress& progress, std::ostream& out,
+          std::ostream& notices)
+      : source(source), file(file), options(options), progress(progress), out(out), notices(notices) {}
+
+  Source const& source;
+  CheckedFile const& file;
+  RunOptions const& options;
+  Progress& progress;
+  std::ostream& out;                  // summaries
+  std::ostream& notices;              // one line each: what was chosen, what was written
+  std::map<int, FittedModel> fitted;  // by index of the fit task
+
+  /// The folder of the .sysid file, from which data paths are relative.
+  std::filesystem::path folder() const { return std::filesystem::path(source.name()).parent_path(); }
+  std::filesystem::path result_folder(Task const& task) const { return options.output / task.name; }
+  /// Compiled on first use.
+  std::shared_ptr<CompiledModel const> compiled(int model, bool free_start);
+  /// The seed of a task: the command line's, the file's, or one drawn from the system and printed.
+  std::uint64_t seed(Task const& task, std::optional<std::uint64_t> const& stated);
+  /// A sub-expression in the user's words, for the ledger.
+  std::string describe(int model, Graph const& graph, NodeId node) const;
+  /// Whether an interruption was asked for; counts polls for `interrupt_after`.
+  bool interrupted();
+
+ private:
+  std::map<std::pair<int, bool>, std::shared_ptr<CompiledModel const>> compiled_;
+  std::optional<std::uint64_t> drawn_seed_;
+  std::uint64_t polls_ = 0;
+};
+
+ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what);
+ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what);
+ExitCode run_predict(Session& session, Task const& task, PredictTask const& what);
+
+}  // namespace sysid

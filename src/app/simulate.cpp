@@ -1,0 +1,99 @@
+// `simulate`: data made from stated values, as a CSV that a data block reads.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/experiments.hpp"
+#include "app/session.hpp"
+#include "app/signals.hpp"
+#include "core/files.hpp"
+#include "likelihood/trajectory.hpp"
+#include "report/number.hpp"
+
+namespace sysid {
+namespace {
+
+double population_sd(std::vector<double> const& values) {
+  double mean = 0, square = 0;
+  for (double const value : values) mean += value;
+  mean /= static_cast<double>(values.size());
+  for (double const value : values) square += (value - mean) * (value - mean);
+  return std::sqrt(square / static_cast<double>(values.size()));
+}
+
+std::string unit_suffix(std::string const& unit) { return unit.empty() ? std::string() : " [" + unit + "]"; }
+
+}  // namespace
+
+ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) {
+  auto const compiled = session.compiled(what.model, false);
+  Model const& model = compiled->model;
+  std::uint64_t const seed = session.seed(task, what.seed);
+
+  Experiment experiment;
+  experiment.name = task.name;
+  for (int i = 0; i < what.samples; ++i) experiment.time.push_back(i * what.step);
+  experiment.scored.assign(static_cast<std::size_t>(what.samples), 1);
+  experiment.measured.resize(model.channels.size());
+  std::vector<std::vector<double>> inputs;
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    inputs.push_back(generate(what.inputs[i], what.samples, what.step, {seed, Purpose::input, i, 0}));
+    experiment.inputs.emplace_back(what.inputs[i].rule, experiment.time, inputs.back());
+  }
+  LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
+  for (std::size_t p = 0; p < model.parameters.size(); ++p)
+    parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
+  Trajectory const trajectory(compiled, experiment, what.substeps, 0, session.options.execution);
+  StreamKey const noise_key{seed, Purpose::noise, 0, 0};
+  Trajectory::Result const result = trajectory.run_si(parameters, noise_key);
+  if (result.failed > 0)
+    throw UserError({Severity::error,
+                     "E5001",
+                     fmt::format("the simulation `{}` does not stay finite", task.name),
+                     Label{task.span, {}},
+                     {},
+                     "take smaller steps (substeps = 10) or other values"});
+
+  std::string header = "t",
+              comments = fmt::format("# made by sysid {}: {} of model {}, seed {}\n", SYSID_VERSION, task.name, model.name, seed);
+  for (std::size_t p = 0; p < model.parameters.size(); ++p)
+    if (what.values[p])
+      comments += fmt::format("# {} = {}{}\n", model.parameters[p].name, shortest(model.parameters[p].from_si(*what.values[p])),
+                              unit_suffix(model.parameters[p].unit_text()));
+  std::vector<std::vector<double>> columns = {experiment.time};
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    header += "," + model.inputs[i].name;
+    comments += fmt::format("# column {}{}: {} between samples\n", model.inputs[i].name, unit_suffix(model.inputs[i].unit_text()),
+                            rule_name(what.inputs[i].rule));
+    for (double& value : inputs[i]) value = model.inputs[i].from_si(value);
+    columns.push_back(inputs[i]);
+  }
+  for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
+    TrajectoryQuantity const& quantity = trajectory.quantities()[q];
+    std::vector<double> const& clean = result.values[q][0];
+    if (quantity.channel < 0) continue;
+    std::vector<double> noisy = result.noisy[static_cast<std::size_t>(quantity.channel)][0];
+    if (what.noise_fraction >= 0) {
+      double const sd = what.noise_fraction * population_sd(clean);
+      Stream stream(noise_key.at(0, static_cast<std::uint64_t>(quantity.channel)));
+      for (std::size_t i = 0; i < clean.size(); ++i) noisy[i] = clean[i] + sd * stream.normal();
+      comments += fmt::format("# noise sd of {}: {}{}\n", quantity.name, shortest(sd), unit_suffix(quantity.unit));
+    }
+    header += fmt::format(",{},{}_clean", quantity.name, quantity.name);
+    comments +=
+        fmt::format("# column {}{}: measured; {}_clean: without noise\n", quantity.name, unit_suffix(quantity.unit), quantity.name);
+    columns.push_back(std::move(noisy));
+    columns.push_back(clean);
+  }
+  std::string text = comments + header + "\n";
+  for (std::size_t i = 0; i < experiment.time.size(); ++i)
+    for (std::size_t c = 0; c < columns.size(); ++c) text += shortest(columns[c][i]) + (c + 1 == columns.size() ? "\n" : ",");
+
+  auto const folder = session.result_folder(task);
+  write_file(folder / what.file, text);
+  session.notices << fmt::format("{}: {} samples of {} written to {}\n", task.name, what.samples, model.name,
+                                 (folder / what.file).string());
+  return ExitCode::success;
+}
+
+}  // namespace sysid

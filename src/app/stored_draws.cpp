@@ -1,0 +1,105 @@
+// Stan CSV back to draws; decimals were shortest round-trip, so the numbers are the same.
+#include "app/stored_draws.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/results.hpp"
+#include "core/diagnostic.hpp"
+#include "core/files.hpp"
+
+namespace sysid {
+namespace {
+
+std::vector<std::string_view> split(std::string_view line, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    auto const end = line.find(separator);
+    parts.push_back(line.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    line.remove_prefix(end + 1);
+  }
+}
+
+double number(std::string_view text) {
+  double value = std::nan("");
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+Chain read_chain(std::string const& text, std::vector<std::string> const& parameters, std::string const& path) {
+  Chain chain;
+  std::vector<std::size_t> columns;
+  std::size_t lp = 0, accept = 0, prior = 0, likelihood = 0;
+  for (std::string_view const line : split(text, '\n')) {
+    if (line.empty() || line.front() == '#') continue;
+    auto const cells = split(line, ',');
+    if (columns.empty()) {
+      auto const find = [&](std::string const& name) {
+        auto const place = std::find(cells.begin(), cells.end(), name);
+        if (place == cells.end())
+          throw UserError({Severity::error,
+                           "E6201",
+                           fmt::format("`{}` has no column `{}`: it is of another model", path, name),
+                           std::nullopt,
+                           {},
+                           "run the fit again, with --force or another -o"});
+        return static_cast<std::size_t>(place - cells.begin());
+      };
+      lp = find("lp__");
+      accept = find("accept_stat__");
+      prior = find("log_prior__");
+      likelihood = find("log_likelihood__");
+      for (std::string const& name : parameters) columns.push_back(find(name));
+      continue;
+    }
+    std::vector<double> values;
+    for (std::size_t const column : columns) values.push_back(column < cells.size() ? number(cells[column]) : std::nan(""));
+    chain.values.push_back(std::move(values));
+    chain.log_density.push_back(number(cells[lp]));
+    chain.acceptance.push_back(number(cells[accept]));
+    chain.log_prior.push_back(number(cells[prior]));
+    chain.log_likelihood.push_back(number(cells[likelihood]));
+  }
+  return chain;
+}
+
+}  // namespace
+
+FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::string> const& parameters) {
+  FittedModel fitted;
+  fitted.draws.names = parameters;
+  fitted.draws.parameter_count = static_cast<int>(parameters.size());
+  for (int k = 1; std::filesystem::exists(folder / fmt::format("draws_{}.csv", k)); ++k) {
+    auto const path = folder / fmt::format("draws_{}.csv", k);
+    fitted.draws.chains.push_back(read_chain(read_file(path), parameters, path.string()));
+  }
+  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  if (summary.is_object() && summary.contains("settings") && summary["settings"].contains("substeps"))
+    fitted.substeps = summary["settings"]["substeps"].get<int>();
+  return fitted;
+}
+
+FittedModel const& fitted_model(Session& session, int fit) {
+  if (auto const place = session.fitted.find(fit); place != session.fitted.end()) return place->second;
+  Task const& task = session.file.tasks[static_cast<std::size_t>(fit)];
+  auto const folder = session.result_folder(task);
+  if (!complete(folder))
+    throw UserError({Severity::error,
+                     "E6202",
+                     fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
+                     std::nullopt,
+                     {},
+                     "run the fit first: sysid run FILE, or sysid fit FILE"});
+  Model const& model = session.file.models[static_cast<std::size_t>(std::get<FitTask>(task.what).model)];
+  std::vector<std::string> names;
+  for (Parameter const& parameter : model.parameters)
+    if (parameter.prior) names.push_back(parameter.name);
+  return session.fitted[fit] = read_fitted(folder, names);
+}
+
+}  // namespace sysid

@@ -1,0 +1,16 @@
+// Draws of an earlier run, read back from its files: what `predict` works from when the fit is not part of this run.
+#pragma once
+#include <filesystem>
+
+#include "app/session.hpp"
+
+namespace sysid {
+
+/// The fit task's draws and settings: from this run, else from its result folder. UserError when there are none, or the stored ones
+/// are of another model.
+FittedModel const& fitted_model(Session& session, int fit);
+
+/// summary.json and draws_N.csv of a folder. parameters: names the draws must have, in order.
+FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::string> const& parameters);
+
+}  // namespace sysid

@@ -1,0 +1,42 @@
+// Tables as text.
+#include "cli/lists.hpp"
+
+#include <fmt/format.h>
+
+#include "distribution/distribution.hpp"
+#include "function/table.hpp"
+#include "inference/backend.hpp"
+
+namespace sysid {
+namespace {
+
+std::string signature(DistributionRow const& row) {
+  std::string text;
+  for (ArgumentRow const& argument : row.arguments) {
+    text += text.empty() ? "" : ", ";
+    for (std::size_t i = 0; i < argument.spellings.size(); ++i)
+      text += fmt::format("{}{}", i == 0 ? "" : "|", argument.spellings[i].name);
+  }
+  return fmt::format("{}({})", row.name, text);
+}
+
+}  // namespace
+
+std::string list(std::string const& topic) {
+  std::string text;
+  if (topic == "functions") {
+    for (FunctionRow const& row : functions()) text += fmt::format("{:<12} {}\n", row.name, row.summary);
+  } else if (topic == "distributions") {
+    for (DistributionRow const& row : distributions())
+      text += fmt::format("{:<68} {}{}\n", signature(row), row.summary, row.noise ? "; also as noise" : "");
+  } else {
+    for (BackendRow const& row : backends()) {
+      text += fmt::format("{}: {}\n", row.name, row.summary);
+      for (SettingRow const& setting : row.settings)
+        text += fmt::format("  {:<10} {:<10} {}\n", setting.name, setting.fallback, setting.summary);
+    }
+  }
+  return text;
+}
+
+}  // namespace sysid

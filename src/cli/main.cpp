@@ -1,0 +1,194 @@
+// The command line: verbs and options in, exit codes out; everything else is app/.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <iostream>
+
+#include "app/pipeline.hpp"
+#include "cli/lists.hpp"
+#include "core/files.hpp"
+#include "core/instruction_set.hpp"
+#include "core/interrupt.hpp"
+#include "core/progress_terminal.hpp"
+#include "syntax/parse.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+struct CommandLine {
+  std::string file, dump, error_format = "text", instruction_set, topic, code;
+  RunOptions run;
+  bool quiet = false, in_place = false;
+};
+
+int code(ExitCode exit) { return static_cast<int>(exit); }
+
+bool colour() {
+  char const* refused = std::getenv("NO_COLOR");
+  return (refused == nullptr || *refused == '\0') && isatty(STDERR_FILENO) != 0;
+}
+
+void show(Diagnostics const& diagnostics, Source const& source, CommandLine const& line) {
+  if (line.error_format == "json")
+    std::cerr << render_json(diagnostics, source);
+  else
+    std::cerr << render(diagnostics, source, colour());
+}
+
+Source read_source(std::string const& path) { return Source(path, read_file(path)); }
+
+// Runs a verb; every way out of it has its exit code here.
+template <class Verb>
+int guarded(CommandLine const& line, Source const& source, Verb const& verb) {
+  try {
+    return verb();
+  } catch (UserError const& error) {
+    Diagnostics diagnostics;
+    diagnostics.add(error.diagnostic());
+    show(diagnostics, source, line);
+    return code(ExitCode::user_error);
+  } catch (IoError const& error) {
+    std::cerr << "sysid: " << error.what() << '\n';
+    return code(ExitCode::io);
+  } catch (std::bad_alloc const&) {
+    std::cerr << "sysid: out of memory\n";
+    return code(ExitCode::internal);
+  } catch (std::exception const& error) {
+    std::cerr << "sysid: this is our fault, not yours: " << error.what() << "\nplease send the file that shows it\n";
+    return code(ExitCode::internal);
+  }
+}
+
+int run(CommandLine& line, std::vector<std::string> const& verbs) {
+  std::optional<Source> source;
+  return guarded(line, Source("", ""), [&] {
+    source.emplace(read_source(line.file));
+    return guarded(line, *source, [&] {
+      Diagnostics diagnostics;
+      if (!line.dump.empty()) {
+        std::string const text = dump_stage(*source, line.dump, diagnostics);
+        show(diagnostics, *source, line);
+        if (diagnostics.has_errors()) return code(ExitCode::user_error);
+        std::cout << text;
+        return code(ExitCode::success);
+      }
+      auto const file = load(*source, diagnostics);
+      show(diagnostics, *source, line);
+      if (!file) return code(ExitCode::user_error);
+      install_interrupt_handlers();
+      std::ostream nowhere(nullptr);
+      SilentProgress silent;
+      TerminalProgress terminal;
+      return code(run_tasks(*source, *file, verbs, line.run, line.quiet ? static_cast<Progress&>(silent) : terminal, std::cout,
+                            line.quiet ? nowhere : std::cerr));
+    });
+  });
+}
+
+int check(CommandLine const& line) {
+  return guarded(line, Source("", ""), [&] {
+    Source const source = read_source(line.file);
+    Diagnostics diagnostics;
+    auto const file = load(source, diagnostics);
+    show(diagnostics, source, line);
+    if (!file) return code(ExitCode::user_error);
+    std::cout << fmt::format("{}: {} model{}, {} data block{}, {} task{}, no errors\n", line.file, file->models.size(),
+                             file->models.size() == 1 ? "" : "s", file->data.size(), file->data.size() == 1 ? "" : "s",
+                             file->tasks.size(), file->tasks.size() == 1 ? "" : "s");
+    return code(ExitCode::success);
+  });
+}
+
+int format(CommandLine const& line) {
+  return guarded(line, Source("", ""), [&] {
+    Source const source = read_source(line.file);
+    Diagnostics diagnostics;
+    auto const tree = parse(source, diagnostics);
+    show(diagnostics, source, line);
+    if (!tree) return code(ExitCode::user_error);
+    std::cout << unparse(*tree);
+    return code(ExitCode::success);
+  });
+}
+
+void add_run_options(CLI::App& verb, CommandLine& line) {
+  verb.add_option("file", line.file, "the .sysid file")->required();
+  verb.add_option("-o,--output", line.run.output, "folder for results (default: results)");
+  verb.add_flag("--force", line.run.force, "overwrite results of the same name");
+  verb.add_flag("--resume", line.run.resume, "go on from checkpoints; keep tasks that are complete");
+  verb.add_option("--seed", line.run.seed, "seed of all random numbers, in place of the file's");
+  verb.add_option("--threads", line.run.execution.threads, "threads (0: one per processor); results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  verb.add_option("--lanes", line.run.execution.lanes, "simulations side by side (0: chosen); results do not depend on it")
+      ->check(CLI::Range(0, 4096));
+  verb.add_option("--instruction-set", line.instruction_set,
+                  "avx2 or avx512 (default: the best there is); results do not depend on it")
+      ->check(CLI::IsMember({"avx2", "avx512"}));
+  verb.add_option("--dump", line.dump, "print a stage instead of running: ast, model or program")
+      ->check(CLI::IsMember({"ast", "model", "program"}));
+  verb.add_option("--checkpoint-interval", line.run.checkpoint_interval, "seconds between checkpoints")->check(CLI::PositiveNumber);
+  verb.add_option("--interrupt-after", line.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
+  verb.add_flag("-q,--quiet", line.quiet, "no progress, no notices");
+}
+
+int main(int argument_count, char** arguments) {
+  if (!supported_instruction_set()) {
+    std::cerr << "sysid: this processor lacks AVX2 and FMA (x86-64-v3), which sysid needs\n";
+    return code(ExitCode::internal);
+  }
+  CommandLine line;
+  line.run.execution.threads = 0;
+  CLI::App app{"sysid: Bayesian identification of nonlinear systems, from the equation as printed"};
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.add_option("--error-format", line.error_format, "text or json")->check(CLI::IsMember({"text", "json"}));
+  int exit = 0;
+  auto const runs = [&](char const* name, char const* summary, std::vector<std::string> verbs) {
+    CLI::App* verb = app.add_subcommand(name, summary);
+    add_run_options(*verb, line);
+    verb->callback([&, verbs] {
+      if (!line.instruction_set.empty())
+        force_instruction_set(line.instruction_set == "avx2" ? InstructionSet::avx2 : InstructionSet::avx512);
+      exit = run(line, verbs);
+    });
+  };
+  runs("run", "do all tasks of a file", {});
+  runs("simulate", "do its simulate tasks: make data", {"simulate"});
+  runs("fit", "do its fit tasks", {"fit"});
+  runs("predict", "do its predict tasks, from stored draws", {"predict"});
+  CLI::App* checking = app.add_subcommand("check", "say what is wrong with a file, without running it");
+  checking->add_option("file", line.file, "the .sysid file")->required();
+  checking->callback([&] { exit = check(line); });
+  CLI::App* formatting = app.add_subcommand("fmt", "print a file in canonical layout (comments are not kept)");
+  formatting->add_option("file", line.file, "the .sysid file")->required();
+  formatting->callback([&] { exit = format(line); });
+  CLI::App* listing = app.add_subcommand("list", "list functions, distributions or backends");
+  listing->add_option("what", line.topic, "functions, distributions or backends")
+      ->required()
+      ->check(CLI::IsMember({"functions", "distributions", "backends"}));
+  listing->callback([&] { std::cout << list(line.topic); });
+  CLI::App* version = app.add_subcommand("version", "print the version and the instruction set in use");
+  version->callback([] { std::cout << fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())); });
+  try {
+    app.parse(argument_count, arguments);
+  } catch (CLI::ParseError const& error) {
+    return app.exit(error) == 0 ? 0 : code(ExitCode::usage);
+  } catch (UserError const& error) {
+    std::cerr << "sysid: " << error.what() << '\n';
+    return code(ExitCode::usage);
+  }
+  std::cout.flush();
+  if (!std::cout) {
+    std::cerr << "sysid: cannot write to standard output\n";
+    return code(ExitCode::io);
+  }
+  return exit;
+}
+
+}  // namespace
+}  // namespace sysid
+
+int main(int argument_count, char** arguments) { return sysid::main(argument_count, arguments); }

@@ -1,0 +1,280 @@
+// From expressions to kernels and programs: coordinates of the sampler, prior, densities of channels, residuals, trajectories.
+#include "likelihood/compiled_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sysid {
+namespace {
+
+NodeId parameter_leaf(Graph& graph, int index) { return graph.leaf(LeafKind::parameter, index); }
+
+// The graph of a model with fixed parameters replaced by their values; the replaced roots share it.
+class Folded {
+ public:
+  explicit Folded(Model const& model) : model_(model), graph(model.graph) {}
+
+  NodeId operator()(NodeId root) {
+    NodeId const result = graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
+      Node const& node = graph[leaf];
+      if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())
+        return std::nullopt;
+      return model_.parameters[static_cast<std::size_t>(node.index)].value;
+    });
+    return result;
+  }
+  Distribution operator()(Distribution use) {
+    for (NodeId& argument : use.arguments) argument = (*this)(argument);
+    if (use.lower) use.lower = (*this)(*use.lower);
+    if (use.upper) use.upper = (*this)(*use.upper);
+    return use;
+  }
+
+ private:
+  Model const& model_;
+
+ public:
+  Graph graph;
+};
+
+// a - b with equal addends cancelled, so that a residual does not carry the rounding of constants both have.
+class Difference {
+ public:
+  explicit Difference(Graph& graph) : graph_(graph) {}
+  NodeId operator()(NodeId a, NodeId b) {
+    collect(a, 1);
+    collect(b, -1);
+    NodeId sum = graph_.constant(0);
+    for (auto const& [node, count] : terms_)
+      if (count != 0) sum = graph_.add(sum, graph_.multiply(graph_.constant(count), node));
+    return sum;
+  }
+
+ private:
+  void collect(NodeId id, int sign) {
+    Node const node = graph_[id];
+    if (node.operation == Operation::add || node.operation == Operation::subtract) {
+      collect(node.a, sign);
+      collect(node.b, node.operation == Operation::add ? sign : -sign);
+    } else if (node.operation == Operation::negate) {
+      collect(node.a, -sign);
+    } else {
+      auto const place = std::find_if(terms_.begin(), terms_.end(), [&](auto const& term) { return term.first == id; });
+      if (place == terms_.end())
+        terms_.emplace_back(id, sign);
+      else
+        place->second += sign;
+    }
+  }
+  Graph& graph_;
+  std::vector<std::pair<NodeId, int>> terms_;
+};
+
+double scale_of(Quantity const& quantity) { return quantity.unit ? quantity.unit->scale : 1.0; }
+
+// log density of a channel's sample in the declared unit; the largest any location gives it; and where the noise is centred.
+struct ChannelDensity {
+  NodeId sample, saturated, centre;
+};
+ChannelDensity channel_density(Folded& folded, Channel const& channel, int index) {
+  Graph& graph = folded.graph;
+  Distribution const use = folded(channel.noise);
+  NodeId const measured = graph.leaf(LeafKind::measured, index);
+  NodeId const centre = use.row->centre(graph, use.arguments);
+  NodeId const unit = graph.constant(elementary::log(scale_of(channel)));
+  return {graph.add(log_density(graph, use, measured), unit), graph.add(use.row->saturated(graph, measured, use.arguments), unit),
+          centre};
+}
+
+// sign(y - centre) sqrt(2 (saturated - log p(y)))
+NodeId deviance_residual(Graph& graph, ChannelDensity const& density, int index) {
+  NodeId const measured = graph.leaf(LeafKind::measured, index);
+  NodeId const deviance = Difference(graph)(density.saturated, density.sample);
+  NodeId const size = graph.unary(Operation::square_root,
+                                  graph.binary(Operation::maximum, graph.multiply(graph.constant(2), deviance), graph.constant(0)));
+  return graph.multiply(graph.unary(Operation::sign, graph.subtract(measured, density.centre)), size);
+}
+
+SimulationSource dynamics(Folded& folded, Model const& model, bool free_start) {
+  SimulationSource source;
+  int const all = static_cast<int>(model.parameters.size());
+  source.parameters = all + (free_start ? static_cast<int>(model.states.size()) : 0);
+  source.inputs = static_cast<int>(model.inputs.size());
+  for (std::size_t i = 0; i < model.states.size(); ++i) {
+    source.initial.push_back(free_start ? parameter_leaf(folded.graph, all + static_cast<int>(i))
+                                        : folded(model.states[i].initial));
+    source.derivative.push_back(folded(model.states[i].derivative));
+  }
+  return source;
+}
+
+void compile_coordinates(CompiledModel& compiled) {
+  Model const& model = compiled.model;
+  Folded folded(model);
+  Graph& graph = folded.graph;
+  std::size_t const all = model.parameters.size();
+  std::vector<int> coordinate(all, -1);
+  for (std::size_t i = 0; i < all; ++i)
+    if (model.parameters[i].prior) {
+      coordinate[i] = static_cast<int>(compiled.sampled.size());
+      compiled.sampled.push_back(static_cast<int>(i));
+    }
+  std::vector<NodeId> value(all), leaves, unconstrained_leaves, backward;
+  for (std::size_t i = 0; i < all; ++i) {
+    leaves.push_back(parameter_leaf(graph, static_cast<int>(i)));
+    value[i] = model.parameters[i].value.value_or(leaves.back());
+  }
+  for (std::size_t k = 0; k < compiled.sampled.size(); ++k)
+    unconstrained_leaves.push_back(graph.leaf(LeafKind::unconstrained, static_cast<int>(k)));
+
+  auto const known = [&](NodeId leaf) -> std::optional<NodeId> {
+    Node const& node = graph[leaf];
+    if (node.leaf_kind != LeafKind::parameter) return std::nullopt;
+    return value[static_cast<std::size_t>(node.index)];
+  };
+  NodeId with_jacobian = graph.constant(0), without = graph.constant(0);
+  for (int const index : model.sampling_order) {
+    auto const i = static_cast<std::size_t>(index);
+    Distribution use = *model.parameters[i].prior;
+    for (NodeId& argument : use.arguments) argument = graph.substitute(argument, known);
+    if (use.lower) use.lower = graph.substitute(*use.lower, known);
+    if (use.upper) use.upper = graph.substitute(*use.upper, known);
+    Coordinate const moved = constrain(graph, support(graph, use), unconstrained_leaves[static_cast<std::size_t>(coordinate[i])]);
+    value[i] = moved.value;
+    // The declared density is per declared unit.
+    NodeId const density =
+        graph.add(log_density(graph, use, moved.value), graph.constant(elementary::log(scale_of(model.parameters[i]))));
+    without = graph.add(without, density);
+    // d(declared)/du = d(SI)/du / scale.
+    with_jacobian = graph.add(
+        with_jacobian,
+        graph.add(density, graph.subtract(moved.log_jacobian, graph.constant(elementary::log(scale_of(model.parameters[i]))))));
+  }
+  for (int const index : compiled.sampled) {
+    auto const i = static_cast<std::size_t>(index);
+    Distribution const use = folded(*model.parameters[i].prior);
+    backward.push_back(unconstrain(graph, support(graph, use), leaves[i]));
+  }
+  compiled.constrain = compile_kernel(graph, unconstrained_leaves, value);
+  NodeId const densities[] = {with_jacobian, without};
+  compiled.prior = compile_kernel(graph, unconstrained_leaves, densities);
+  compiled.unconstrain = compile_kernel(graph, leaves, backward);
+
+  std::vector<NodeId> quantities, initial;
+  for (std::size_t i = 0; i < model.derived.size(); ++i) {
+    if (model.derived[i].per_sample) continue;
+    compiled.derived_index.push_back(static_cast<int>(i));
+    quantities.push_back(graph.divide(folded(model.derived[i].value), graph.constant(scale_of(model.derived[i]))));
+  }
+  for (State const& state : model.states) initial.push_back(folded(state.initial));
+  compiled.derived = compile_kernel(graph, leaves, quantities);
+  compiled.initial = compile_kernel(graph, leaves, initial);
+}
+
+std::shared_ptr<SimulationProgram const> finish(Folded& folded, SimulationSource source) {
+  source.graph = folded.graph;
+  return std::make_shared<SimulationProgram const>(compile(std::move(source)));
+}
+
+void compile_programs(CompiledModel& compiled) {
+  Model const& model = compiled.model;
+  Folded folded(model);
+  std::vector<ChannelDensity> densities;
+  for (std::size_t c = 0; c < model.channels.size(); ++c)
+    densities.push_back(channel_density(folded, model.channels[c], static_cast<int>(c)));
+
+  SimulationSource likelihood = dynamics(folded, model, compiled.free_start), residuals = likelihood, trajectory = likelihood;
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    likelihood.channels.push_back({{densities[c].sample}});
+    residuals.channels.push_back({{densities[c].saturated}});
+    residuals.records.push_back(deviance_residual(folded.graph, densities[c], static_cast<int>(c)));
+    trajectory.channels.push_back({});
+    compiled.records.push_back({CompiledModel::Record::Kind::centre, static_cast<int>(c), 0});
+    trajectory.records.push_back(densities[c].centre);
+    Distribution const use = folded(model.channels[c].noise);
+    for (std::size_t a = 0; a < use.arguments.size(); ++a) {
+      compiled.records.push_back({CompiledModel::Record::Kind::noise_argument, static_cast<int>(c), static_cast<int>(a)});
+      trajectory.records.push_back(use.arguments[a]);
+    }
+  }
+  for (std::size_t s = 0; s < model.states.size(); ++s) {
+    compiled.records.push_back({CompiledModel::Record::Kind::state, static_cast<int>(s), 0});
+    trajectory.records.push_back(folded.graph.leaf(LeafKind::state, static_cast<int>(s)));
+  }
+  for (std::size_t d = 0; d < model.derived.size(); ++d) {
+    if (!model.derived[d].per_sample) continue;
+    compiled.records.push_back({CompiledModel::Record::Kind::derived, static_cast<int>(d), 0});
+    trajectory.records.push_back(folded(model.derived[d].value));
+  }
+  compiled.likelihood = finish(folded, std::move(likelihood));
+  compiled.residuals = finish(folded, std::move(residuals));
+  compiled.trajectory = finish(folded, std::move(trajectory));
+}
+
+ProgramNames names_of(CompiledModel const& compiled) {
+  ProgramNames names;
+  for (Parameter const& parameter : compiled.model.parameters) names.parameters.push_back(parameter.name);
+  if (compiled.free_start)
+    for (State const& state : compiled.model.states) names.parameters.push_back(state.name + "(0)");
+  for (Quantity const& input : compiled.model.inputs) names.inputs.push_back(input.name);
+  for (State const& state : compiled.model.states) names.states.push_back(state.name);
+  for (Channel const& channel : compiled.model.channels) names.channels.push_back(channel.name);
+  return names;
+}
+
+}  // namespace
+
+int CompiledModel::parameter_rows() const {
+  return static_cast<int>(model.parameters.size()) + (free_start ? static_cast<int>(model.states.size()) : 0);
+}
+
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start) {
+  auto compiled = std::make_shared<CompiledModel>();
+  compiled->model = std::move(model);
+  compiled->free_start = free_start;
+  compile_coordinates(*compiled);
+  compile_programs(*compiled);
+  return compiled;
+}
+
+std::string dump_program(CompiledModel const& compiled) {
+  auto const coordinate = [&](int row) {
+    return "u(" + compiled.model.parameters[static_cast<std::size_t>(compiled.sampled[static_cast<std::size_t>(row)])].name + ")";
+  };
+  return fmt::format(
+      "# coordinates to parameters\n{}\n# log prior: on the coordinates, of the declared parameters\n{}\n# likelihood\n{}",
+      dump(compiled.constrain, coordinate), dump(compiled.prior, coordinate), dump(*compiled.likelihood, names_of(compiled)));
+}
+
+std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {
+  if (auto const span = graph.span(node)) {
+    Place const place = source.place(span->begin);
+    return fmt::format("`{}` ({}:{}:{})", source.text(*span), source.name(), place.line, place.column);
+  }
+  std::string text = graph.format(node, [&](NodeId leaf) -> std::string {
+    Node const& what = graph[leaf];
+    auto const index = static_cast<std::size_t>(what.index);
+    switch (what.leaf_kind) {
+      case LeafKind::parameter:
+        return index < model.parameters.size() ? model.parameters[index].name
+                                               : model.states[index - model.parameters.size()].name + "(0)";
+      case LeafKind::state:
+        return model.states[index].name;
+      case LeafKind::input:
+        return model.inputs[index].name;
+      case LeafKind::input_rate:
+        return model.inputs[index].name + "'";
+      case LeafKind::measured:
+        return model.channels[index].name;
+      case LeafKind::time:
+        return "time";
+      default:
+        return "?";
+    }
+  });
+  if (text.size() > 80) text = text.substr(0, 77) + "...";
+  return fmt::format("`{}`", text);
+}
+
+}  // namespace sysid

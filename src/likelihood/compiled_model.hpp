@@ -1,0 +1,52 @@
+// A model as compiled functions: parameters and priors as kernels, simulations as programs for each use. Compiled once, used by
+// every view.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/source.hpp"
+#include "model/model.hpp"
+#include "program/kernel.hpp"
+#include "program/simulation_program.hpp"
+
+namespace sysid {
+
+/// Rows of a simulation's parameters: all parameters of the model in the user's order (fixed ones are folded in, their rows
+/// unread), then, with a free start, one row per state: its value at the first sample.
+struct CompiledModel {
+  Model model;
+  std::vector<int> sampled;  // model parameter of each coordinate, in the user's order; size D
+  bool free_start = false;
+
+  Kernel constrain;                // u [D] -> parameters, SI [all parameters]
+  Kernel unconstrain;              // parameters, SI [all parameters] -> u [D]
+  Kernel prior;                    // u [D] -> log prior on R^D, log prior of the declared parameters
+  Kernel derived;                  // parameters, SI -> quantities derived from parameters alone, declared units
+  Kernel initial;                  // parameters, SI -> the model's own initial state, SI
+  std::vector<int> derived_index;  // into model.derived
+  std::shared_ptr<SimulationProgram const> likelihood;  // sums: per channel the log density
+  std::shared_ptr<SimulationProgram const>
+      residuals;  // records: per channel the deviance residual; sums: the saturated log density
+  std::shared_ptr<SimulationProgram const> trajectory;  // records: see below
+  struct Record {
+    enum class Kind { centre, noise_argument, state, derived };
+    Kind kind;
+    int index;     // channel, channel, state, model.derived
+    int argument;  // of the noise
+  };
+  std::vector<Record> records;  // of `trajectory`, SI
+
+  int parameter_rows() const;
+};
+
+/// free_start: the initial state is read from extra parameter rows instead of the model's initial values.
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start);
+
+/// What `--dump program` prints: the likelihood program and the kernels of the prior.
+std::string dump_program(CompiledModel const& compiled);
+
+/// A sub-expression in the user's words and its place: "`k3*y^3` (duffing.sysid:12:20)"; from its structure where it has no place.
+std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source);
+
+}  // namespace sysid

@@ -1,0 +1,37 @@
+// The state at the first sample, fitted per parameter vector to the first rows of the record (`start = estimated(rows = 50)`).
+#pragma once
+#include <memory>
+
+#include "core/lanes.hpp"
+#include "likelihood/compiled_model.hpp"
+#include "simulate/simulator.hpp"
+
+namespace sysid {
+
+/// Least squares by Gauss-Newton on the measured channels of the window, each weighted by its own variance there, from the model's
+/// initial values, a fixed number of iterations, slopes by finite differences: a smooth function of the parameters, the same for
+/// any lane. States the window does not determine stay where they are (a ridge of 1e-10 relative).
+class StartState {
+ public:
+  /// compiled: with a free start. experiment: begins at the row whose state is wanted; its first `rows` rows are the window.
+  StartState(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int rows, int substeps,
+             ExecutionOptions options);
+
+  /// parameters: [parameter_rows x W], SI; reads the model's parameters, writes the rows of the start state.
+  void estimate(Lanes parameters) const;
+
+ private:
+  /// Predicted centres minus samples, weighted: [residuals x W].
+  void residuals(ConstLanes parameters, LaneArray& out) const;
+
+  std::shared_ptr<CompiledModel const> compiled_;
+  std::vector<int> record_;  // record rows of the channels' centres that are measured in the window
+  std::vector<std::vector<double>> samples_;
+  std::vector<double> weights_;
+  int rows_ = 0;
+  int count_ = 0;  // residuals
+  double data_norm_ = 0;
+  Simulator simulator_;
+};
+
+}  // namespace sysid

@@ -1,0 +1,132 @@
+// Records of the trajectory program, in declared units, a few dozen parameter vectors at a time so that long records fit in memory.
+#include "likelihood/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sysid {
+namespace {
+
+constexpr int vectors_at_once = 64;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using RecordKind = CompiledModel::Record::Kind;
+
+Quantity const& quantity_of(Model const& model, CompiledModel::Record const& record) {
+  auto const index = static_cast<std::size_t>(record.index);
+  if (record.kind == RecordKind::state) return model.states[index];
+  if (record.kind == RecordKind::derived) return model.derived[index];
+  return model.channels[index];
+}
+
+}  // namespace
+
+Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int substeps, int start_rows,
+                       ExecutionOptions options)
+    : compiled_(std::move(compiled)),
+      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, substeps), options) {
+  if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, substeps, options);
+  for (auto const& record : compiled_->records) {
+    if (record.kind == RecordKind::noise_argument) continue;
+    Quantity const& quantity = quantity_of(compiled_->model, record);
+    std::string const unit = !quantity.unit                ? std::string()
+                             : quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension)
+                                                           : quantity.unit->text;
+    quantities_.push_back({quantity.name, unit, record.kind == RecordKind::centre ? record.index : -1});
+  }
+}
+
+LaneArray Trajectory::simulation_parameters(ConstLanes sampled) const {
+  Model const& model = compiled_->model;
+  LaneArray parameters(static_cast<int>(model.parameters.size()), sampled.width());
+  for (std::size_t k = 0; k < compiled_->sampled.size(); ++k) {
+    int const row = compiled_->sampled[k];
+    for (int w = 0; w < sampled.width(); ++w)
+      parameters(row, w) = model.parameters[static_cast<std::size_t>(row)].to_si(sampled(static_cast<int>(k), w));
+  }
+  return parameters;
+}
+
+void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key,
+                         Result& result) const {
+  Model const& model = compiled_->model;
+  int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size());
+  double const nan = std::nan("");
+  result.values.resize(quantities_.size());
+  result.noisy.resize(model.channels.size());
+  for (int w = 0; w < records.width(); ++w) {
+    bool const good = outcome[static_cast<std::size_t>(w)].ok;
+    if (!good) ++result.failed;
+    std::size_t q = 0;
+    for (int r = 0; r < rows; ++r) {
+      auto const& record = compiled_->records[static_cast<std::size_t>(r)];
+      if (record.kind == RecordKind::noise_argument) continue;
+      Quantity const& quantity = quantity_of(model, record);
+      std::vector<double> values(static_cast<std::size_t>(samples), nan);
+      if (good)
+        for (int i = 0; i < samples; ++i) values[static_cast<std::size_t>(i)] = quantity.from_si(records(i * rows + r, w));
+      result.values[q++].push_back(std::move(values));
+      if (record.kind != RecordKind::centre) continue;
+      Distribution const& noise = model.channels[static_cast<std::size_t>(record.index)].noise;
+      std::size_t const arguments = noise.arguments.size();
+      std::vector<double> noisy(static_cast<std::size_t>(samples), nan), numbers(arguments);
+      Stream stream(noise_key.at(static_cast<std::uint64_t>(first + w), static_cast<std::uint64_t>(record.index)));
+      for (int i = 0; good && i < samples; ++i) {
+        for (std::size_t a = 0; a < arguments; ++a) numbers[a] = records(i * rows + r + 1 + static_cast<int>(a), w);
+        bool const usable = std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+        if (usable && (noise.row->refuse == nullptr || noise.row->refuse(numbers).empty()))
+          noisy[static_cast<std::size_t>(i)] = quantity.from_si(draw(*noise.row, numbers, -infinity, infinity, stream));
+      }
+      result.noisy[static_cast<std::size_t>(record.index)].push_back(std::move(noisy));
+    }
+  }
+}
+
+Trajectory::Result Trajectory::run_si(ConstLanes parameters, StreamKey noise_key) const {
+  Result result;
+  int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
+  for (int first = 0; first < parameters.width(); first += vectors_at_once) {
+    int const width = std::min(vectors_at_once, parameters.width() - first);
+    LaneArray block(parameters.rows() + states, width);
+    for (int r = 0; r < parameters.rows(); ++r)
+      for (int w = 0; w < width; ++w) block(r, w) = parameters(r, first + w);
+    if (start_) start_->estimate(block);
+    LaneArray records(samples() * static_cast<int>(compiled_->records.size()), width);
+    std::vector<Outcome> outcome(static_cast<std::size_t>(width));
+    simulator_.records(block, 0, samples(), records, outcome);
+    collect(records, outcome, first, noise_key, result);
+  }
+  return result;
+}
+
+Trajectory::Result Trajectory::run(ConstLanes sampled, StreamKey noise_key) const {
+  return run_si(simulation_parameters(sampled), noise_key);
+}
+
+Trajectory::Result Trajectory::run_redrawn(ConstLanes sampled, int trajectories, StreamKey redraw_key, StreamKey noise_key) const {
+  LaneArray own = simulation_parameters(sampled);
+  int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
+  LaneArray all(own.rows() + states, own.width());
+  for (int r = 0; r < own.rows(); ++r)
+    for (int w = 0; w < own.width(); ++w) all(r, w) = own(r, w);
+  if (start_) start_->estimate(all);
+  Result result;
+  for (int first = 0; first < trajectories; first += vectors_at_once) {
+    int const width = std::min(vectors_at_once, trajectories - first);
+    LaneArray records(samples() * static_cast<int>(compiled_->records.size()), width);
+    std::vector<Outcome> outcome(static_cast<std::size_t>(width));
+    auto const redraw = [&](int sample, int lane, Lanes parameters) {
+      for (int w = 0; w < parameters.width(); ++w) {
+        Stream stream(redraw_key.at(static_cast<std::uint64_t>(first + lane + w), static_cast<std::uint64_t>(sample)));
+        int const pick = static_cast<int>(stream.below(static_cast<std::uint64_t>(all.width())));
+        for (int r = 0; r < all.rows(); ++r) parameters(r, w) = all(r, pick);
+      }
+    };
+    simulator_.records_redrawn(redraw, 0, samples(), records, outcome);
+    collect(records, outcome, first, noise_key, result);
+  }
+  return result;
+}
+
+}  // namespace sysid

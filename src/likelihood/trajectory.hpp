@@ -1,0 +1,53 @@
+// The trajectory view: what given parameter vectors predict along a record, for bands, scores and made data.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/random.hpp"
+#include "likelihood/compiled_model.hpp"
+#include "likelihood/start_state.hpp"
+#include "simulate/simulator.hpp"
+
+namespace sysid {
+
+/// A channel's location without noise, a state, or a derived quantity; declared units.
+struct TrajectoryQuantity {
+  std::string name, unit;
+  int channel = -1;  // of the model; -1: not measured
+};
+
+class Trajectory {
+ public:
+  /// start_rows > 0: the compiled model has a free start, fitted to the experiment's first rows.
+  Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int substeps, int start_rows,
+             ExecutionOptions options);
+
+  std::vector<TrajectoryQuantity> const& quantities() const { return quantities_; }
+  int samples() const { return simulator_.schedule().samples(); }
+
+  /// values[q][d][i]: quantity q of parameter vector d at sample i; noisy[c][d][i]: channel c with one draw of its noise added,
+  /// from the stream of (noise_key, index d, step c). A failed vector is NaN throughout.
+  struct Result {
+    std::vector<std::vector<std::vector<double>>> values, noisy;
+    int failed = 0;
+  };
+  /// sampled: [D x W], declared units, rows as CompiledModel::sampled.
+  Result run(ConstLanes sampled, StreamKey noise_key) const;
+  /// The same with all model parameters given in SI [all x W] (NaN where irrelevant).
+  Result run_si(ConstLanes parameters, StreamKey noise_key) const;
+  /// The tutorial's Fig. 8.4: at every sample trajectory d continues with a posterior draw picked afresh by the stream of
+  /// (redraw_key, index d, step sample). sampled: [D x draws]; trajectories: how many.
+  Result run_redrawn(ConstLanes sampled, int trajectories, StreamKey redraw_key, StreamKey noise_key) const;
+
+ private:
+  LaneArray simulation_parameters(ConstLanes sampled) const;
+  void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
+
+  std::shared_ptr<CompiledModel const> compiled_;
+  Simulator simulator_;
+  std::unique_ptr<StartState> start_;
+  std::vector<TrajectoryQuantity> quantities_;
+};
+
+}  // namespace sysid

@@ -1,0 +1,70 @@
+// One line per declaration, in the order of the stages; numbers are coherent SI.
+#include "model/dump.hpp"
+
+#include <fmt/format.h>
+
+namespace sysid {
+namespace {
+
+std::string declared(Quantity const& quantity) {
+  return quantity.unit ? fmt::format("{} [{}]", quantity.name,
+                                     quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text)
+                       : quantity.name;
+}
+
+}  // namespace
+
+std::string leaf_name(Model const& model, Node const& leaf) {
+  auto const index = static_cast<std::size_t>(leaf.index);
+  switch (leaf.leaf_kind) {
+    case LeafKind::parameter:
+      return index < model.parameters.size() ? model.parameters[index].name : fmt::format("start({})", index);
+    case LeafKind::unconstrained:
+      return fmt::format("u({})", index);
+    case LeafKind::state:
+      return model.states[index].name;
+    case LeafKind::input:
+      return model.inputs[index].name;
+    case LeafKind::input_rate:
+      return model.inputs[index].name + "'";
+    case LeafKind::time:
+      return "time";
+    case LeafKind::measured:
+      return fmt::format("measured({})", model.channels[index].name);
+    case LeafKind::unknown:
+      return fmt::format("unknown({})", index);
+    case LeafKind::step_size:
+      return "h";
+  }
+  return "?";
+}
+
+std::string dump(Model const& model) {
+  auto const text = [&](NodeId node) {
+    return model.graph.format(node, [&](NodeId leaf) { return leaf_name(model, model.graph[leaf]); });
+  };
+  auto const call = [&](Distribution const& use) {
+    std::string arguments;
+    for (std::size_t i = 0; i < use.arguments.size(); ++i)
+      arguments +=
+          fmt::format("{}{} = {}", i == 0 ? "" : ", ", use.row->arguments[i].spellings.front().name, text(use.arguments[i]));
+    if (use.lower) arguments += fmt::format(", lower = {}", text(*use.lower));
+    if (use.upper) arguments += fmt::format(", upper = {}", text(*use.upper));
+    return fmt::format("{}({})", use.row->name, arguments);
+  };
+  std::string out = fmt::format("model {}{}\n", model.name, model.title.empty() ? "" : fmt::format(" \"{}\"", model.title));
+  for (Quantity const& input : model.inputs) out += fmt::format("  input {}\n", declared(input));
+  for (Parameter const& parameter : model.parameters)
+    out += fmt::format("  parameter {} {}\n", declared(parameter),
+                       parameter.prior ? "~ " + call(*parameter.prior) : "= " + text(*parameter.value));
+  for (State const& state : model.states) {
+    out += fmt::format("  state {}, initially {}\n", declared(state), text(state.initial));
+    out += fmt::format("    d/dt = {}\n", text(state.derivative));
+  }
+  for (Channel const& channel : model.channels) out += fmt::format("  observe {} ~ {}\n", declared(channel), call(channel.noise));
+  for (Derived const& derived : model.derived)
+    out += fmt::format("  derive {} = {}{}\n", declared(derived), text(derived.value), derived.per_sample ? "  # per sample" : "");
+  return out;
+}
+
+}  // namespace sysid
