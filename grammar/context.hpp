@@ -27,17 +27,21 @@ class State {
   }
 
   void report(Iterator where, std::string const& wanted) {
-    if (auto diagnostic = explain(layout_, offset(where), wanted); diagnostic && diagnostics_.all().size() < limit_)
-      diagnostics_.add(std::move(*diagnostic));
+    if (is_full()) return;
+    if (auto diagnostic = explain(layout_, offset(where), wanted)) diagnostics_.add(std::move(*diagnostic));
   }
-  Iterator behind_statement(Iterator where) const { return begin() + grammar::behind_statement(layout_, offset(where)); }
+  /// Where parsing goes on behind a failure: nowhere once nothing more would be reported.
+  Iterator behind_statement(Iterator where) const {
+    return is_full() ? end() : begin() + grammar::behind_statement(layout_, offset(where));
+  }
   Iterator behind_item(Iterator where, std::string const& wanted) const {
-    return begin() + grammar::behind_item(layout_, offset(where), wanted);
+    return is_full() ? end() : begin() + grammar::behind_item(layout_, offset(where), wanted);
   }
 
   int depth = 0;
 
  private:
+  bool is_full() const { return diagnostics_.all().size() >= limit_; }
   std::uint32_t offset(Iterator at) const { return static_cast<std::uint32_t>(at - begin()); }
 
   Layout const& layout_;

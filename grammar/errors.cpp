@@ -68,8 +68,8 @@ Diagnostic no_operator_between(Token const& left, Token const& right) {
   if (left.kind != TokenKind::symbol && right.kind != TokenKind::symbol) help += fmt::format(": `{}*{}`", left.text, right.text);
   if (left.kind == TokenKind::word && right.kind == TokenKind::word && !left.text.ends_with('\''))
     help += fmt::format("; if `{0}` is a function, write `{0}({1})`", left.text, right.text);
-  return error("E1105", cover(left.span, right.span), fmt::format("there is no operator between `{}` and `{}`", left.text, right.text),
-               std::move(help));
+  return error("E1105", cover(left.span, right.span),
+               fmt::format("there is no operator between `{}` and `{}`", left.text, right.text), std::move(help));
 }
 
 Diagnostic chained_comparison(Token const& first, Token const& second) {

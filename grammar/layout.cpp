@@ -68,6 +68,7 @@ class LayoutPass {
   void match_brackets() {
     inside_.assign(tokens_.size() + 1, 0);
     for (std::size_t i = 0; i < tokens_.size(); ++i) {
+      if (tokens_[i].newline_before) line_ = i;
       if (tokens_[i].kind == TokenKind::symbol)
         match_bracket(i);
       else if (begins_declaration(i))
@@ -96,10 +97,8 @@ class LayoutPass {
     } else if (token.is("{")) {
       close_unclosed(i);
       // Blocks do not nest: a block that begins while another is open means that the other was never closed.
-      std::size_t first = i;
-      while (first > 0 && !tokens_[first].newline_before) --first;
-      if (!open_.empty() && (tokens_[first].is("model") || tokens_[first].is("data"))) {
-        unclosed_block(open_.front(), first);
+      if (!open_.empty() && (tokens_[line_].is("model") || tokens_[line_].is("data"))) {
+        unclosed_block(open_.front(), line_);
         open_.clear();
       }
       open_.push_back(i);
@@ -184,6 +183,7 @@ class LayoutPass {
   Scan scan_;
   std::vector<Token>& tokens_;
   std::vector<std::size_t> open_, spoilt_;
+  std::size_t line_ = 0;  // the first token of the line
   std::vector<int> inside_;
   Layout out_;
 };
