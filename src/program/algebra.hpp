@@ -1,6 +1,7 @@
 // Rewriting of expressions before they are emitted: products for integer powers, Horner's form, fused multiply-adds, and everything
 // that is known early gathered so that it is computed early. Exact in real arithmetic; a few ulp in floating point.
 #pragma once
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
@@ -16,6 +17,8 @@ std::vector<NodeId> expand_powers(Graph& graph, std::span<NodeId const> roots);
 
 /// base^exponent by squaring, 1 <= |exponent|.
 NodeId integer_power(Graph& graph, NodeId base, int exponent);
+/// The exponent as an integer in [-16, 16], 0 excluded, if it is one.
+std::optional<int> integer_exponent(Graph const& graph, NodeId exponent);
 /// The largest |exponent| that is expanded into products.
 constexpr int largest_expanded_power = 16;
 

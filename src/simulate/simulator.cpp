@@ -41,11 +41,12 @@ void Simulator::for_each_block(int width, int samples, Work const& work) const {
     // Narrower blocks rather than idle threads, but not so narrow that the time goes into dispatch.
     if (threaded) widest = std::min(widest, std::max(16, (width + pool_->threads() - 1) / pool_->threads()));
   }
-  Executor executor = choose_executor(std::min(width, widest), options_.lanes == 0 ? widest : std::numeric_limits<int>::max());
+  Executor const executor =
+      choose_executor(std::min(width, widest), options_.lanes == 0 ? widest : std::numeric_limits<int>::max());
   int const blocks = (width + executor.width - 1) / executor.width;
   auto const task = [&](int b) {
     int const lane = b * executor.width, lanes = std::min(executor.width, width - lane);
-    Block block(*program_, schedule_, executor, lanes);
+    Block block(*program_, schedule_, choose_executor(lanes, executor.width), lanes);  // the last one may be narrower
     work(block, lane, lanes);
   };
   if (threaded)
