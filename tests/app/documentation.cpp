@@ -1,0 +1,251 @@
+// The documentation is true: its snippets pass the checker, its commands exist, its output is what the program prints, its links
+// lead somewhere. The first line of a fenced block says what it is:
+//
+//   ```sysid KIND                    text of the language; KIND says what stands around it (see `framed`)
+//   ```sysid refused CODE KIND       the same, refused with that code
+//   ```sh                            commands from the root of the repository
+//   ```text from COMMAND             lines of what COMMAND prints, in order; a line of three dots leaves some out
+//   ```cpp from FILE                 text of that file, word for word
+//
+// With SYSID_BLESS set in the environment, blocks of the fourth kind that leave nothing out are written anew.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+
+#include "app/markdown.hpp"
+#include "app/pipeline.hpp"
+
+using namespace sysid;
+using namespace sysid::testing;
+
+namespace {
+
+std::vector<std::string> words_of(std::string const& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+// What stands around a snippet of each kind. in model: statements of an oscillator; data: data blocks of it; task: tasks with it.
+std::optional<std::string> framed(std::string const& kind, std::string const& text) {
+  static std::string const body =
+      "input x [N]\nstate y [m]\ninitial y = 0, y' = 0\nparameter m [kg] ~ log_uniform(0.1, 10)\n"
+      "parameter c [N s/m] ~ log_uniform(2, 200)\nparameter k [N/m] ~ log_uniform(1e3, 1e5)\n"
+      "m*y'' + c*y' + k*y = x\nobserve displacement ~ normal(y, sd = 1e-6)\n";
+  static std::string const model = "model oscillator {\n" + body + "}\n";
+  static std::string const data =
+      "data bench { file \"bench.csv\"; time t [s]; input x = x [N] hold zero_order; measure displacement = y [mm]\n"
+      "split train = rows 1..500, test = rows 501..1500 }\n";
+  if (kind == "file") return text;
+  if (kind == "model") return "model example {\n" + text + "}\n";
+  if (kind == "in model") return "model oscillator {\n" + body + text + "}\n";
+  if (kind == "task") return model + data + text;
+  if (kind == "task after posterior") return model + data + "posterior = fit oscillator to bench.train with mh\n" + text;
+  if (kind == "data") {
+    std::string all = model + text;
+    std::regex const block("(^|\n)data (\\w+)");
+    for (std::sregex_iterator i(text.begin(), text.end(), block), end; i != end; ++i)
+      all += "check_" + (*i)[2].str() + " = fit oscillator to " + (*i)[2].str() + " with map\n";
+    return all;
+  }
+  return std::nullopt;
+}
+
+void check_snippet(Page const& page, Fence const& block) {
+  std::string kind = block.info.substr(5), code;
+  if (!kind.empty()) kind.erase(0, 1);
+  if (kind.starts_with("refused ")) {
+    code = kind.substr(8, 5);
+    kind = kind.substr(std::min<std::size_t>(14, kind.size()));
+  }
+  auto const text = framed(kind, block.joined());
+  REQUIRE_MESSAGE(text, page.name << ":" << block.line << ": a snippet of no known kind: `" << kind << "`");
+  Source const source(page.name + ":" + std::to_string(block.line), *text);
+  Diagnostics diagnostics;
+  bool const passed = load(source, diagnostics).has_value();
+  std::string const said = render(diagnostics, source, false);
+  if (code.empty())
+    CHECK_MESSAGE(passed, said);
+  else
+    CHECK_MESSAGE((!passed && said.find("[" + code + "]") != std::string::npos), source.name()
+                                                                                     << " is not refused with " << code << "\n"
+                                                                                     << said);
+}
+
+// Verbs and options as src/cli/main.cpp defines them.
+struct KnownCommands {
+  std::set<std::string> verbs, flags, options;
+  KnownCommands() {
+    std::string const text = read_file(root / "src/cli/main.cpp");
+    auto const each = [&](char const* pattern, auto const& take) {
+      std::regex const expression(pattern);
+      for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) take((*i)[1].str());
+    };
+    auto const insert_names = [](std::set<std::string>& into, std::string const& names) {
+      std::istringstream stream(names);
+      for (std::string name; std::getline(stream, name, ',');) into.insert(name);
+    };
+    each("(?:runs|add_subcommand)\\(\"(\\w+)\"", [&](std::string const& name) { verbs.insert(name); });
+    each("add_flag\\(\"(-[^\"]*)\"", [&](std::string const& names) { insert_names(flags, names); });
+    each("add_option\\(\"(-[^\"]*)\"", [&](std::string const& names) { insert_names(options, names); });
+  }
+};
+
+bool is_placeholder(std::string const& word) {
+  return std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; });
+}
+
+void check_command(Page const& page, std::string const& command) {
+  static KnownCommands const known;
+  std::vector<std::string> const words = words_of(command.substr(0, command.find_first_of("|>&;#")));
+  std::string const where = page.name + ": `" + command + "`: ";
+  CHECK_MESSAGE(words.size() > 1, where << "no verb");
+  if (words.size() < 2) return;
+  CHECK_MESSAGE((is_placeholder(words[1]) || known.verbs.contains(words[1])), where << "no such verb");
+  for (std::size_t i = 2; i < words.size(); ++i) {
+    if (words[i].starts_with("-")) {
+      CHECK_MESSAGE((known.flags.contains(words[i]) || known.options.contains(words[i])), where << "no option " << words[i]);
+      if (known.options.contains(words[i])) ++i;
+    } else if (words[i].ends_with(".sysid")) {
+      if (words[i].starts_with("results/")) {  // made by an earlier command of the page
+        std::string const folder = fs::path(words[i]).parent_path().string();
+        std::string const text = read_file(page.path);
+        CHECK_MESSAGE(text.find("mkdir -p " + folder) != std::string::npos, where << "nothing makes " << folder);
+        continue;
+      }
+      REQUIRE_MESSAGE(fs::exists(root / words[i]), where << "no file " << words[i]);
+      Source const source(words[i], read_file(root / words[i]));
+      Diagnostics diagnostics;
+      CHECK_MESSAGE(load(source, diagnostics), render(diagnostics, source, false));
+    }
+  }
+}
+
+// What `./sysid VERB FILE` prints on standard output, run once.
+std::string const& printed_by(std::string const& command) {
+  static std::map<std::string, std::string> done;
+  auto const [place, fresh] = done.emplace(command, "");
+  if (!fresh) return place->second;
+  std::vector<std::string> const words = words_of(command);
+  REQUIRE_MESSAGE((words.size() == 3 && words[0] == "./sysid"), "cannot run `" << command << "` for its output");
+  fs::path const folder = fs::temp_directory_path() / ("sysid_documentation_" + std::to_string(std::rand()));
+  Source const source((root / words[2]).string(), read_file(root / words[2]));
+  Diagnostics diagnostics;
+  auto const file = load(source, diagnostics);
+  REQUIRE_MESSAGE(file, render(diagnostics, source, false));
+  RunOptions options;
+  options.output = folder;
+  options.force = true;
+  options.figures = false;
+  SilentProgress progress;
+  std::ostringstream out, notices;
+  run_tasks(source, *file, words[1] == "run" ? std::vector<std::string>{} : std::vector{words[1]}, options, progress, out, notices);
+  fs::remove_all(folder);
+  return place->second = out.str();
+}
+
+// Every line of `quoted` is in `printed`, one after the other; after three dots some lines may be left out.
+std::string not_printed(std::vector<std::string> const& quoted, std::vector<std::string> const& printed) {
+  std::size_t at = 0;
+  bool skip = true;
+  for (std::string const& line : quoted) {
+    if (line == "...") {
+      skip = true;
+      continue;
+    }
+    while (skip && at < printed.size() && printed[at] != line) ++at;
+    if (at >= printed.size() || printed[at] != line) return line;
+    ++at;
+    skip = false;
+  }
+  return {};
+}
+
+void bless(Page const& page, Fence const& block, std::string const& printed) {
+  std::vector<std::string> const lines = lines_of(read_file(page.path));
+  std::string text;
+  for (int i = 0; i < static_cast<int>(lines.size()); ++i) {
+    if (i < block.line || i >= block.line + static_cast<int>(block.text.size())) text += lines[static_cast<std::size_t>(i)] + "\n";
+    if (i + 1 == block.line) text += printed;
+  }
+  std::ofstream(page.path) << text;
+}
+
+}  // namespace
+
+TEST_CASE("snippets of the language pass the checker or are refused as said") {
+  int count = 0;
+  each_block("sysid", [&](Page const& page, Fence const& block) {
+    check_snippet(page, block);
+    ++count;
+  });
+  CHECK(count > 20);
+}
+
+TEST_CASE("commands have verbs, options and files that exist") {
+  int count = 0;
+  std::regex const quoted("`(\\./sysid [^`]*)`");
+  for (fs::path const& path : pages()) {
+    Page const page = read_page(path);
+    for (Fence const& block : page.blocks)
+      for (std::string const& line : block.text)
+        if (block.info == "sh" && line.starts_with("./sysid")) check_command(page, line), ++count;
+    std::string prose;  // inline code may run over the end of a line
+    for (std::string const& line : page.prose) prose += line + " ";
+    for (std::sregex_iterator i(prose.begin(), prose.end(), quoted), end; i != end; ++i)
+      check_command(page, (*i)[1].str()), ++count;
+  }
+  CHECK(count > 10);
+}
+
+TEST_CASE("quoted output is what the program prints") {
+  // From the last block of a page to the first, so that writing one anew moves none of the others.
+  for (fs::path const& path : pages()) {
+    Page const page = read_page(path);
+    for (auto block = page.blocks.rbegin(); block != page.blocks.rend(); ++block) {
+      if (!block->info.starts_with("text from ")) continue;
+      std::string const& printed = printed_by(block->info.substr(10));
+      bool const whole = std::find(block->text.begin(), block->text.end(), "...") == block->text.end();
+      if (std::getenv("SYSID_BLESS") != nullptr && whole) {
+        bless(page, *block, printed);
+        continue;
+      }
+      std::string const missing = not_printed(block->text, lines_of(printed));
+      CHECK_MESSAGE(missing.empty(), page.name << ":" << block->line << ": not printed here: " << missing << "\nprinted:\n"
+                                               << printed);
+    }
+  }
+}
+
+TEST_CASE("quoted C++ stands in the file it is said to be from") {
+  each_block("cpp from ", [](Page const& page, Fence const& block) {
+    std::string const file = block.info.substr(9);
+    REQUIRE_MESSAGE(fs::exists(root / file), page.name << ": no file " << file);
+    CHECK_MESSAGE(read_file(root / file).find(block.joined()) != std::string::npos,
+                  page.name << ":" << block.line << ": not in " << file);
+  });
+}
+
+TEST_CASE("links lead to files and headings that exist") {
+  int count = 0;
+  std::regex const link("\\]\\(([^)\\s]+)\\)");
+  for (fs::path const& path : pages()) {
+    Page const page = read_page(path);
+    for (std::string const& line : page.prose)
+      for (std::sregex_iterator i(line.begin(), line.end(), link), end; i != end; ++i) {
+        std::string const target = (*i)[1].str();
+        if (target.find("://") != std::string::npos) continue;
+        ++count;
+        std::size_t const hash = target.find('#');
+        fs::path const file = hash == 0 ? path : path.parent_path() / target.substr(0, hash);
+        CHECK_MESSAGE(fs::exists(file), page.name << ": no " << target);
+        if (hash != std::string::npos && fs::exists(file))
+          CHECK_MESSAGE(anchors(file).contains(target.substr(hash + 1)), page.name << ": no heading " << target);
+      }
+  }
+  CHECK(count > 10);
+}
