@@ -71,6 +71,7 @@ struct FitResult {
   Draws draws;
   /// unthinned[p]: parameter p at every iteration after burn-in, for diagnostics; empty when memory forbade it (a finding says so).
   std::vector<ChainValues> unthinned;
+  std::vector<Summary> summaries;              // of the parameters, where the back end has taken them already
   std::vector<double> acceptance_rate;         // per chain, after burn-in (during it, when interrupted before its end)
   std::vector<std::uint64_t> distinct_states;  // per chain, after burn-in
   std::vector<Mode> modes;                     // by falling share
@@ -95,7 +96,7 @@ struct BackendRow {
 std::span<BackendRow const> backends();
 BackendRow const* find_backend(std::string_view name);
 
-/// One summary per parameter: of the unthinned chains where they were kept, else of the draws.
+/// One summary per parameter: the back end's own, or of the unthinned chains where they were kept, else of the draws.
 std::vector<Summary> summarise(FitResult const& result);
 
 }  // namespace sysid

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <complex>
 #include <cstdint>
 #include <limits>
 #include <numbers>
@@ -126,61 +125,93 @@ ChainValues rank_normalised(ChainValues const& draws) {
   return scores;
 }
 
-/// In-place discrete Fourier transform of a power-of-two length, radix 2. Ours, because library transforms take their factors from
-/// the C library's sine, whose last digit depends on the processor.
+/// Discrete Fourier transforms of one power-of-two length, real and imaginary parts apart. Ours, because library transforms take
+/// their factors from the C library's sine, whose last digit depends on the processor.
 class Fourier {
  public:
-  explicit Fourier(std::size_t size) : factors_(size / 2) {
-    for (std::size_t k = 0; k < factors_.size(); ++k) {
+  using Parts = std::vector<double>;
+
+  explicit Fourier(std::size_t size) : size_(size), cosine_(size), sine_(size) {
+    // The factors of the stage with blocks of 2 h stand at h .. 2 h - 1.
+    for (std::size_t k = 0; k < size / 2; ++k) {
       double const angle = -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(size);
-      factors_[k] = {elementary::cos(angle), elementary::sin(angle)};
+      cosine_[size / 2 + k] = elementary::cos(angle);
+      sine_[size / 2 + k] = elementary::sin(angle);
+    }
+    for (std::size_t i = size / 2 - 1; i > 0; --i) {
+      std::size_t const half = std::bit_floor(i), k = i - half;
+      cosine_[i] = cosine_[2 * half + 2 * k];
+      sine_[i] = sine_[2 * half + 2 * k];
     }
   }
 
-  void forward(std::vector<std::complex<double>>& x) const {
-    std::size_t const size = x.size();
-    for (std::size_t i = 1, j = 0; i < size; ++i) {
-      std::size_t bit = size / 2;
-      for (; j & bit; bit /= 2) j ^= bit;
-      j ^= bit;
-      if (i < j) std::swap(x[i], x[j]);
-    }
-    for (std::size_t half = 1; half < size; half *= 2) {
-      std::size_t const stride = size / (2 * half);
-      for (std::size_t start = 0; start < size; start += 2 * half) {
+  std::size_t size() const { return size_; }
+
+  /// From natural order to bit-reversed order.
+  void to_reversed(Parts& re, Parts& im) const {
+    for (std::size_t half = size_ / 2; half > 0; half /= 2) {
+      double const *const c = &cosine_[half], *const s = &sine_[half];
+      for (std::size_t start = 0; start < size_; start += 2 * half) {
+        double *const ar = &re[start], *const ai = &im[start], *const br = ar + half, *const bi = ai + half;
         for (std::size_t k = 0; k < half; ++k) {
-          std::complex<double> const a = x[start + k], b = x[start + k + half], w = factors_[k * stride];
-          double const re = b.real() * w.real() - b.imag() * w.imag();
-          double const im = b.real() * w.imag() + b.imag() * w.real();
-          x[start + k] = {a.real() + re, a.imag() + im};
-          x[start + k + half] = {a.real() - re, a.imag() - im};
+          double const dr = ar[k] - br[k], di = ai[k] - bi[k];
+          ar[k] += br[k];
+          ai[k] += bi[k];
+          br[k] = dr * c[k] - di * s[k];
+          bi[k] = dr * s[k] + di * c[k];
+        }
+      }
+    }
+  }
+
+  /// From bit-reversed order to natural order.
+  void from_reversed(Parts& re, Parts& im) const {
+    for (std::size_t half = 1; half < size_; half *= 2) {
+      double const *const c = &cosine_[half], *const s = &sine_[half];
+      for (std::size_t start = 0; start < size_; start += 2 * half) {
+        double *const ar = &re[start], *const ai = &im[start], *const br = ar + half, *const bi = ai + half;
+        for (std::size_t k = 0; k < half; ++k) {
+          double const tr = br[k] * c[k] - bi[k] * s[k], ti = br[k] * s[k] + bi[k] * c[k];
+          br[k] = ar[k] - tr;
+          bi[k] = ai[k] - ti;
+          ar[k] += tr;
+          ai[k] += ti;
         }
       }
     }
   }
 
  private:
-  std::vector<std::complex<double>> factors_;
+  std::size_t size_;
+  Parts cosine_, sine_;
 };
 
+/// A transform long enough for the autocovariance of the halves of these chains.
+Fourier fourier_for(ChainValues const& draws) {
+  std::size_t const longest = draws.empty() ? 0 : draws.front().size();
+  return Fourier(std::bit_ceil(std::max<std::size_t>(4, 2 * ((longest + 1) / 2))));
+}
+
 /// Autocovariance (divisor N) at every lag, averaged over the chains. Two chains share one transform: the real part of the
-/// transform of |F(a + ib)|^2 is the sum of the autocovariances of a and b.
-std::vector<double> mean_autocovariance(ChainValues const& chains, std::vector<double> const& means) {
+/// transform of |F(a + ib)|^2 is the sum of the autocovariances of a and b. The spectrum stays in bit-reversed order, which nothing
+/// minds.
+std::vector<double> mean_autocovariance(ChainValues const& chains, std::vector<double> const& means, Fourier const& fourier) {
   std::size_t const n = chains.front().size();
-  std::size_t const size = std::bit_ceil(2 * n);
-  Fourier const fourier(size);
-  std::vector<std::complex<double>> power(size), work(size);
+  std::size_t const size = fourier.size();
+  std::vector<double> power(size), re(size), im(size);
   for (std::size_t c = 0; c < chains.size(); c += 2) {
-    std::fill(work.begin(), work.end(), 0.0);
-    bool const pair = c + 1 < chains.size();
-    for (std::size_t i = 0; i < n; ++i) work[i] = {chains[c][i] - means[c], pair ? chains[c + 1][i] - means[c + 1] : 0.0};
-    fourier.forward(work);
-    for (std::size_t k = 0; k < size; ++k) power[k] += std::norm(work[k]);
+    std::fill(re.begin(), re.end(), 0.0);
+    std::fill(im.begin(), im.end(), 0.0);
+    for (std::size_t i = 0; i < n; ++i) re[i] = chains[c][i] - means[c];
+    for (std::size_t i = 0; i < n && c + 1 < chains.size(); ++i) im[i] = chains[c + 1][i] - means[c + 1];
+    fourier.to_reversed(re, im);
+    for (std::size_t k = 0; k < size; ++k) power[k] += re[k] * re[k] + im[k] * im[k];
   }
-  fourier.forward(power);  // its own inverse but for the scale, as only the real part is read
+  std::fill(im.begin(), im.end(), 0.0);
+  fourier.from_reversed(power, im);  // its own inverse but for the scale, as only the real part is read
   std::vector<double> covariance(n);
   double const scale = static_cast<double>(size) * static_cast<double>(n) * static_cast<double>(chains.size());
-  for (std::size_t k = 0; k < n; ++k) covariance[k] = power[k].real() / scale;
+  for (std::size_t k = 0; k < n; ++k) covariance[k] = power[k] / scale;
   return covariance;
 }
 
@@ -198,13 +229,13 @@ double basic_rhat(ChainValues const& chains) {
 
 /// Effective sample size of chains that are already split: Geyer's initial monotone sequence.          Vehtari et al. 2021,
 /// sec. 3.2
-double basic_ess(ChainValues const& chains) {
+double basic_ess(ChainValues const& chains, Fourier const& fourier) {
   if (chains.empty() || chains.front().size() < 3 || has_no_diagnostics(chains)) return nan;
   std::size_t const length = chains.front().size();
   double const n = static_cast<double>(length);
   std::vector<double> means;
   for (auto const& chain : chains) means.push_back(mean_of(chain));
-  std::vector<double> const covariance = mean_autocovariance(chains, means);
+  std::vector<double> const covariance = mean_autocovariance(chains, means, fourier);
   double const within = covariance[0] * n / (n - 1);
   double const total = within * (n - 1) / n + (chains.size() > 1 ? variance_of(means) : 0.0);
   auto const correlation = [&](std::size_t lag) { return 1 - (within - covariance[lag]) / total; };
@@ -247,11 +278,11 @@ double sorted_quantile(std::vector<double> const& sorted, double probability) {
   return (1 - h) * a + h * b;
 }
 
-double ess_of_quantile(ChainValues const& draws, double bound) {
+double ess_of_quantile(ChainValues const& draws, double bound, Fourier const& fourier) {
   ChainValues below = draws;
   for (auto& chain : below)
     for (double& v : chain) v = v <= bound ? 1.0 : 0.0;
-  return basic_ess(split(below));
+  return basic_ess(split(below), fourier);
 }
 
 std::vector<double> sorted(ChainValues const& draws) {
@@ -278,15 +309,19 @@ double rhat(ChainValues const& draws) {
   return rhat_about(draws, rank_normalised(split(draws)), sorted_quantile(sorted(draws), 0.5));
 }
 
-double ess_bulk(ChainValues const& draws) { return has_no_diagnostics(draws) ? nan : basic_ess(rank_normalised(split(draws))); }
+double ess_bulk(ChainValues const& draws) {
+  return has_no_diagnostics(draws) ? nan : basic_ess(rank_normalised(split(draws)), fourier_for(draws));
+}
 
 double ess_tail(ChainValues const& draws) {
   if (has_no_diagnostics(draws)) return nan;
   std::vector<double> const all = sorted(draws);
-  return smaller_or_nan(ess_of_quantile(draws, sorted_quantile(all, 0.05)), ess_of_quantile(draws, sorted_quantile(all, 0.95)));
+  Fourier const fourier = fourier_for(draws);
+  return smaller_or_nan(ess_of_quantile(draws, sorted_quantile(all, 0.05), fourier),
+                        ess_of_quantile(draws, sorted_quantile(all, 0.95), fourier));
 }
 
-double ess_mean(ChainValues const& draws) { return basic_ess(split(draws)); }
+double ess_mean(ChainValues const& draws) { return basic_ess(split(draws), fourier_for(draws)); }
 
 double mcse_mean(ChainValues const& draws) { return std::sqrt(variance_of(pooled(draws)) / ess_mean(draws)); }
 
@@ -312,9 +347,10 @@ Summary summarise(std::string name, std::string unit, ChainValues const& draws) 
   if (has_no_diagnostics(draws)) return summary;
   ChainValues const scores = rank_normalised(split(draws));
   summary.rhat = rhat_about(draws, scores, summary.median);
-  summary.ess_bulk = basic_ess(scores);
-  summary.ess_tail = smaller_or_nan(ess_of_quantile(draws, summary.q5), ess_of_quantile(draws, summary.q95));
-  summary.mcse_mean = summary.sd / std::sqrt(ess_mean(draws));
+  Fourier const fourier = fourier_for(draws);
+  summary.ess_bulk = basic_ess(scores, fourier);
+  summary.ess_tail = smaller_or_nan(ess_of_quantile(draws, summary.q5, fourier), ess_of_quantile(draws, summary.q95, fourier));
+  summary.mcse_mean = summary.sd / std::sqrt(basic_ess(split(draws), fourier));
   return summary;
 }
 

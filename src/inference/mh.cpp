@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "inference/adaptation.hpp"
-#include "inference/bound_check.hpp"
 #include "inference/chain_checks.hpp"
 #include "inference/chain_record.hpp"
 #include "inference/checkpoint.hpp"
@@ -254,13 +253,10 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
   if (plan.stride != 1)
     result.findings.push_back({Severity::note, "diagnostics_on_thinned",
                                "the run is too long to keep every iteration: diagnostics are of the thinned draws", ""});
-  if (result.interrupted)
-    result.findings.push_back({Severity::warning, "interrupted",
-                               fmt::format("stopped after {} of {} iterations", state->iteration, plan.samples), "resume it"});
   if (result.draws.total() > 0) {
-    for (Finding& finding : check_chains({summarise(result), result.acceptance_rate, result.distinct_states, plan.adaptive}))
+    result.summaries = summarise(result);
+    for (Finding& finding : check_chains({result.summaries, result.acceptance_rate, result.distinct_states, plan.adaptive}))
       result.findings.push_back(std::move(finding));
-    for (Finding& finding : check_bounds(target.parameters(), result.draws)) result.findings.push_back(std::move(finding));
   }
   return result;
 }
