@@ -85,7 +85,7 @@ Figure pair_figure(Draws const& draws) {
         double const r = correlation(all[row], all[column]);
         out.script +=
             fmt::format("set label 1 '{}' at screen {:.5f},{:.5f} center textcolor rgb '{}'\n",
-                        std::isfinite(r) ? fmt::format("{}{:.2f}", r < 0 ? "−" : "", std::fabs(r)) : "-",
+                        std::isfinite(r) ? fmt::format("{}{:.2f}", r <= -0.005 ? "−" : "", std::fabs(r)) : "-",
                         (p.left + p.right) / 2 / width, (p.bottom + p.top) / 2 / height, std::fabs(r) >= 0.5 ? contrast : muted);
         out.script +=
             panel(p, width, height) + "unset border\nunset xtics\nunset ytics\nset xlabel ''\nplot NaN notitle\nunset label 1\n";
@@ -132,11 +132,24 @@ Figure pair_figure(Draws const& draws) {
   return out;
 }
 
+namespace {
+
+/// A state that a channel shows as it is (observe y) needs no figure of its own.
+bool repeats_a_channel(Prediction const& prediction, PredictedQuantity const& quantity) {
+  if (!quantity.measured.empty()) return false;
+  return std::any_of(prediction.quantities.begin(), prediction.quantities.end(), [&](PredictedQuantity const& other) {
+    return !other.measured.empty() && other.unit == quantity.unit && other.response.mean == quantity.response.mean;
+  });
+}
+
+}  // namespace
+
 std::vector<Figure> figures(Report const& report) {
   std::vector<Figure> out;
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
-      if (!quantity.response.mean.empty() && prediction.time.size() > 1) out.push_back(fit_figure(prediction, quantity));
+      if (!quantity.response.mean.empty() && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
+        out.push_back(fit_figure(prediction, quantity));
   bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
   if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
   if (has_draws && report.draws.names.size() > 1) out.push_back(pair_figure(report.draws));

@@ -93,6 +93,7 @@ Figure posterior_figure(Report const& report) {
     auto const [low, high] = range(values);
     Panel p = grid.cell(i, 14, 14, 44, 26);
     p.x = axis(low, high, 4, 0.06);
+    p.x.clear_edges(0.03);
     double const peak = *std::max_element(histogram.density.begin(), histogram.density.end());
     p.y = {0, 1.06 * peak, 0, {}};
     p.y_axis = false;

@@ -144,39 +144,42 @@ std::string summary_section(Report const& report) {
 }
 
 std::string score_title(std::string const& name) {
+  if (name == "nmse") return "NMSE [%]";
+  if (name == "rmse") return "RMSE";
   if (name == "chi_squared_per_sample") return "χ² per sample";
-  if (name == "coverage_95") return "coverage 95 %";
-  if (name == "coverage_3sd") return "coverage 3 sd";
+  if (name == "coverage_95") return "share inside the 95 % band";
+  if (name == "coverage_3sd") return "share within 3 sd";
+  if (name == "whiteness_p") return "whiteness of the residuals, p";
+  if (name == "input_correlation_p") return "residuals uncorrelated with the input, p";
   return escape(name);
 }
 
-/// One row for all channels and one for each, a column per score.
+/// A row per score, a column per channel.
 std::string fit_section(Report const& report) {
-  std::vector<std::pair<std::string, std::vector<Score>>> lines;
-  if (!report.fit.empty()) lines.emplace_back("all channels", report.fit);
-  for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities)
-      if (auto found = scores(quantity, prediction.scored); !found.empty())
-        lines.emplace_back(escape(quantity.name + " on " + prediction.experiment), std::move(found));
+  std::vector<FitLine> const lines = fit_lines(report);
   if (lines.empty()) return "";
-  std::vector<std::string> header = {""};
-  for (auto const& [what, found] : lines)
-    for (Score const& score : found)
-      if (std::find(header.begin(), header.end(), score.name) == header.end()) header.push_back(score.name);
-  std::vector<std::vector<std::string>> rows;
-  for (auto const& [what, found] : lines) {
-    std::vector<std::string> row(header.size());
-    row[0] = what;
-    for (Score const& score : found)
-      row[static_cast<std::size_t>(std::find(header.begin(), header.end(), score.name) - header.begin())] =
-          pretty_number(significant(score.value, 4));
-    rows.push_back(std::move(row));
+  std::vector<std::string> header = {""}, names;
+  for (FitLine const& line : lines) {
+    header.push_back(escape(line.what));
+    for (Score const& score : line.scores)
+      if (std::find(names.begin(), names.end(), score.name) == names.end()) names.push_back(score.name);
   }
-  for (std::string& cell : header) cell = score_title(cell);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string const& name : names) {
+    rows.push_back({score_title(name)});
+    for (FitLine const& line : lines) {
+      std::string cell;
+      for (Score const& score : line.scores) {
+        if (score.name != name) continue;
+        cell = pretty_number(significant(score.value, 4));
+        if (name == "rmse" && !line.unit.empty()) cell += " " + escape(pretty_unit(line.unit));
+      }
+      rows.back().push_back(std::move(cell));
+    }
+  }
   return table(header, rows, 1) +
-         "<p class=\"caption\">nmse: mean squared error as a percentage of the variance of what was measured. coverage: share of "
-         "the measured samples "
-         "inside the band with noise.</p>\n";
+         "<p class=\"caption\">NMSE: mean squared error as a percentage of the variance of what was measured. Bands include the "
+         "noise.</p>\n";
 }
 
 std::string convergence_section(Report const& report) {

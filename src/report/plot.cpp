@@ -44,7 +44,24 @@ Axis axis(double low, double high, int count, double margin) {
   return out;
 }
 
+namespace {
+
+/// "mm" for 10⁻³ m: a power of ten as a prefix, where the unit is one that takes it.
+std::string prefixed(std::string_view unit, int exponent) {
+  static constexpr std::string_view takers[] = {"m", "s", "N", "V", "A", "W", "J", "Pa", "Hz"};
+  static constexpr std::pair<int, std::string_view> prefixes[] = {{-9, "n"}, {-6, "µ"}, {-3, "m"}, {3, "k"}, {6, "M"}, {9, "G"}};
+  if (std::find(std::begin(takers), std::end(takers), unit) == std::end(takers)) return "";
+  for (auto const& [power, prefix] : prefixes)
+    // Nobody counts in kiloseconds.
+    if (power == exponent && !(unit == "s" && power > 0)) return std::string(prefix) + std::string(unit);
+  return "";
+}
+
+}  // namespace
+
 std::string axis_label(std::string_view name, std::string_view unit, int exponent) {
+  if (std::string const unit_with_prefix = prefixed(unit, exponent); !unit_with_prefix.empty())
+    return fmt::format("{} [{}]", name, unit_with_prefix);
   std::string inside = exponent == 0 ? "" : "10" + superscript(exponent);
   std::string const unit_text = pretty_unit(unit);
   if (!unit_text.empty() && unit_text != "-") inside += (inside.empty() ? "" : " ") + unit_text;

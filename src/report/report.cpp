@@ -20,6 +20,23 @@ std::string verdict_headline(Report const& report) {
   return text.substr(0, text.find('\n'));
 }
 
+std::vector<FitLine> fit_lines(Report const& report) {
+  std::vector<FitLine> out;
+  if (!report.fit.empty()) out.push_back({"all channels", "", report.fit});
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (auto found = scores(quantity, prediction.scored); !found.empty())
+        out.push_back({quantity.name + " on " + prediction.experiment, quantity.unit, std::move(found)});
+  if (out.size() != 2 || report.fit.empty()) return out;
+  // One channel is all channels: what was found of both stands in one line, the task's own scores first.
+  FitLine line{out[1].what, out[1].unit, report.fit};
+  for (Score const& score : out[1].scores) {
+    auto const same = [&](Score const& other) { return other.name == score.name; };
+    if (std::none_of(report.fit.begin(), report.fit.end(), same)) line.scores.push_back(score);
+  }
+  return {line};
+}
+
 std::string_view severity_word(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
 }

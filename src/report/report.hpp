@@ -73,6 +73,15 @@ bool has_verdict(Report const& report);
 /// The verdict's first line, without the findings.
 std::string verdict_headline(Report const& report);
 
+/// The scores of a channel of an experiment, or of all channels.
+struct FitLine {
+  std::string what;  // "displacement on bench.train"
+  std::string unit;  // of its rmse; empty for all channels
+  std::vector<Score> scores;
+};
+/// All channels first, when they have scores of their own, then each channel; one line in all when there is but one channel.
+std::vector<FitLine> fit_lines(Report const& report);
+
 /// "error", "warning", "note".
 std::string_view severity_word(Severity severity);
 

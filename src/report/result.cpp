@@ -55,7 +55,7 @@ void prepare_result(fs::path const& folder, bool force) {
   make_folder(folder);
 }
 
-void write_result(Report const& report, fs::path const& folder) {
+void write_result(Report const& report, fs::path const& folder, bool pictures) {
   make_folder(folder);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
     write_file(folder / fmt::format("draws_{}.csv", c + 1), draws_csv(report, static_cast<int>(c)));
@@ -64,7 +64,7 @@ void write_result(Report const& report, fs::path const& folder) {
     write_file(folder / fmt::format("predict{}.csv", suffix), predict_csv(report, prediction));
   }
   std::vector<DrawnFigure> drawn;
-  bool const can_draw = gnuplot_installed();
+  bool const can_draw = pictures && gnuplot_installed();
   for (plot::Figure const& figure : figures(report)) {
     make_folder(folder / "figures");
     drawn.push_back({figure, can_draw ? draw(figure) : std::nullopt});

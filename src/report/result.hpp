@@ -14,7 +14,8 @@ bool holds_result(std::filesystem::path const& folder);
 void prepare_result(std::filesystem::path const& folder, bool force);
 
 /// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, resolved.sysid, timing.json
-/// and, last of all, summary.json: where it stands, the result is whole. IoError names the file that could not be written.
-void write_result(Report const& report, std::filesystem::path const& folder);
+/// and, last of all, summary.json: where it stands, the result is whole. Without `pictures` figures are left as scripts.
+/// IoError names the file that could not be written.
+void write_result(Report const& report, std::filesystem::path const& folder, bool pictures = true);
 
 }  // namespace sysid

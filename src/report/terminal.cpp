@@ -27,9 +27,12 @@ std::string summary_table(Report const& report) {
   return align_columns(rows, 2);
 }
 
-std::string scores_line(std::vector<Score> const& scores) {
+std::string scores_line(FitLine const& line) {
   std::string out;
-  for (Score const& score : scores) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", score.name, significant(score.value, 4));
+  for (Score const& score : line.scores) {
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", score.name, significant(score.value, 4));
+    if (score.name == "rmse" && !line.unit.empty()) out += fmt::format(" [{}]", line.unit);
+  }
   return out;
 }
 
@@ -56,11 +59,7 @@ std::string terminal_summary(Report const& report) {
     out += fmt::format("\n{}\n{}", table.title, align_columns(rows, 1));
   }
   std::string facts;
-  if (!report.fit.empty()) facts += fmt::format("fit: {}\n", scores_line(report.fit));
-  for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities)
-      if (auto const found = scores(quantity, prediction.scored); !found.empty())
-        facts += fmt::format("{} on {}: {}\n", quantity.name, prediction.experiment, scores_line(found));
+  for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what, scores_line(line));
   facts += ledger_text(report.ledger);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report)) {

@@ -41,6 +41,16 @@ TEST_CASE("without draws or predictions there is no figure, with one parameter n
   CHECK(figures(report).empty());
 }
 
+TEST_CASE("a state that a channel shows as it is has no second figure") {
+  Report report = example::duffing(40);
+  PredictedQuantity copy = report.predictions[0].quantities[0];
+  copy.name = "y";
+  copy.noisy = {};
+  copy.measured.clear();
+  report.predictions[0].quantities.push_back(copy);
+  CHECK(names(figures(report)) == names(figures(example::duffing(40))));
+}
+
 TEST_CASE("gnuplot draws every figure, the same bytes for the same script") {
   if (!gnuplot_installed()) return;
   for (plot::Figure const& figure : figures(example::duffing(40))) {

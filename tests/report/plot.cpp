@@ -25,6 +25,9 @@ TEST_CASE("large and small numbers share a power of ten that is a multiple of th
   CHECK(axis(-2e-4, 3e-4, 4).exponent == -6);
   CHECK(axis(0, 500, 4).exponent == 0);
   CHECK(axis_label("k3", "N/m^3", 9) == "k3 [10⁹ N/m³]");
+  CHECK(axis_label("y", "m", -3) == "y [mm]");
+  CHECK(axis_label("y", "mm", -3) == "y [10⁻³ mm]");
+  CHECK(axis_label("time", "s", 3) == "time [10³ s]");
   CHECK(axis_label("x", "", 0) == "x");
   CHECK(axis_label("ratio", "-", 0) == "ratio");
   CHECK(axis_label("n", "", 6) == "n [10⁶]");
