@@ -1,0 +1,58 @@
+// Runs a text as the command line would, in a folder of its own that goes with the object.
+#pragma once
+#include <unistd.h>
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "app/pipeline.hpp"
+#include "core/files.hpp"
+#include "core/interrupt.hpp"
+
+namespace sysid {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    char name[] = "/tmp/sysid-test-XXXXXX";
+    path_ = mkdtemp(name);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(TemporaryFolder const&) = delete;
+  TemporaryFolder& operator=(TemporaryFolder const&) = delete;
+  std::filesystem::path const& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct RunResult {
+  int exit = 0;
+  std::string out, notices;
+};
+
+/// `name` may lie in a folder with data; results go to options.output. Front-end errors throw UserError with the first one.
+inline RunResult run_text(std::filesystem::path const& name, std::string const& text, RunOptions options,
+                          std::vector<std::string> const& verbs = {}) {
+  options.figures = false;
+  Source const source(name.string(), text);
+  Diagnostics diagnostics;
+  auto const file = load(source, diagnostics);
+  if (!file) throw UserError(diagnostics.all().front());
+  SilentProgress silent;
+  std::ostringstream out, notices;
+  ExitCode const code = run_tasks(source, *file, verbs, options, silent, out, notices);
+  return {static_cast<int>(code), out.str(), notices.str()};
+}
+
+/// `text` with every occurrence of `from` replaced.
+inline std::string with(std::string text, std::string const& from, std::string const& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
+  return text;
+}
+
+}  // namespace sysid
