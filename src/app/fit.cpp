@@ -295,9 +295,6 @@ class Fit {
       if (result.draws.total() > 1)
         add(tolerance_findings(check_tolerance(*target_, *make_target(2 * preparation_.substeps), result.draws, extra),
                                preparation_.substeps));
-    } else {
-      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
-                                 "go on with --resume; it ends with the bytes of an unbroken run"});
     }
     add_failures(report);
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
@@ -320,7 +317,7 @@ class Fit {
     report.timing = {{"wall_seconds", wall.count()},
                      {"threads", static_cast<std::int64_t>(session_.options.execution.threads)},
                      {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
-    write_result(report, folder_);
+    write_result(report, folder_, session_.options.figures);
     session_.out << terminal_summary(report);
     if (interrupted) {
       session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);

@@ -79,7 +79,7 @@ ExitCode run_predict(Session& session, Task const& task, PredictTask const& what
          "the posterior reaches where the model diverges on this input"});
   }
   report.verdict = result.failed == 0 ? "all trajectories stay finite" : "some trajectories do not stay finite";
-  write_result(report, session.result_folder(task));
+  write_result(report, session.result_folder(task), session.options.figures);
   session.out << terminal_summary(report);
   return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
 }
