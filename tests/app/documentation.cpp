@@ -90,7 +90,7 @@ struct KnownCommands {
       for (std::string name; std::getline(stream, name, ',');) into.insert(name);
     };
     each("(?:runs|add_subcommand)\\(\"(\\w+)\"", [&](std::string const& name) { verbs.insert(name); });
-    each("add_flag\\(\"(-[^\"]*)\"", [&](std::string const& names) { insert_names(flags, names); });
+    each("add_flag\\(\"!?(-[^\"]*)\"", [&](std::string const& names) { insert_names(flags, names); });
     each("add_option\\(\"(-[^\"]*)\"", [&](std::string const& names) { insert_names(options, names); });
   }
 };
