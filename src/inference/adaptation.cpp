@@ -56,9 +56,9 @@ void Adaptation::learn(State const& state, Info const& info) {
   double acceptance = 0;
   int moves = 0;
   for (int const chain : chains_) {
-    auto const w = static_cast<std::size_t>(chain);
-    if (info.failed[w] || info.small[w]) continue;  // a failed solve says nothing of the posterior's width
-    acceptance += info.acceptance_probability[w];
+    Move const& move = info[static_cast<std::size_t>(chain)];
+    if (move.failed || move.small) continue;  // a failed solve says nothing of the posterior's width
+    acceptance += move.acceptance_probability;
     ++moves;
   }
   if (moves > 0) {

@@ -2,127 +2,133 @@
 #include "inference/chain_record.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "inference/checkpoint.hpp"
 
 namespace sysid {
 
-ChainRecord::ChainRecord(int dimension, int chains)
-    : dimension_(dimension),
-      chains_(chains),
-      accepted_burning_(static_cast<std::size_t>(chains), 0),
-      accepted_(static_cast<std::size_t>(chains), 0) {}
+ChainRecord::ChainRecord(int dimension, int chains) : dimension_(dimension), traces_(static_cast<std::size_t>(chains)) {}
 
 void ChainRecord::count_burn_in(metropolis::Info const& info) {
-  ++burnt_;
-  for (std::size_t w = 0; w < accepted_burning_.size(); ++w) accepted_burning_[w] += info.accepted[w] ? 1 : 0;
+  for (std::size_t w = 0; w < traces_.size(); ++w) {
+    ++traces_[w].burnt;
+    traces_[w].accepted_burning += info[w].accepted ? 1 : 0;
+  }
 }
 
-void ChainRecord::add(metropolis::State const& state, metropolis::Info const& info, bool keep) {
-  ++sampled_;
-  for (std::size_t w = 0; w < accepted_.size(); ++w) accepted_[w] += info.accepted[w] ? 1 : 0;
+void ChainRecord::add(int chain, metropolis::State const& state, metropolis::Move const& move, bool keep) {
+  auto const w = static_cast<std::size_t>(chain);
+  Trace& trace = traces_[w];
+  ++trace.sampled;
+  trace.accepted += move.accepted ? 1 : 0;
   if (!keep) return;
-  for (int p = 0; p < dimension_; ++p) {
-    auto const row = state.theta.row(p);
-    theta_.insert(theta_.end(), row.begin(), row.end());
-  }
-  log_prior_.insert(log_prior_.end(), state.log_prior.begin(), state.log_prior.end());
-  log_likelihood_.insert(log_likelihood_.end(), state.log_likelihood.begin(), state.log_likelihood.end());
-  acceptance_.insert(acceptance_.end(), info.acceptance_probability.begin(), info.acceptance_probability.end());
+  for (int p = 0; p < dimension_; ++p) trace.theta.push_back(state.theta(p, chain));
+  trace.log_prior.push_back(state.log_prior[w]);
+  trace.log_likelihood.push_back(state.log_likelihood[w]);
+  trace.acceptance.push_back(move.acceptance_probability);
 }
 
 std::vector<double> ChainRecord::acceptance_rate() const {
-  auto const& accepted = sampled_ > 0 ? accepted_ : accepted_burning_;
-  double const count = static_cast<double>(std::max<std::uint64_t>(1, sampled_ > 0 ? sampled_ : burnt_));
   std::vector<double> rate;
-  for (std::uint64_t const a : accepted) rate.push_back(static_cast<double>(a) / count);
+  for (Trace const& trace : traces_) {
+    bool const after = trace.sampled > 0;
+    double const count = static_cast<double>(std::max<std::uint64_t>(1, after ? trace.sampled : trace.burnt));
+    rate.push_back(static_cast<double>(after ? trace.accepted : trace.accepted_burning) / count);
+  }
   return rate;
 }
 
 double ChainRecord::mean_acceptance() const {
   double sum = 0;
   for (double const rate : acceptance_rate()) sum += rate;
-  return chains_ > 0 ? sum / chains_ : 0;
+  return traces_.empty() ? 0 : sum / static_cast<double>(traces_.size());
 }
 
 std::vector<std::uint64_t> ChainRecord::distinct_states() const {
   std::vector<std::uint64_t> distinct;
-  for (std::uint64_t const a : accepted_) distinct.push_back(a + 1);
+  for (Trace const& trace : traces_) distinct.push_back(trace.accepted + 1);
   return distinct;
 }
 
 void ChainRecord::write(Target const& target, std::uint64_t thin, bool unthinned, FitResult& result) const {
-  auto const width = static_cast<std::size_t>(chains_);
-  auto const rows = static_cast<std::size_t>(dimension_);
-  std::size_t const records = width == 0 ? 0 : log_prior_.size() / width;
   Draws& draws = result.draws;
   for (ParameterInfo const& parameter : target.parameters()) {
     draws.names.push_back(parameter.name);
     draws.units.push_back(parameter.unit);
   }
   draws.parameter_count = dimension_;
-  draws.chains.assign(width, {});
-  if (unthinned) result.unthinned.assign(rows, ChainValues(width));
+  draws.chains.assign(traces_.size(), {});
+  if (unthinned) result.unthinned.assign(static_cast<std::size_t>(dimension_), ChainValues(traces_.size()));
+  std::size_t records = std::numeric_limits<std::size_t>::max();
+  for (Trace const& trace : traces_) records = std::min(records, trace.log_prior.size());
+  for (std::size_t w = 0; w < traces_.size(); ++w) write_chain(target, traces_[w], records, thin, unthinned, w, result);
+}
 
-  // Several iterations share a batch, so that lanes are full.
-  std::size_t const block = std::max<std::size_t>(1, 1024 / std::max<std::size_t>(1, width));
+void ChainRecord::write_chain(Target const& target, Trace const& trace, std::size_t records, std::uint64_t thin, bool unthinned,
+                              std::size_t chain, FitResult& result) const {
+  constexpr std::size_t block = 1024;
+  Chain& draws = result.draws.chains[chain];
   for (std::size_t first = 0; first < records; first += block) {
     std::size_t const count = std::min(block, records - first);
-    LaneArray theta(dimension_, static_cast<int>(count * width)), declared(theta.rows(), theta.width());
+    LaneArray theta(dimension_, static_cast<int>(count)), declared(theta.rows(), theta.width());
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t p = 0; p < rows; ++p)
-        for (std::size_t w = 0; w < width; ++w)
-          theta(static_cast<int>(p), static_cast<int>(i * width + w)) = theta_[((first + i) * rows + p) * width + w];
+      for (int p = 0; p < dimension_; ++p)
+        theta(p, static_cast<int>(i)) =
+            trace.theta[(first + i) * static_cast<std::size_t>(dimension_) + static_cast<std::size_t>(p)];
     target.constrain(theta, declared);
-    std::vector<double> declared_prior(count * width);
+    std::vector<double> declared_prior(count);
     target.log_prior(theta, declared_prior, false);
+    for (int p = 0; unthinned && p < dimension_; ++p) {
+      auto& values = result.unthinned[static_cast<std::size_t>(p)][chain];
+      values.insert(values.end(), declared.row(p).begin(), declared.row(p).end());
+    }
     for (std::size_t i = 0; i < count; ++i) {
-      bool const kept = (first + i + 1) % thin == 0;
-      for (std::size_t w = 0; w < width; ++w) {
-        auto const lane = static_cast<int>(i * width + w);
-        for (std::size_t p = 0; unthinned && p < rows; ++p) result.unthinned[p][w].push_back(declared(static_cast<int>(p), lane));
-        if (!kept) continue;
-        Chain& chain = draws.chains[w];
-        std::size_t const at = (first + i) * width + w;
-        chain.values.emplace_back();
-        for (int p = 0; p < dimension_; ++p) chain.values.back().push_back(declared(p, lane));
-        chain.log_prior.push_back(declared_prior[static_cast<std::size_t>(lane)]);
-        chain.log_likelihood.push_back(log_likelihood_[at]);
-        chain.log_density.push_back(log_prior_[at] + log_likelihood_[at]);
-        chain.acceptance.push_back(acceptance_[at]);
-      }
+      if ((first + i + 1) % thin != 0) continue;
+      draws.values.emplace_back();
+      for (int p = 0; p < dimension_; ++p) draws.values.back().push_back(declared(p, static_cast<int>(i)));
+      draws.log_prior.push_back(declared_prior[i]);
+      draws.log_likelihood.push_back(trace.log_likelihood[first + i]);
+      draws.log_density.push_back(trace.log_prior[first + i] + trace.log_likelihood[first + i]);
+      draws.acceptance.push_back(trace.acceptance[first + i]);
     }
   }
 }
 
 nlohmann::json ChainRecord::store() const {
   auto const block = [](std::vector<double> const& v) { return checkpoint::encode(std::span<double const>(v)); };
-  return {{"burnt", burnt_},
-          {"sampled", sampled_},
-          {"accepted_burning", accepted_burning_},
-          {"accepted", accepted_},
-          {"theta", block(theta_)},
-          {"log_prior", block(log_prior_)},
-          {"log_likelihood", block(log_likelihood_)},
-          {"acceptance", block(acceptance_)}};
+  nlohmann::json traces = nlohmann::json::array();
+  for (Trace const& trace : traces_)
+    traces.push_back({{"burnt", trace.burnt},
+                      {"accepted_burning", trace.accepted_burning},
+                      {"sampled", trace.sampled},
+                      {"accepted", trace.accepted},
+                      {"theta", block(trace.theta)},
+                      {"log_prior", block(trace.log_prior)},
+                      {"log_likelihood", block(trace.log_likelihood)},
+                      {"acceptance", block(trace.acceptance)}});
+  return traces;
 }
 
 ChainRecord ChainRecord::restore(nlohmann::json const& stored, int dimension, int chains) {
   ChainRecord record(dimension, chains);
-  record.burnt_ = stored.at("burnt").get<std::uint64_t>();
-  record.sampled_ = stored.at("sampled").get<std::uint64_t>();
-  record.accepted_burning_ = stored.at("accepted_burning").get<std::vector<std::uint64_t>>();
-  record.accepted_ = stored.at("accepted").get<std::vector<std::uint64_t>>();
-  record.theta_ = checkpoint::decode(stored.at("theta"));
-  record.log_prior_ = checkpoint::decode(stored.at("log_prior"));
-  record.log_likelihood_ = checkpoint::decode(stored.at("log_likelihood"));
-  record.acceptance_ = checkpoint::decode(stored.at("acceptance"));
-  auto const width = static_cast<std::size_t>(chains);
-  std::size_t const numbers = record.log_prior_.size();
-  if (record.accepted_.size() != width || record.accepted_burning_.size() != width || numbers % width != 0 ||
-      record.theta_.size() != numbers * static_cast<std::size_t>(dimension) || record.log_likelihood_.size() != numbers ||
-      record.acceptance_.size() != numbers)
-    throw checkpoint::Mismatch("its draws are cut short");
+  if (stored.size() != record.traces_.size()) throw checkpoint::Mismatch("its chains have another number or dimension");
+  for (std::size_t w = 0; w < record.traces_.size(); ++w) {
+    nlohmann::json const& from = stored.at(w);
+    Trace& trace = record.traces_[w];
+    trace.burnt = from.at("burnt").get<std::uint64_t>();
+    trace.accepted_burning = from.at("accepted_burning").get<std::uint64_t>();
+    trace.sampled = from.at("sampled").get<std::uint64_t>();
+    trace.accepted = from.at("accepted").get<std::uint64_t>();
+    trace.theta = checkpoint::decode(from.at("theta"));
+    trace.log_prior = checkpoint::decode(from.at("log_prior"));
+    trace.log_likelihood = checkpoint::decode(from.at("log_likelihood"));
+    trace.acceptance = checkpoint::decode(from.at("acceptance"));
+    std::size_t const records = trace.log_prior.size();
+    if (trace.theta.size() != records * static_cast<std::size_t>(dimension) || trace.log_likelihood.size() != records ||
+        trace.acceptance.size() != records)
+      throw checkpoint::Mismatch("its draws are cut short");
+  }
   return record;
 }
 

@@ -9,8 +9,8 @@
 namespace sysid::metropolis {
 namespace {
 
-/// Writes the proposed state of one chain; returns whether the move is a small one.
-bool propose(Proposal const& proposal, StreamKey key, ConstLanes from, Lanes to, int lane) {
+/// Writes what `chain` proposes into `lane`; returns whether the move is a small one.
+bool propose(Proposal const& proposal, StreamKey key, ConstLanes from, int chain, Lanes to, int lane) {
   Stream stream(key);
   bool const small = proposal.small_share > 0 && stream.uniform() < proposal.small_share;
   double const scale = small ? proposal.small_scale * proposal.scale : proposal.scale;
@@ -26,9 +26,27 @@ bool propose(Proposal const& proposal, StreamKey key, ConstLanes from, Lanes to,
   for (std::size_t i = 0; i < dimension; ++i) {
     double move = 0;
     for (std::size_t j = 0; j <= i; ++j) move += proposal.factor[i * dimension + j] * z[j];
-    to(static_cast<int>(i), lane) = from(static_cast<int>(i), lane) + scale * move;
+    to(static_cast<int>(i), lane) = from(static_cast<int>(i), chain) + scale * move;
   }
   return small;
+}
+
+/// Takes or refuses the proposal in `lane` for chain w.
+Move decide(StreamKey key, State& state, std::size_t w, ConstLanes proposed, int lane, double log_prior, double log_likelihood) {
+  Move move;
+  double const now = state.log_prior[w] + state.log_likelihood[w];
+  double const next = log_prior + log_likelihood;
+  move.failed = !std::isfinite(next);
+  if (move.failed) return move;
+  double const log_ratio = std::isfinite(now) ? next - now : 0.0;
+  move.acceptance_probability = log_ratio >= 0 ? 1.0 : elementary::exp(log_ratio);
+  Stream stream(key);
+  move.accepted = log_ratio >= 0 || elementary::log(stream.uniform()) < log_ratio;
+  if (!move.accepted) return move;
+  for (int p = 0; p < proposed.rows(); ++p) state.theta(p, static_cast<int>(w)) = proposed(p, lane);
+  state.log_prior[w] = log_prior;
+  state.log_likelihood[w] = log_likelihood;
+  return move;
 }
 
 }  // namespace
@@ -49,32 +67,47 @@ State init(Target const& target, LaneArray theta, Ledger& ledger) {
 }
 
 Info step(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, State& state, Ledger& ledger) {
-  int const width = state.theta.width();
-  auto const lanes = static_cast<std::size_t>(width);
-  Info info{std::vector<double>(lanes, 0.0), std::vector<char>(lanes, 0), std::vector<char>(lanes, 0), std::vector<char>(lanes, 0)};
-  LaneArray proposed(state.theta.rows(), width);
-  std::vector<double> log_prior(lanes), log_likelihood(lanes);
-  for (std::size_t w = 0; w < lanes; ++w) {
-    StreamKey const chain{key.seed, Purpose::proposal, key.index + w, key.step};
-    info.small[w] = propose(*proposals[w], chain, state.theta, proposed, static_cast<int>(w));
+  auto const width = static_cast<std::size_t>(state.theta.width());
+  Info info(width);
+  std::vector<std::uint64_t> next(width, key.step);
+  advance(target, proposals, key, 1, key.step + 1, next, state, ledger,
+          [&](int chain, Move const& move) { info[static_cast<std::size_t>(chain)] = move; });
+  return info;
+}
+
+void advance(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, int ahead, std::uint64_t end,
+             std::span<std::uint64_t> next, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit) {
+  std::vector<int> tries;
+  int width = 0;
+  for (std::uint64_t const iteration : next) {
+    tries.push_back(iteration < end ? static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(ahead), end - iteration))
+                                    : 0);
+    width += tries.back();
   }
+  LaneArray proposed(state.theta.rows(), width);
+  std::vector<char> small(static_cast<std::size_t>(width));
+  auto const key_of = [&](Purpose purpose, std::size_t w, int later) {
+    return StreamKey{key.seed, purpose, key.index + w, next[w] + static_cast<std::uint64_t>(later)};
+  };
+  for (std::size_t w = 0, lane = 0; w < next.size(); ++w)
+    for (int i = 0; i < tries[w]; ++i, ++lane)
+      small[lane] = propose(*proposals[w], key_of(Purpose::proposal, w, i), state.theta, static_cast<int>(w), proposed,
+                            static_cast<int>(lane));
+
+  std::vector<double> log_prior(static_cast<std::size_t>(width)), log_likelihood(log_prior);
   target.log_prior(proposed, log_prior);
   target.log_likelihood(proposed, log_likelihood, ledger);
-  for (std::size_t w = 0; w < lanes; ++w) {
-    double const now = state.log_prior[w] + state.log_likelihood[w];
-    double const next = log_prior[w] + log_likelihood[w];
-    info.failed[w] = !std::isfinite(next);
-    if (info.failed[w]) continue;
-    double const log_ratio = std::isfinite(now) ? next - now : 0.0;
-    info.acceptance_probability[w] = log_ratio >= 0 ? 1.0 : elementary::exp(log_ratio);
-    Stream stream({key.seed, Purpose::accept, key.index + w, key.step});
-    info.accepted[w] = log_ratio >= 0 || elementary::log(stream.uniform()) < log_ratio;
-    if (!info.accepted[w]) continue;
-    for (int p = 0; p < proposed.rows(); ++p) state.theta(p, static_cast<int>(w)) = proposed(p, static_cast<int>(w));
-    state.log_prior[w] = log_prior[w];
-    state.log_likelihood[w] = log_likelihood[w];
+  for (std::size_t w = 0, first = 0; w < next.size(); first += static_cast<std::size_t>(tries[w]), ++w) {
+    for (int i = 0; i < tries[w]; ++i) {
+      std::size_t const lane = first + static_cast<std::size_t>(i);
+      Move move =
+          decide(key_of(Purpose::accept, w, 0), state, w, proposed, static_cast<int>(lane), log_prior[lane], log_likelihood[lane]);
+      move.small = small[lane] != 0;
+      ++next[w];
+      visit(static_cast<int>(w), move);
+      if (move.accepted) break;
+    }
   }
-  return info;
 }
 
 }  // namespace sysid::metropolis

@@ -1,5 +1,7 @@
 // Random-walk Metropolis with a Gaussian proposal: W chains in lanes, one batch of likelihoods per iteration.
 #pragma once
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -31,13 +33,14 @@ struct State {
   std::vector<double> log_likelihood;  // [W]
 };
 
-/// What only adaptation and diagnostics need.
-struct Info {
-  std::vector<double> acceptance_probability;  // [W]; 0 where the proposal failed
-  std::vector<char> accepted;                  // [W]
-  std::vector<char> failed;                    // [W]: the proposal's density was not finite; such a move must not steer adaptation
-  std::vector<char> small;                     // [W]: the move was a small one
+/// What one chain did in one iteration: what only adaptation and diagnostics need.
+struct Move {
+  double acceptance_probability = 0;  // 0 where the proposal failed
+  bool accepted = false;
+  bool failed = false;  // the proposal's density was not finite; such a move must not steer adaptation
+  bool small = false;   // it was a small one
 };
+using Info = std::vector<Move>;  // [W]
 
 /// Evaluates theta [P x W].
 State init(Target const& target, LaneArray theta, Ledger& ledger);
@@ -49,5 +52,13 @@ State init(Target const& target, LaneArray theta, Ledger& ledger);
 ///
 /// A state whose own density is not finite accepts any proposal whose density is.
 Info step(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, State& state, Ledger& ledger);
+
+/// Several iterations of each chain from one batch, for proposals that do not change: chain w tries its moves of iterations
+/// next[w], next[w] + 1, ... (`ahead` of them, none at `end` or later) all from where it stands, and takes them in turn up to the
+/// first accepted one; the others started from a place it has left and are dropped. `next` moves on by the iterations taken;
+/// `visit(chain, move)` is called after each, in order, with the state as it is then. Path and draws are those of `step` after
+/// `step`: most moves are rejected, so idle lanes that guess "rejected" are right most of the time (Brockwell 2006, pre-fetching).
+void advance(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, int ahead, std::uint64_t end,
+             std::span<std::uint64_t> next, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit);
 
 }  // namespace sysid::metropolis

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <functional>
 #include <limits>
 
 #include "inference/adaptation.hpp"
@@ -35,9 +35,12 @@ constexpr SettingRow rows[] = {
 /// Unthinned draws are kept for the diagnostics while they fit into this many numbers (160 MB).
 constexpr double most_recorded = 2e7;
 
+/// A batch of 16 lanes takes half as long again as one of 4 on the machines we know, and a chain rejects three moves in four.
+constexpr int lanes_worth_filling = 16, most_ahead = 8;
+
 /// All that a run is between two iterations.
 struct State {
-  std::uint64_t iteration = 0;  // finished ones
+  std::vector<std::uint64_t> next;  // [W] iterations each chain has finished: all the same in burn-in
   metropolis::State chains;
   std::vector<metropolis::Adaptation> groups;  // empty for a spherical proposal
   std::vector<Mode> modes;
@@ -74,7 +77,7 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
   for (Mode const& mode : state.modes) modes.push_back(checkpoint::encode(mode));
   for (Finding const& f : state.findings) findings.push_back({static_cast<int>(f.severity), f.code, f.message, f.help});
   return {{"identity", identity},
-          {"iteration", state.iteration},
+          {"next", state.next},
           {"theta", checkpoint::encode(state.chains.theta)},
           {"log_prior", block(state.chains.log_prior)},
           {"log_likelihood", block(state.chains.log_likelihood)},
@@ -87,11 +90,11 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
 
 State restore(nlohmann::json const& stored, Target const& target, Plan const& plan, Ledger& ledger) {
   State state;
-  state.iteration = stored.at("iteration").get<std::uint64_t>();
+  state.next = stored.at("next").get<std::vector<std::uint64_t>>();
   state.chains = {checkpoint::decode(stored.at("theta"), target.dimension(), plan.chains),
                   checkpoint::decode(stored.at("log_prior")), checkpoint::decode(stored.at("log_likelihood"))};
   auto const chains = static_cast<std::size_t>(plan.chains);
-  if (state.chains.log_prior.size() != chains || state.chains.log_likelihood.size() != chains)
+  if (state.next.size() != chains || state.chains.log_prior.size() != chains || state.chains.log_likelihood.size() != chains)
     throw checkpoint::Mismatch("its chains have another number or dimension");
   for (auto const& group : stored.at("groups")) state.groups.push_back(metropolis::Adaptation::restore(group));
   for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
@@ -152,38 +155,66 @@ std::optional<State> begin(Target const& target, Plan const& plan, RunContext& c
   }
   state.chains = metropolis::init(target, std::move(starts), context.ledger);
   state.record = ChainRecord(target.dimension(), plan.chains);
+  state.next.assign(static_cast<std::size_t>(plan.chains), 0);
   return state;
 }
+
+/// Tells how far the run is and stores it, each no more often than is useful, whatever an iteration takes.
+class Watch {
+ public:
+  Watch(RunContext& context, std::function<nlohmann::json()> store) : context_(context), store_(std::move(store)) {}
+
+  void look(State const& state) {
+    Clock::time_point const now = Clock::now();
+    if (now - shown_ > std::chrono::milliseconds(50)) {
+      std::uint64_t const done = *std::min_element(state.next.begin(), state.next.end());
+      context_.progress.advance(done, fmt::format("acceptance {:.2f}", state.record.mean_acceptance()));
+      shown_ = now;
+    }
+    if (context_.checkpoint && std::chrono::duration<double>(now - saved_).count() >= context_.checkpoint_interval) {
+      context_.checkpoint(store_());
+      saved_ = Clock::now();
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  RunContext& context_;
+  std::function<nlohmann::json()> store_;
+  Clock::time_point shown_ = Clock::now(), saved_ = shown_;
+};
 
 /// Iterates to the end, or until asked to stop; returns whether it was.
 bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
   metropolis::Proposal const fixed = metropolis::spherical(target.dimension(), plan.variance);
-  auto saved = std::chrono::steady_clock::now();
+  std::vector<metropolis::Proposal const*> proposals(static_cast<std::size_t>(plan.chains), &fixed);
+  for (auto const& group : state.groups)
+    for (int const chain : group.chains()) proposals[static_cast<std::size_t>(chain)] = &group.proposal();
+  StreamKey const key{context.seed, Purpose::proposal, 0, 0};
+  Watch watch(context, [&] { return store(state, context.ledger, identity); });
+  auto const record = [&](int chain, metropolis::Move const& move) {
+    std::uint64_t const after = state.next[static_cast<std::size_t>(chain)] - plan.burn_in;
+    state.record.add(chain, state.chains, move, after % plan.stride == 0);
+  };
+  auto const all_past = [&](std::uint64_t iterations) {
+    return std::all_of(state.next.begin(), state.next.end(), [&](std::uint64_t n) { return n >= iterations; });
+  };
+
   context.progress.begin("sampling", plan.samples);
   bool stopped = false;
-  while (state.iteration < plan.samples && !(stopped = context.stop_requested())) {
-    std::vector<metropolis::Proposal const*> proposals(static_cast<std::size_t>(plan.chains), &fixed);
-    for (auto const& group : state.groups)
-      for (int const chain : group.chains()) proposals[static_cast<std::size_t>(chain)] = &group.proposal();
-    StreamKey const key{context.seed, Purpose::proposal, 0, state.iteration};
-    metropolis::Info const info = metropolis::step(target, proposals, key, state.chains, context.ledger);
-    ++state.iteration;
-    bool const burning = state.iteration <= plan.burn_in;
-    if (burning) {
-      for (auto& group : state.groups) group.learn(state.chains, info);
-      state.record.count_burn_in(info);
-    } else {
-      bool const keep = (state.iteration - plan.burn_in) % plan.stride == 0;
-      state.record.add(state.chains, info, keep);
-    }
-    if (state.iteration % 256 == 0) {
-      context.progress.advance(state.iteration, fmt::format("acceptance {:.2f}", state.record.mean_acceptance()));
-      std::chrono::duration<double> const since = std::chrono::steady_clock::now() - saved;
-      if (context.checkpoint && since.count() >= context.checkpoint_interval) {
-        context.checkpoint(store(state, context.ledger, identity));
-        saved = std::chrono::steady_clock::now();
-      }
-    }
+  while (!all_past(plan.burn_in) && !(stopped = context.stop_requested())) {
+    metropolis::Info const info =
+        metropolis::step(target, proposals, key.with_step(state.next.front()), state.chains, context.ledger);
+    for (std::uint64_t& n : state.next) ++n;
+    for (auto& group : state.groups) group.learn(state.chains, info);
+    state.record.count_burn_in(info);
+    watch.look(state);
+  }
+  // The proposals are frozen: idle lanes may run ahead. How far must not depend on the machine, or the counts of solves would.
+  int const ahead = std::clamp(lanes_worth_filling / plan.chains, 1, most_ahead);
+  while (!stopped && !all_past(plan.samples) && !(stopped = context.stop_requested())) {
+    metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
+    watch.look(state);
   }
   context.progress.end();
   if (stopped && context.checkpoint) context.checkpoint(store(state, context.ledger, identity));
@@ -226,7 +257,7 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
     result.failure = checkpoint::refuse(*context.resume, identity);
     if (result.failure) return result;
     // A run stopped during its search has nothing but its identity to resume from.
-    if (context.resume->contains("iteration")) {
+    if (context.resume->contains("next")) {
       try {
         state = restore(*context.resume, target, plan, context.ledger);
       } catch (checkpoint::Mismatch const& mismatch) {

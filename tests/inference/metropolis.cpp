@@ -35,7 +35,7 @@ TEST_CASE("a flat density accepts every move, so states spread as the proposal s
     aa += state.theta(0, w) * state.theta(0, w) / chains;
     ab += state.theta(0, w) * state.theta(1, w) / chains;
     bb += state.theta(1, w) * state.theta(1, w) / chains;
-    accepted += info.accepted[static_cast<std::size_t>(w)];
+    accepted += info[static_cast<std::size_t>(w)].accepted;
   }
   CHECK(accepted == chains);
   CHECK(aa == doctest::Approx(0.04).epsilon(0.04));  // standard error 1 %
@@ -56,7 +56,7 @@ TEST_CASE("one step leaves the target's distribution as it is") {
   double acceptance = 0;
   for (std::uint64_t i = 0; i < 3; ++i) {
     Info const info = step(target, proposals, {3, Purpose::proposal, 0, i}, state, ledger);
-    for (double const a : info.acceptance_probability) acceptance += a / (3.0 * chains);
+    for (Move const& move : info) acceptance += move.acceptance_probability / (3.0 * chains);
   }
   double square = 0, fourth = 0;
   for (double const x : state.theta.row(0)) {
@@ -80,7 +80,7 @@ TEST_CASE("small moves come in their share and size") {
   Info const info = step(flat, proposals, {1, Purpose::proposal, 0, 0}, state, ledger);
   double small = 0, square = 0;
   for (int w = 0; w < chains; ++w) {
-    if (!info.small[static_cast<std::size_t>(w)]) continue;
+    if (!info[static_cast<std::size_t>(w)].small) continue;
     ++small;
     square += state.theta(0, w) * state.theta(0, w);
   }
@@ -97,9 +97,9 @@ TEST_CASE("a move to a place that cannot be solved is rejected and marked") {
   Info const info = step(target, std::vector<Proposal const*>(3, &proposal), {1, Purpose::proposal, 0, 0}, state, ledger);
   for (int w = 0; w < 3; ++w) {
     CHECK(state.theta(0, w) == 0);
-    CHECK(info.failed[static_cast<std::size_t>(w)]);
-    CHECK_FALSE(info.accepted[static_cast<std::size_t>(w)]);
-    CHECK(info.acceptance_probability[static_cast<std::size_t>(w)] == 0);
+    CHECK(info[static_cast<std::size_t>(w)].failed);
+    CHECK_FALSE(info[static_cast<std::size_t>(w)].accepted);
+    CHECK(info[static_cast<std::size_t>(w)].acceptance_probability == 0);
   }
   CHECK(ledger.failed() == 3);
 }
@@ -121,6 +121,46 @@ TEST_CASE("many chains in one batch take the steps that each takes alone") {
   }
 }
 
+TEST_CASE("chains that run ahead in idle lanes take the same path as step by step") {
+  TestTarget const target = gaussian(2);
+  Proposal const wide = spherical(2, 9), narrow = spherical(2, 0.01);
+  std::vector<Proposal const*> const proposals = {&wide, &narrow, &wide};
+  Ledger ledger;
+  using Path = std::vector<std::vector<double>>;
+  constexpr std::uint64_t iterations = 200;
+  auto const run = [&](int ahead) {
+    State state = init(target, LaneArray(2, 3), ledger);
+    std::vector<std::uint64_t> next(3, 0);
+    Path path(3);
+    auto const visit = [&](int chain, Move const& move) {
+      auto const w = static_cast<std::size_t>(chain);
+      path[w].insert(path[w].end(),
+                     {state.theta(0, chain), state.theta(1, chain), state.log_likelihood[w], move.acceptance_probability});
+    };
+    int batches = 0;
+    for (; next != std::vector<std::uint64_t>(3, iterations); ++batches)
+      advance(target, proposals, {1, Purpose::proposal, 0, 0}, ahead, iterations, next, state, ledger, visit);
+    return std::pair(path, batches);
+  };
+  auto const [one, batches_of_one] = run(1);
+  CHECK(batches_of_one == iterations);
+  CHECK(one[0].size() == 4 * iterations);
+  for (int const ahead : {2, 5, 8}) {
+    auto const [path, batches] = run(ahead);
+    CHECK(path == one);
+    CHECK(batches <= batches_of_one);
+  }
+  // The wide proposal is mostly refused: with it alone, eight at a time need far fewer batches.
+  State alone = init(target, LaneArray(2, 1), ledger);
+  std::vector<std::uint64_t> next(1, 0);
+  int batches = 0;
+  for (; next[0] < iterations; ++batches)
+    advance(target, std::vector<Proposal const*>{&wide}, {1, Purpose::proposal, 0, 0}, 8, iterations, next, alone, ledger,
+            [](int, Move const&) {});
+  CHECK(batches < 80);
+  CHECK(alone.theta(0, 0) == one[0][4 * iterations - 4]);
+}
+
 TEST_CASE("adaptation learns covariance and scale, and a failed move does not steer it") {
   TestTarget const target({"a", "b"}, {{Prior::normal, 0, 1e3}, {Prior::normal, 0, 1e3}}, 2, 0,
                           [](std::vector<double> const& w, std::vector<double>& rows) {
@@ -133,7 +173,7 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   for (std::uint64_t i = 0; i < 5000; ++i) {
     Info const info =
         step(target, std::vector<Proposal const*>(4, &adaptation.proposal()), {1, Purpose::proposal, 0, i}, state, ledger);
-    for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info.small[w] ? 0 : info.acceptance_probability[w] / (0.9 * 2000 * 4);
+    for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info[w].small ? 0 : info[w].acceptance_probability / (0.9 * 2000 * 4);
     adaptation.learn(state, info);
   }
   auto const& factor = adaptation.proposal().factor;
@@ -142,7 +182,7 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   CHECK(late == doctest::Approx(0.234).epsilon(0.1));
 
   double const scale = adaptation.proposal().scale;
-  Info failed{std::vector<double>(4, 0.0), std::vector<char>(4, 0), std::vector<char>(4, 1), std::vector<char>(4, 0)};
+  Info const failed(4, Move{0, false, true, false});
   for (int i = 0; i < 10; ++i) adaptation.learn(state, failed);
   CHECK(adaptation.proposal().scale == scale);
 }

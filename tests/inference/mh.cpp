@@ -223,13 +223,23 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
   Line const known = line();
   Settings const settings = chosen(600, 200, 5, 3);
   Bench whole(9);
+  // One question is asked before every batch: those of the search, 200 of burn-in, and fewer than 400 of sampling, which runs
+  // ahead.
   int questions = 0;
   whole.context.interrupted = [&] { return ++questions < 0; };
   FitResult const unbroken = mh::run(known.target, settings, whole.context);
-  int const searching = questions - 600;  // one question an iteration
+  Settings burning = settings;
+  burning.set("samples", std::int64_t{201});
+  int searching = 0;
+  Bench short_run(9);
+  short_run.context.interrupted = [&] { return ++searching < 0; };
+  mh::run(known.target, burning, short_run.context);
+  searching -= 201;
   REQUIRE(searching > 3);
-  // In the search, at the first iteration, in burn-in, at its last and first after, in sampling, before the last iteration.
-  for (int const limit : {3, searching, searching + 77, searching + 199, searching + 200, searching + 431, searching + 599}) {
+  REQUIRE(questions > searching + 260);
+  REQUIRE(questions < searching + 600);
+  // In the search, at the first iteration, in burn-in, at its last and first after, in sampling, before the last batch.
+  for (int const limit : {3, searching, searching + 77, searching + 199, searching + 200, searching + 231, questions - 1}) {
     CAPTURE(limit);
     std::string saved;
     int asked = 0;
@@ -252,15 +262,31 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
   }
 }
 
+TEST_CASE("every checkpoint on the way leads to the same end") {
+  Line const known = line();
+  Settings const settings = chosen(60, 20, 1, 3);
+  Bench bench(9);
+  std::vector<nlohmann::json> saved;
+  bench.context.checkpoint_interval = 0;
+  bench.context.checkpoint = [&](nlohmann::json const& state) { saved.push_back(state); };
+  FitResult const unbroken = mh::run(known.target, settings, bench.context);
+  REQUIRE(saved.size() > 25);
+  for (nlohmann::json const& state : saved) {
+    Bench again(9);
+    again.context.resume = state;
+    CHECK(same_draws(unbroken, mh::run(known.target, settings, again.context)));
+  }
+}
+
 TEST_CASE("a checkpoint of another run is refused with its reason") {
   Line const known = line();
   nlohmann::json saved;
   Bench first(9);
   int asked = 0;
-  first.context.interrupted = [&] { return ++asked > 400; };
+  first.context.interrupted = [&] { return ++asked > 150; };
   first.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
   mh::run(known.target, chosen(600, 200), first.context);
-  REQUIRE(saved.contains("iteration"));
+  REQUIRE(saved.contains("next"));
   Bench other_seed(10);
   other_seed.context.resume = saved;
   FitResult const refused = mh::run(known.target, chosen(600, 200), other_seed.context);
