@@ -1,0 +1,63 @@
+// The layers: which folder may include which, and who alone may include Boost.Spirit and SUNDIALS. Read from the #include lines.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "core/files.hpp"
+
+namespace {
+
+using Folders = std::set<std::string>;
+
+std::map<std::string, Folders> const allowed = {
+    {"core", {"core"}},
+    {"data", {"data", "core"}},
+    {"expression", {"expression", "core"}},
+    {"function", {"function", "expression", "core"}},
+    {"distribution", {"distribution", "function", "expression", "core"}},
+    {"model", {"model", "distribution", "function", "expression", "core"}},
+    {"syntax", {"syntax", "core"}},
+    {"grammar", {"grammar", "syntax", "core"}},
+    {"check", {"check", "syntax", "model", "data", "distribution", "function", "expression", "core"}},
+    {"program", {"program", "model", "distribution", "function", "expression", "core"}},
+    {"simulate", {"simulate", "program", "data", "expression", "core"}},
+    {"likelihood", {"likelihood", "simulate", "program", "model", "data", "distribution", "function", "expression", "core"}},
+    {"inference", {"inference", "likelihood", "core"}},
+    {"report", {"report", "inference", "likelihood", "core"}},
+};
+
+}  // namespace
+
+TEST_CASE("includes point one way, Boost.Spirit stays in grammar/ and SUNDIALS in src/simulate/") {
+  std::filesystem::path const root(SYSID_SOURCE_DIR);
+  std::regex const own("^#include \"([a-z]+)/[^\"]*\"");
+  int lines = 0;
+  for (auto const& [folder, may] : allowed) {
+    auto const place = folder == "grammar" ? root / folder : root / "src" / folder;
+    for (auto const& entry : std::filesystem::recursive_directory_iterator(place)) {
+      std::string const extension = entry.path().extension().string();
+      if (extension != ".cpp" && extension != ".hpp") continue;
+      std::istringstream text(sysid::read_file(entry.path()));
+      for (std::string line; std::getline(text, line);) {
+        CAPTURE(entry.path().string());
+        CAPTURE(line);
+        std::smatch match;
+        if (std::regex_search(line, match, own)) {
+          ++lines;
+          CHECK(may.contains(match[1].str()));
+          // A back end sees one header of likelihood/ beside the further views.
+          if (folder == "inference" || folder == "report")
+            if (match[1].str() == "likelihood") CHECK(line.find("likelihood/target.hpp") != std::string::npos);
+        }
+        if (line.starts_with("#include <boost/spirit")) CHECK(folder == "grammar");
+        for (char const* header : {"<cvode", "<ida", "<arkode", "<nvector", "<sunmatrix", "<sunlinsol", "<sundials"})
+          if (line.starts_with(std::string("#include ") + header)) CHECK(folder == "simulate");
+      }
+    }
+  }
+  CHECK(lines > 300);
+}
