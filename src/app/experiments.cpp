@@ -6,6 +6,28 @@
 #include <algorithm>
 
 namespace sysid {
+namespace {
+
+// Says which files of the folder have names like the one wanted.
+Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path, std::string message) {
+  std::vector<std::string> near;
+  std::error_code ignored;
+  std::filesystem::path const inside = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (auto const& entry : std::filesystem::directory_iterator(inside, ignored)) {
+    std::string const name = entry.path().filename().string();
+    if (entry.is_regular_file(ignored)) near.push_back((std::filesystem::path(block.path).parent_path() / name).string());
+  }
+  std::sort(near.begin(), near.end());
+  std::string const guess = did_you_mean(block.path, near);
+  return {Severity::error,
+          "E4018",
+          std::move(message),
+          Label{block.path_span, {}},
+          {},
+          guess.empty() ? "paths are relative to the folder of the .sysid file" : guess};
+}
+
+}  // namespace
 
 std::string_view rule_name(InputRule rule) {
   switch (rule) {
@@ -48,7 +70,11 @@ std::optional<Record> load_record(DataBlock const& block, Model const& model, st
     else
       request.measured.push_back(ColumnRequest{bound->column, bound->unit, channel.unit, bound->span});
   }
-  return load(request, diagnostics);
+  try {
+    return load(request, diagnostics);
+  } catch (IoError const& error) {
+    throw UnreadableData(unreadable(block, request.path, error.what()));
+  }
 }
 
 Experiment cut(Record const& record, DataBlock const& block, int part, StartRule start) {

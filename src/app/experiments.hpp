@@ -9,8 +9,18 @@
 
 namespace sysid {
 
+/// A data file that cannot be read, with the place in the text that names it: exit code 74.
+class UnreadableData : public IoError {
+ public:
+  explicit UnreadableData(Diagnostic diagnostic) : IoError(diagnostic.message), diagnostic_(std::move(diagnostic)) {}
+  Diagnostic const& diagnostic() const { return diagnostic_; }
+
+ private:
+  Diagnostic diagnostic_;
+};
+
 /// The record of a data block as a model reads it; `folder`: that of the .sysid file, from which paths are relative.
-/// UserError-free: what is wrong with the data goes to `diagnostics`. IoError when the file cannot be read.
+/// UserError-free: what is wrong with the data goes to `diagnostics`. UnreadableData when the file cannot be read.
 std::optional<Record> load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder,
                                   Diagnostics& diagnostics);
 

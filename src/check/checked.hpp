@@ -28,6 +28,7 @@ struct DataInputUse : ColumnUse {
 
 struct DataMeasureUse : ColumnUse {
   std::string channel;
+  Span channel_span;
 };
 
 /// Rows first..last of the file, counted from 1, both included.

@@ -8,6 +8,7 @@
 #include "check/errors.hpp"
 #include "check/scope.hpp"
 #include "check/units.hpp"
+#include "data/errors.hpp"
 
 namespace sysid {
 namespace {
@@ -48,6 +49,10 @@ class DataChecker {
   std::optional<double> number(ast::Expression const& tree, Unit const& unit, std::string const& what) {
     auto const value = scope_.expression(tree);
     if (!value) return std::nullopt;
+    if (value->kind == Typed::Kind::known && value->unit.dimension != unit.dimension) {
+      diagnostics_.add(errors::number_of_other_kind(tree.span, what, value->unit, unit));
+      return std::nullopt;
+    }
     auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
     if (!constant) diagnostics_.add(errors::constant_needed(tree.span, what));
     return constant;
@@ -63,12 +68,12 @@ class DataChecker {
     if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
     times_ = tree.span;
     block_.time = column(tree.column);
+    check_time_unit(block_.time->unit, tree.column.span, diagnostics_);
   }
   void take(ast::DataRate const& tree) {
     if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
     times_ = tree.span;
-    Unit unit;  // Hz or s
-    unit.dimension[2] = {tree.step ? 1 : -1, 1};
+    Unit const unit = unit_atom(tree.step ? "s" : "Hz").value();
     auto const value = number(tree.value, unit, tree.step ? "the sampling step" : "the sampling rate");
     if (!value) return;
     if (!(*value > 0) || !std::isfinite(*value)) {
@@ -97,6 +102,7 @@ class DataChecker {
     DataMeasureUse use;
     static_cast<ColumnUse&>(use) = column(tree.column);
     use.channel = tree.channel.text;
+    use.channel_span = tree.channel.span;
     block_.measured.push_back(std::move(use));
   }
   void take(ast::DataSplit const& tree) {
@@ -131,10 +137,11 @@ std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnost
 void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics) {
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
     if (!column.unit || !declared.unit) return;
-    if (column.unit->dimension != declared.unit->dimension || cycles_against_radians(*column.unit, *declared.unit))
-      diagnostics.add(
-          errors::unit_mismatch(column.span, what, column.unit->text,
-                                declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text));
+    std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
+    if (column.unit->dimension != declared.unit->dimension)
+      diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text, wanted));
+    else if (cycles_against_radians(*column.unit, *declared.unit))
+      diagnostics.add(data_errors::cycles_against_radians(column.column, column.unit->text, wanted, column.span));
   };
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     Quantity const& input = model.inputs[i];
@@ -169,7 +176,7 @@ void check_binding(DataBlock const& block, Model const& model, Span use, Diagnos
     diagnostics.add(errors::no_channel_bound(use, model.name, block.name, channels));
   } else {
     for (DataMeasureUse const& measured : block.measured)
-      diagnostics.add(errors::unknown_channel(measured.span, measured.channel, model.name, channels));
+      diagnostics.add(errors::unknown_channel(measured.channel_span, measured.channel, model.name, channels));
   }
 }
 

@@ -143,6 +143,11 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
   use.upper = bound(upper);
   if (!good || use.arguments.size() != row->arguments.size()) return std::nullopt;
 
+  if (row->dimensionless && unit && !unit->dimensionless()) {
+    diagnostics.add(errors::unit_of_share(call.span, name, unit->text.empty() ? format_dimension(unit->dimension) : unit->text));
+    return std::nullopt;
+  }
+
   std::vector<double> numbers;
   for (NodeId const argument : use.arguments)
     if (auto const number = graph.constant_value(argument)) numbers.push_back(*number);
@@ -156,6 +161,13 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
     auto const a = graph.constant_value(*use.lower), b = graph.constant_value(*use.upper);
     if (a && b && !(*a < *b)) {
       diagnostics.add(errors::bad_arguments(call.span, name, "lower is not below upper"));
+      return std::nullopt;
+    }
+  }
+  if (row->proper && (use.lower || use.upper)) {
+    auto const left = graph.constant_value(mass(graph, use));
+    if (left && !(*left > 0)) {
+      diagnostics.add(errors::no_mass(call.span, name));
       return std::nullopt;
     }
   }

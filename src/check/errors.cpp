@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "core/unit.hpp"
+#include <algorithm>
+#include <span>
+#include <string_view>
 
 namespace sysid::errors {
 namespace {
@@ -39,8 +41,58 @@ std::string choose(Names const& known, std::string const& what) {
   return fmt::format("there {} {}", known.size() == 1 ? "is" : "are", quoted(known));
 }
 
-std::string primed(ast::Reference const& reference) {
-  return reference.name.text + std::string(static_cast<std::size_t>(reference.primes), '\'');
+// "in [N/m]", "a pure number".
+std::string measure(Unit const& unit) {
+  if (unit.dimensionless()) return "a pure number";
+  return fmt::format("in [{}]", unit.text.empty() ? format_dimension(unit.dimension) : unit.text);
+}
+
+std::string primed(std::string const& name, int primes) { return name + std::string(static_cast<std::size_t>(primes), '\''); }
+std::string primed(ast::Reference const& reference) { return primed(reference.name.text, reference.primes); }
+
+// Words of other languages and of papers, with ours.
+struct Synonym {
+  std::string_view foreign, ours;
+};
+constexpr Synonym function_synonyms[] = {
+    {"absolute", "abs"},   {"fabs", "abs"}, {"arccos", "acos"}, {"arcsin", "asin"}, {"arctan", "atan"},
+    {"heaviside", "step"}, {"ln", "log"},   {"sgn", "sign"},    {"signum", "sign"}, {"squareroot", "sqrt"},
+};
+constexpr Synonym distribution_synonyms[] = {
+    {"gaussian", "normal"},        {"gauss", "normal"},         {"loguniform", "log_uniform"}, {"reciprocal", "log_uniform"},
+    {"lognormal", "log_normal"},   {"jeffreys", "log_uniform"}, {"invgamma", "inverse_gamma"}, {"halfnormal", "half_normal"},
+    {"halfcauchy", "half_cauchy"}, {"t", "student_t"},          {"cauchy", "student_t"},
+};
+constexpr Synonym argument_synonyms[] = {
+    {"sigma", "sd"},
+    {"std", "sd"},
+    {"stdev", "sd"},
+    {"stddev", "sd"},
+    {"var", "variance"},
+    {"mu", "mean"},
+    {"tau", "precision"},
+    {"min", "lower"},
+    {"low", "lower"},
+    {"max", "upper"},
+    {"high", "upper"},
+    {"nu", "degrees_of_freedom"},
+    {"df", "degrees_of_freedom"},
+};
+
+// Our word for a foreign one, if it is among the known; whatever the capitals.
+std::string synonym(std::span<Synonym const> table, std::string text, Names const& known) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (Synonym const& each : table)
+    if (each.foreign == text && std::find(known.begin(), known.end(), each.ours) != known.end())
+      return fmt::format("did you mean `{}`?", each.ours);
+  return {};
+}
+
+// A synonym, else a near name, else the fallback.
+std::string guess_or(std::span<Synonym const> table, std::string const& text, Names const& known, std::string fallback) {
+  std::string guess = synonym(table, text, known);
+  return guess.empty() ? guess_or(text, known, std::move(fallback)) : guess;
 }
 
 }  // namespace
@@ -57,8 +109,11 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
   if (is_quantity)
     return error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
                  fmt::format("multiplication is written with *: `{}*(...)`", name.text));
-  return error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
-               guess_or(name.text, known, "define it: `function f(a, b) = ...`; built-in ones: sysid list functions"));
+  if (name.text == "pow" || name.text == "power")
+    return error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`");
+  return error(
+      "E2003", name.span, fmt::format("there is no function `{}`", name.text),
+      guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in ones: sysid list functions"));
 }
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {
   std::string const wanted = least == most ? fmt::format("{}", least)
@@ -77,8 +132,14 @@ Diagnostic definition_cycle(Span span, Names const& loop) {
                "break the loop; a quantity with memory is a state with an equation");
 }
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what) {
-  return error("E2007", reference.span, fmt::format("`{}` is {}: it has no time derivative", primed(reference), what),
+  return error("E2007", reference.span, fmt::format("`{}` is {}: it has no time derivative", reference.name.text, what),
                fmt::format("primes belong to states and inputs; declare `state {}` if it moves", reference.name.text));
+}
+Diagnostic beyond_highest(ast::Reference const& reference, int order) {
+  return error(
+      "E2007", reference.span,
+      fmt::format("`{}` is beyond the highest derivative of `{}` in the equations", primed(reference), reference.name.text),
+      fmt::format("the equations determine `{}`: write its time derivative out", primed(reference.name.text, order)));
 }
 Diagnostic second_input_derivative(ast::Reference const& reference) {
   return error("E2008", reference.span, fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
@@ -103,18 +164,18 @@ Diagnostic unit_exponent(Span span) {
 Diagnostic list_here(Span span) {
   return error("E2013", span, "a list cannot stand in an expression", "parentheses with a comma make a list; remove the comma");
 }
+Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
+  return error("E2014", span, fmt::format("{} is {}, this is {}", what, measure(wanted), measure(given)),
+               wanted.dimensionless() ? "leave out the unit" : "correct the unit, or leave it out");
+}
 
 Diagnostic unknown_distribution(ast::Name const& name, Names const& known) {
-  Names more = known;
-  std::string help = guess_or(name.text, more, fmt::format("distributions: {}", quoted(known)));
-  if (name.text == "gaussian" || name.text == "Normal") help = "did you mean `normal`?";
-  if (name.text == "loguniform" || name.text == "reciprocal") help = "did you mean `log_uniform`?";
-  if (name.text == "lognormal") help = "did you mean `log_normal`?";
-  return error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text), std::move(help));
+  return error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
+               guess_or(distribution_synonyms, name.text, known, fmt::format("distributions: {}", quoted(known))));
 }
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
   return error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
-               guess_or(argument.text, known, fmt::format("its arguments are {}", quoted(known))));
+               guess_or(argument_synonyms, argument.text, known, fmt::format("its arguments are {}", quoted(known))));
 }
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other) {
   if (spelling == other)
@@ -159,6 +220,14 @@ Diagnostic bad_arguments(Span span, std::string const& distribution, std::string
   return error("E2112", span, fmt::format("these arguments of `{}` are impossible: {}", distribution, reason),
                "correct the numbers");
 }
+Diagnostic no_mass(Span span, std::string const& distribution) {
+  return error("E2115", span, fmt::format("`{}` has no mass between its bounds", distribution),
+               "widen `lower` and `upper`, or move the distribution");
+}
+Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit) {
+  return error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, here it should give [{}]", distribution, unit),
+               fmt::format("multiply: a share with this prior, times a quantity in [{}]", unit));
+}
 Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter) {
   std::string const& name = parameter.name.name.text;
   return error("E2113", parameter.name.span, fmt::format("parameter `{}` has neither a prior nor a value", name),
@@ -187,9 +256,10 @@ Diagnostic undetermined(Span declaration, std::string const& unknown) {
                "two equations say the same thing about the highest derivatives");
 }
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {
+  Names components;
+  for (int k = 0; k < order; ++k) components.push_back(primed(state, k));
   return error("E3006", reference.span, fmt::format("`{}` follows from the equations: it has no initial value", primed(reference)),
-               fmt::format("`{}` is of order {}: initial values are those of {}{}", state, order, fmt::format("`{}`", state),
-                           order > 1 ? fmt::format(" to its derivative {}", order - 1) : std::string()));
+               fmt::format("`{}` is of order {}: give {}", state, order, quoted(components)));
 }
 Diagnostic initial_missing(Span declaration, std::string const& component) {
   return error("E3007", declaration, fmt::format("`{}` has no initial value", component),
@@ -248,6 +318,9 @@ Diagnostic unknown_rule(ast::Name const& rule) {
   if (rule.text == "zoh") help = "did you mean `zero_order`?";
   return error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help));
 }
+Diagnostic not_a_time(Span span, Unit const& unit) {
+  return error("E4114", span, fmt::format("time cannot be {}", measure(unit)), "give a unit of time: [s], [ms], [min], [h]");
+}
 Diagnostic rate_not_positive(Span span) {
   return error("E4107", span, "the sampling rate or step must be a positive number",
                "for example `rate 1000 [Hz]` or `step 1 [ms]`");
@@ -282,6 +355,10 @@ Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names co
   return error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text),
                guess_or(name.text, known, choose(known, kind)));
 }
+Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::string const& kind, Names const& known) {
+  return error("E6001", name.span, fmt::format("{} has no {} `{}`", owner, kind, name.text),
+               guess_or(name.text, known, choose(known, kind)));
+}
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
   return error("E6002", span, fmt::format("`{}` has no option `{}`", task, option),
                guess_or(option, known, fmt::format("its options are {}", quoted(known))));
@@ -290,14 +367,16 @@ Diagnostic option_missing(ast::Task const& task, std::string const& option, std:
   return error("E6003", task.verb.span, fmt::format("`{}` needs the option `{}`", task.verb.text, option),
                fmt::format("add `{}` after `with`", example));
 }
-Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted) {
-  return error("E6004", span, fmt::format("`{}` must be {}", option, wanted), "");
+Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example) {
+  return error("E6004", span, fmt::format("`{}` must be {}", option, wanted), fmt::format("for example `{}`", example));
 }
-Diagnostic option_range(Span span, std::string const& option, double least, double most) {
-  return error("E6005", span,
-               most < 1e15 ? fmt::format("`{}` must lie between {} and {}", option, least, most)
-                           : fmt::format("`{}` must be at least {}", option, least),
-               "");
+Diagnostic option_range(Span span, std::string const& option, double given, double least, double most) {
+  std::string const range = most < 1e16     ? fmt::format("lie between {} and {}", least, most)
+                            : least > 1e-15 ? fmt::format("be at least {}", least)
+                            : least == 0    ? std::string("not be negative")
+                            : least > 0     ? std::string("be positive")
+                                            : std::string("be finite");
+  return error("E6005", span, fmt::format("`{}` must {}, here it is {}", option, range, given), "correct the number");
 }
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {
   return error("E6006", span, fmt::format("`{}` cannot be `{}`", option, given),
@@ -315,12 +394,27 @@ Diagnostic data_missing(ast::Task const& task, std::string const& preposition) {
   return error("E6009", task.verb.span, fmt::format("this {} names no data", task.verb.text),
                fmt::format("add `{} DATA` or `{} DATA.PART`", preposition, preposition));
 }
+Diagnostic data_unused(ast::Task const& task, Span data) {
+  return error("E6013", data, fmt::format("`{}` takes no data: it makes its own inputs", task.verb.text),
+               "leave the data out, or `predict` a fit on them");
+}
 Diagnostic not_a_fit(ast::Name const& name) {
   return error("E6010", name.span, fmt::format("`{}` is not a fit", name.text), "predict needs the name of a fit task");
 }
 Diagnostic value_missing(Span span, Names const& parameters) {
   return error("E6011", span, fmt::format("simulating needs a value for {}", quoted(parameters)),
                fmt::format("write `values({} = ..., ...)`", parameters.front()));
+}
+Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate) {
+  return error("E6101", span,
+               fmt::format("this multisine reaches {:.6g} Hz, half the sampling rate is {:.6g} Hz", highest, half_rate),
+               "lower `highest`, or raise `rate`");
+}
+Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution) {
+  return error("E6101", span,
+               fmt::format("no harmonic of the record, a multiple of {:.6g} Hz, lies between {:.6g} and {:.6g} Hz", resolution,
+                           lowest, highest),
+               "widen the band from `lowest` to `highest`, or take more samples");
 }
 Diagnostic task_too_late(ast::Name const& name) {
   return error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text), "tasks run in order: move it up");

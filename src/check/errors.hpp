@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/diagnostic.hpp"
+#include "core/unit.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid::errors {
@@ -19,12 +20,14 @@ Diagnostic argument_count(ast::Name const& function, std::size_t given, std::siz
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function);
 Diagnostic definition_cycle(Span span, Names const& loop);
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what);
+Diagnostic beyond_highest(ast::Reference const& reference, int order);
 Diagnostic second_input_derivative(ast::Reference const& reference);
 Diagnostic not_a_number(Span span, std::string const& what);
 Diagnostic constant_needed(Span span, std::string const& what);
 Diagnostic unknown_unit(ast::Name const& name);
 Diagnostic unit_exponent(Span span);
 Diagnostic list_here(Span span);
+Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted);
 
 // distributions (E21)
 Diagnostic unknown_distribution(ast::Name const& name, Names const& known);
@@ -39,6 +42,8 @@ Diagnostic cannot_truncate(Span span, std::string const& distribution);
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
 Diagnostic prior_cycle(Span span, Names const& loop);
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason);
+Diagnostic no_mass(Span span, std::string const& distribution);
+Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit);
 Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter);
 
 // structure of a model (E30)
@@ -64,6 +69,7 @@ Diagnostic time_and_rate(Span second, Span first);
 Diagnostic stated_twice(Span second, Span first, std::string const& what);
 Diagnostic rule_missing(ast::DataInput const& input);
 Diagnostic unknown_rule(ast::Name const& rule);
+Diagnostic not_a_time(Span span, Unit const& unit);
 Diagnostic rate_not_positive(Span span);
 Diagnostic bad_rows(Span span);
 Diagnostic input_not_bound(Span span, std::string const& input, std::string const& model, std::string const& data);
@@ -74,16 +80,21 @@ Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& 
 
 // tasks (E60)
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
+/// A part of something named: "data `bench` has no part `trian`".
+Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::string const& kind, Names const& known);
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
-Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted);
-Diagnostic option_range(Span span, std::string const& option, double least, double most);
+Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example);
+Diagnostic option_range(Span span, std::string const& option, double given, double least, double most);
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices);
 Diagnostic backend_missing(ast::Task const& task, Names const& known);
 Diagnostic unknown_backend(ast::Name const& name, Names const& known);
 Diagnostic data_missing(ast::Task const& task, std::string const& preposition);
+Diagnostic data_unused(ast::Task const& task, Span data);
 Diagnostic not_a_fit(ast::Name const& name);
 Diagnostic value_missing(Span span, Names const& parameters);
+Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate);
+Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution);
 Diagnostic task_too_late(ast::Name const& name);
 
 }  // namespace sysid::errors

@@ -2,10 +2,14 @@
 // channels and derived quantities, all in the first-order system's leaves.
 #include "check/model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 
+#include "check/determined.hpp"
 #include "check/distributions.hpp"
 #include "check/errors.hpp"
 #include "check/scope.hpp"
@@ -15,27 +19,28 @@
 namespace sysid {
 namespace {
 
-// Calls visit(reference) for every name in an expression.
+// Calls visit(reference) for every name in an expression and visit(call) for every call.
 template <class Visit>
-void each_reference(ast::Expression const& tree, Visit const& visit) {
+void each_use(ast::Expression const& tree, Visit const& visit) {
   std::visit(
       [&](auto const& node) {
         using Node = std::decay_t<decltype(node)>;
         if constexpr (std::is_same_v<Node, ast::Reference>) {
           visit(node);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Unary>>) {
-          each_reference(*node->operand, visit);
+          each_use(*node->operand, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Binary>>) {
-          each_reference(*node->left, visit);
-          each_reference(*node->right, visit);
+          each_use(*node->left, visit);
+          each_use(*node->right, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Call>>) {
-          for (auto const& argument : node->arguments) each_reference(argument.value, visit);
+          visit(*node);
+          for (auto const& argument : node->arguments) each_use(argument.value, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Conditional>>) {
-          each_reference(*node->condition, visit);
-          each_reference(*node->then, visit);
-          each_reference(*node->otherwise, visit);
+          each_use(*node->condition, visit);
+          each_use(*node->then, visit);
+          each_use(*node->otherwise, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::List>>) {
-          for (auto const& item : node->items) each_reference(item, visit);
+          for (auto const& item : node->items) each_use(item, visit);
         }
       },
       tree.node);
@@ -96,10 +101,14 @@ class ModelChecker {
     ast::TimeDeclaration const* first_time = nullptr;
     for (ast::ModelStatement const& statement : tree_.statements) {
       if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement)) {
-        if (first_time != nullptr) diagnostics_.add(errors::time_twice(time->span, first_time->span));
-        if (first_time == nullptr)
-          scope_.declare(time->time.name, {TimeSymbol{}, check_unit(time->time.unit, diagnostics_), time->time.name.span});
-        first_time = first_time == nullptr ? time : first_time;
+        if (first_time != nullptr) {
+          diagnostics_.add(errors::time_twice(time->span, first_time->span));
+          continue;
+        }
+        first_time = time;
+        auto const unit = check_unit(time->time.unit, diagnostics_);
+        check_time_unit(unit, time->time.span, diagnostics_);
+        scope_.declare(time->time.name, {TimeSymbol{}, unit, time->time.name.span});
       } else if (auto const* inputs = std::get_if<ast::InputDeclaration>(&statement)) {
         for (ast::Declared const& input : inputs->names) {
           auto const unit = check_unit(input.unit, diagnostics_);
@@ -141,15 +150,38 @@ class ModelChecker {
     return names;
   }
 
-  // The order of a state is the most primes it carries in an equation or in a definition an equation may use.
+  // The names an equation uses, directly or through definitions and functions. Visits each definition and function once.
+  class Uses {
+   public:
+    Uses(Scope const& scope, std::function<void(ast::Reference const&)> visit) : scope_(scope), visit_(std::move(visit)) {}
+    void of(ast::Equation const& equation) {
+      of(equation.left);
+      of(equation.right);
+    }
+    void of(ast::Expression const& tree) { each_use(tree, *this); }
+    void operator()(ast::Reference const& reference) const {
+      visit_(reference);
+      Symbol const* symbol = scope_.find(reference.name.text);
+      auto const* definition = symbol == nullptr ? nullptr : std::get_if<DefinitionSymbol>(&symbol->what);
+      if (definition != nullptr && seen_.insert(definition->definition).second) each_use(definition->definition->value, *this);
+    }
+    void operator()(ast::Call const& call) const {
+      ast::FunctionDefinition const* function = scope_.find_function_definition(call.function.text);
+      if (function != nullptr && seen_.insert(function).second) each_use(function->value, *this);
+    }
+
+   private:
+    Scope const& scope_;
+    std::function<void(ast::Reference const&)> visit_;
+    mutable std::set<void const*> seen_;
+  };
+
+  // The order of a state is the most primes it carries in an equation or in what an equation uses.
   void find_orders() {
-    auto const raise = [&](ast::Reference const& reference) {
+    Uses uses(scope_, [&](ast::Reference const& reference) {
       if (StateInfo* state = find_state(reference.name.text)) state->order = std::max(state->order, reference.primes);
-    };
-    each<ast::Equation>([&](ast::Equation const& equation) {
-      each_reference(equation.left, raise);
-      each_reference(equation.right, raise);
     });
+    each<ast::Equation>([&](ast::Equation const& equation) { uses.of(equation); });
   }
 
   void lay_out_states() {
@@ -185,8 +217,10 @@ class ModelChecker {
       residuals.push_back(graph.subtract(sides[1].node, sides[0].node));
       graph.set_span(residuals.back(), equation.span);
     });
-    // Structure is judged even where an expression failed, as long as every equation was understood.
-    if (!good) return;
+    if (!good) {
+      report_unmentioned_states();
+      return;
+    }
     good = enough_equations(trees, residuals);
     if (!good || failed()) return;
     auto const solved = solve_for_unknowns(graph, residuals);
@@ -198,6 +232,11 @@ class ModelChecker {
                            : errors::undetermined(info.declaration->name.span, unknown));
       return;
     }
+    if (auto const open = undetermined_unknown(graph, residuals)) {
+      auto const& [name, info] = states_[static_cast<std::size_t>(*open)];
+      diagnostics_.add(errors::undetermined(info.declaration->name.span, primed_name(name, info.order)));
+      return;
+    }
     highest_ = std::get<std::vector<NodeId>>(solved);
     for (std::size_t i = 0; i < states_.size(); ++i) {
       StateInfo const& info = states_[i].second;
@@ -205,6 +244,36 @@ class ModelChecker {
         model_.states[static_cast<std::size_t>(info.first + k)].derivative = graph.leaf(LeafKind::state, info.first + k + 1);
       model_.states[static_cast<std::size_t>(info.first + info.order - 1)].derivative = highest_[i];
     }
+  }
+
+  bool mentioned(std::string const& state) {
+    bool found = false;
+    Uses uses(scope_, [&](ast::Reference const& reference) { found = found || reference.name.text == state; });
+    each<ast::Equation>([&](ast::Equation const& equation) { uses.of(equation); });
+    return found;
+  }
+
+  // The most primes of a state in `initial`; -1 without any.
+  int initial_primes(std::string const& state) {
+    int most = -1;
+    each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
+      for (ast::InitialValue const& initial : declaration.values)
+        if (initial.state.name.text == state) most = std::max(most, initial.state.primes);
+    });
+    return most;
+  }
+
+  // Names the derivative to write an equation for: the initial values tell the order that the user has in mind.
+  Diagnostic without_equation(std::string const& name, StateInfo const& info) {
+    int const order = info.order > 0 ? info.order : initial_primes(name) + 1;
+    std::string const highest = order > 0 ? fmt::format("`{}`", primed_name(name, order)) : fmt::format("`{0}'` or `{0}''`", name);
+    return errors::state_without_equation(info.declaration->name.span, name, highest);
+  }
+
+  // Where an equation could not be understood, only a state that stands in none is surely left without one.
+  void report_unmentioned_states() {
+    for (auto const& [name, info] : states_)
+      if (!mentioned(name)) diagnostics_.add(without_equation(name, info));
   }
 
   // As many equations as states, each state with one that contains its highest derivative: said by name where it is not so.
@@ -241,18 +310,8 @@ class ModelChecker {
     for (std::size_t j = 0; j < n; ++j) {
       if (equation_of[j] >= 0) continue;
       auto const& [name, info] = states_[j];
-      bool const mentioned = std::any_of(trees.begin(), trees.end(), [&, &state_name = name](ast::Equation const* equation) {
-        bool found = false;
-        auto const look = [&](ast::Reference const& reference) { found = found || reference.name.text == state_name; };
-        each_reference(equation->left, look);
-        each_reference(equation->right, look);
-        return found;
-      });
-      diagnostics_.add(mentioned && info.order == 0
-                           ? errors::algebraic_state(info.declaration->name.span, name)
-                           : errors::state_without_equation(info.declaration->name.span, name,
-                                                            info.order == 0 ? "`" + name + "'` or `" + name + "''`"
-                                                                            : "`" + primed_name(name, info.order) + "`"));
+      bool const algebraic = mentioned(name) && info.order == 0 && initial_primes(name) < 1;
+      diagnostics_.add(algebraic ? errors::algebraic_state(info.declaration->name.span, name) : without_equation(name, info));
       good = false;
     }
     if (good)

@@ -49,12 +49,25 @@ Symbol* Scope::find(std::string const& name) {
   return place == symbols_.end() ? nullptr : &place->second;
 }
 
+ast::FunctionDefinition const* Scope::find_function_definition(std::string const& name) const {
+  auto const place = functions_.find(name);
+  return place == functions_.end() ? nullptr : place->second;
+}
+
 std::vector<std::string> Scope::names() const {
   std::vector<std::string> names;
   for (auto const& [name, symbol] : symbols_) names.push_back(name);
   if (arguments_)
     for (auto const& [name, value] : *arguments_) names.push_back(name);
   return names;
+}
+
+std::optional<Unit> Scope::unit_of(ast::Definition const& definition) const {
+  Symbol const* symbol = find(definition.name.name.text);
+  auto const* known = symbol == nullptr ? nullptr : std::get_if<DefinitionSymbol>(&symbol->what);
+  if (known != nullptr && known->definition == &definition) return symbol->unit;
+  Diagnostics said_when_declared;
+  return check_unit(definition.name.unit, said_when_declared);
 }
 
 std::optional<Typed> Scope::definition(ast::Definition const& definition) {
@@ -68,7 +81,7 @@ std::optional<Typed> Scope::definition(ast::Definition const& definition) {
   }
   resolving_.push_back(name);
   auto const* outer = std::exchange(arguments_, nullptr);
-  auto const unit = check_unit(definition.name.unit, diagnostics_);
+  std::optional<Unit> const unit = unit_of(definition);
   std::optional<Typed> value = expression(definition.value);
   arguments_ = outer;
   resolving_.pop_back();
@@ -113,8 +126,9 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
   };
   if (auto const* state = std::get_if<StateSymbol>(&symbol->what)) {
     // The order of a state is the most primes its name carries anywhere in an equation, so `observe` may not ask for more.
+    if (state->order == 0 && reference.primes > 0) return std::nullopt;  // a state without an equation: said there
     if (reference.primes > state->order) {
-      diagnostics_.add(errors::primes_on(reference, "beyond the highest derivative in the equations"));
+      diagnostics_.add(errors::beyond_highest(reference, state->order));
       return std::nullopt;
     }
     NodeId const node = reference.primes == state->order ? graph_.leaf(LeafKind::unknown, state->unknown)

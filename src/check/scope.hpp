@@ -50,6 +50,8 @@ class Scope {
   bool define_function(ast::FunctionDefinition const& function);
   Symbol const* find(std::string const& name) const;
   Symbol* find(std::string const& name);
+  /// A function of the user's; null for built-in ones.
+  ast::FunctionDefinition const* find_function_definition(std::string const& name) const;
 
   /// Nothing when a diagnostic was added.
   std::optional<Typed> expression(ast::Expression const& expression);
@@ -63,6 +65,7 @@ class Scope {
  private:
   Scope(Scope const& other, Diagnostics& diagnostics)
       : graph_(other.graph_), diagnostics_(diagnostics), symbols_(other.symbols_), functions_(other.functions_) {}
+  std::optional<Unit> unit_of(ast::Definition const& definition) const;
   std::optional<Typed> reference(ast::Reference const& reference);
   std::optional<Typed> binary(ast::Binary const& binary);
   std::optional<Typed> function_call(ast::Call const& call);

@@ -1,9 +1,10 @@
 // simulate, fit and predict: their options by name, each with its kind, range and unit.
 #include "check/tasks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 
 #include "check/data.hpp"
@@ -12,6 +13,9 @@
 
 namespace sysid {
 namespace {
+
+constexpr int default_start_rows = 50;
+constexpr char const* the_backend = "the back end";
 
 Unit unit_of(std::string_view atom) { return atom.empty() ? Unit{} : unit_atom(atom).value(); }
 
@@ -25,6 +29,12 @@ std::string key_of(ast::Option const& option) {
 ast::Call const* as_call(ast::Expression const& expression) {
   auto const* call = std::get_if<ast::Box<ast::Call>>(&expression.node);
   return call == nullptr ? nullptr : &**call;
+}
+
+// Where the function's or quantity's name stands.
+Span head_span(ast::Expression const& expression) {
+  auto const* call = as_call(expression);
+  return call == nullptr ? expression.span : call->function.span;
 }
 
 std::optional<std::string> as_word(ast::Expression const& expression) {
@@ -93,7 +103,7 @@ class TaskChecker {
       if (place == block.parts.end()) {
         std::vector<std::string> known;
         for (DataPart const& each : block.parts) known.push_back(each.name);
-        diagnostics_.add(errors::unknown_item(*tree_.data->part, "part of data `" + block.name + "`", known));
+        diagnostics_.add(errors::unknown_member(*tree_.data->part, "data `" + block.name + "`", "part", known));
         return;
       }
       part = static_cast<int>(place - block.parts.begin());
@@ -103,21 +113,27 @@ class TaskChecker {
 
   // --- numbers
   // --------------------------------------------------------------------------------------------------------------------
-  std::optional<double> number(ast::Expression const& tree, std::string const& name, Unit const& unit, double least, double most,
-                               bool whole = false) {
+  // unit: absent where nothing is declared, and anything goes.
+  std::optional<double> number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit, double least,
+                               double most, bool whole = false) {
     auto const value = scope_.expression(tree);
     if (!value) return std::nullopt;
+    if (unit && value->kind == Typed::Kind::known && value->unit.dimension != unit->dimension) {
+      diagnostics_.add(errors::number_of_other_kind(tree.span, "`" + name + "`", value->unit, *unit));
+      return std::nullopt;
+    }
     auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
     if (!constant) {
       diagnostics_.add(errors::constant_needed(tree.span, "`" + name + "`"));
       return std::nullopt;
     }
     if (whole && *constant != std::floor(*constant)) {
-      diagnostics_.add(errors::option_kind(tree.span, name, "a whole number"));
+      diagnostics_.add(
+          errors::option_kind(tree.span, name, "a whole number", fmt::format("{} = {:.0f}", name, std::round(*constant))));
       return std::nullopt;
     }
     if (!(*constant >= least && *constant <= most)) {
-      diagnostics_.add(errors::option_range(tree.span, name, least, most));
+      diagnostics_.add(errors::option_range(tree.span, name, *constant, least, most));
       return std::nullopt;
     }
     return constant;
@@ -131,10 +147,10 @@ class TaskChecker {
   }
 
   void start(ast::Option const& option, StartRule& rule) {
-    std::vector<std::string> const choices = {"record", "rest", "estimated(rows = 50)"};
+    std::vector<std::string> const choices = {"record", "rest", "estimated"};
     if (ast::Call const* call = as_call(option.value)) {
       if (call->function.text == "estimated") {
-        rule = {StartRule::Kind::estimated, 50};
+        rule = {StartRule::Kind::estimated, default_start_rows};
         for (ast::Argument const& argument : call->arguments) {
           if (argument.name && argument.name->text != "rows") {
             diagnostics_.add(errors::unknown_argument(*argument.name, "estimated", {"rows"}));
@@ -152,6 +168,8 @@ class TaskChecker {
       rule = {StartRule::Kind::record, 0};
     } else if (word == "rest") {
       rule = {StartRule::Kind::rest, 0};
+    } else if (word == "estimated") {
+      rule = {StartRule::Kind::estimated, default_start_rows};
     } else {
       diagnostics_.add(errors::option_choice(option.value.span, "start", word.value_or("this"), choices));
     }
@@ -159,12 +177,13 @@ class TaskChecker {
 
   void unknown(ast::Option const& option, std::vector<std::string> const& known) {
     std::string const key = key_of(option);
-    diagnostics_.add(errors::unknown_option(option.key ? option.key->span : option.value.span, key.empty() ? "this" : key,
+    diagnostics_.add(errors::unknown_option(option.key ? option.key->span : head_span(option.value), key.empty() ? "this" : key,
                                             tree_.verb.text, known));
   }
   bool fresh(ast::Option const& option, std::string const& key) {
     auto const [place, is_fresh] = seen_.emplace(option.input ? "input " + key : key, option.span);
-    if (!is_fresh) diagnostics_.add(errors::stated_twice(option.span, place->second, "`" + place->first + "`"));
+    std::string const what = key == the_backend ? key : "`" + place->first + "`";
+    if (!is_fresh) diagnostics_.add(errors::stated_twice(option.span, place->second, what));
     return is_fresh;
   }
 
@@ -233,7 +252,7 @@ class TaskChecker {
       std::string const key = key_of(option);
       auto const backend = std::find_if(backends_.begin(), backends_.end(), [&](auto const& each) { return each.name == key; });
       if (!option.input && !option.key && backend != backends_.end()) {
-        if (!fresh(option, "the back end")) continue;
+        if (!fresh(option, the_backend)) continue;
         task.backend = key;
         task.settings = Settings(backend->settings);
         if (ast::Call const* call = as_call(option.value)) settings(*call, backend->settings, task.settings);
@@ -243,8 +262,8 @@ class TaskChecker {
         if (fresh(option, key) && as_word(option.value) != "automatic") whole(option, key, 1, 10000, task.substeps);
       } else if (!option.input && option.key && key == "seed") {
         if (fresh(option, key)) seed(option, task.seed);
-      } else if (!option.input && !option.key && as_call(option.value) != nullptr) {
-        diagnostics_.add(errors::unknown_backend(as_call(option.value)->function, names));
+      } else if (!option.input && !option.key && !key.empty()) {
+        diagnostics_.add(errors::unknown_backend({{head_span(option.value)}, key}, names));
         task.backend = key;  // said once is enough
       } else {
         unknown(option, {"start", "substeps", "seed"});
@@ -294,7 +313,7 @@ class TaskChecker {
                                        : call != nullptr && call->arguments.size() == 1 ? &call->arguments[0].value
                                                                                         : nullptr;
         if (count == nullptr)
-          diagnostics_.add(errors::option_kind(option.span, "draws", "a number of posterior draws: `draws(200)`"));
+          diagnostics_.add(errors::option_kind(option.span, "draws", "a number of posterior draws", "draws(200)"));
         else if (auto const value = number(*count, "draws", Unit{}, 1, 1e7, true))
           task.draws = static_cast<int>(*value);
       } else if (option.key && key == "redraw") {
@@ -347,8 +366,7 @@ class TaskChecker {
     std::vector<std::string> names;
     for (GeneratorRow const& row : generators()) names.emplace_back(row.name);
     if (call == nullptr) {
-      diagnostics_.add(
-          errors::option_kind(option.value.span, "input " + input.name, "a generated signal such as `gaussian(sd = 10)`"));
+      diagnostics_.add(errors::option_kind(option.value.span, "input " + input.name, "a generated signal", "gaussian(sd = 10)"));
       return std::nullopt;
     }
     auto const row =
@@ -358,6 +376,7 @@ class TaskChecker {
       return std::nullopt;
     }
     InputGenerator result{row->kind, {}, row->rule};
+    std::map<std::string, Span> given;  // rightly or not
     std::vector<std::string> known;
     for (GeneratorArgument const& argument : row->arguments) known.emplace_back(argument.name);
     known.emplace_back("hold");
@@ -378,13 +397,17 @@ class TaskChecker {
       } else if (place == row->arguments.end()) {
         diagnostics_.add(errors::unknown_argument(*argument.name, call->function.text, known));
       } else {
-        Unit const unit = place->unit == "input" ? input.unit.value_or(Unit{}) : unit_of(place->unit);
+        if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
+          diagnostics_.add(errors::stated_twice(argument.span, first->second, "`" + name + "`"));
+          continue;
+        }
+        std::optional<Unit> const unit = place->unit == "input" ? input.unit : unit_of(place->unit);
         double const least = name == "mean" || name == "value" || name == "phase" ? -1e300 : 0;
         if (auto const value = number(argument.value, name, unit, least, 1e300)) result.arguments[name] = *value;
       }
     }
     for (GeneratorArgument const& argument : row->arguments) {
-      if (result.arguments.contains(std::string(argument.name))) continue;
+      if (given.contains(std::string(argument.name))) continue;
       if (std::isnan(argument.fallback))
         diagnostics_.add(errors::argument_missing(*call, {std::string(argument.name)}));
       else
@@ -417,6 +440,7 @@ class TaskChecker {
 
   SimulateTask simulate() {
     SimulateTask task;
+    if (tree_.data) diagnostics_.add(errors::data_unused(tree_, tree_.data->span));
     auto const found = item(tree_.subject, names_.models, "model");
     if (!found) return task;
     task.model = *found;
@@ -424,6 +448,7 @@ class TaskChecker {
     task.values.resize(model.parameters.size());
     task.inputs.resize(model.inputs.size());
     std::vector<bool> given(model.inputs.size(), false);
+    std::vector<Span> places(model.inputs.size());
     std::vector<std::string> const options = {"values", "input", "noise", "samples", "rate", "step", "substeps", "seed", "file"};
     for (ast::Option const& option : tree_.options) {
       std::string const key = key_of(option);
@@ -434,11 +459,12 @@ class TaskChecker {
         if (place == model.inputs.end()) {
           std::vector<std::string> known;
           for (Quantity const& input : model.inputs) known.push_back(input.name);
-          diagnostics_.add(errors::unknown_item(*option.key, "input of model `" + model.name + "`", known));
+          diagnostics_.add(errors::unknown_member(*option.key, "model `" + model.name + "`", "input", known));
           continue;
         }
         auto const index = static_cast<std::size_t>(place - model.inputs.begin());
         given[index] = true;
+        places[index] = option.value.span;
         if (auto generated = generator(option, *place)) task.inputs[index] = std::move(*generated);
       } else if (key == "values" && as_call(option.value) != nullptr) {
         values(*as_call(option.value), model, task);
@@ -461,7 +487,8 @@ class TaskChecker {
             text != nullptr && text->value.find('/') == std::string::npos)
           task.file = text->value;
         else
-          diagnostics_.add(errors::option_kind(option.value.span, key, "a file name in quotes, without folders"));
+          diagnostics_.add(
+              errors::option_kind(option.value.span, key, "a file name in quotes, without folders", "file = \"truth.csv\""));
       } else {
         unknown(option, options);
       }
@@ -476,11 +503,29 @@ class TaskChecker {
                                                 "input " + model.inputs[i].name + " = gaussian(sd = 1)"));
     if (auto const missing = values_needed(model, task); !missing.empty())
       diagnostics_.add(errors::value_missing(tree_.verb.span, missing));
+    if (task.samples > 0 && task.step > 0)
+      for (std::size_t i = 0; i < given.size(); ++i)
+        if (given[i]) check_band(task.inputs[i], task, places[i]);
     return task;
+  }
+
+  // A multisine has a harmonic k/(samples*step) in its band, and none at or above half the rate.
+  void check_band(InputGenerator const& generator, SimulateTask const& task, Span place) {
+    if (generator.kind != InputGenerator::Kind::multisine) return;
+    double const lowest = generator.arguments.at("lowest"), highest = generator.arguments.at("highest");
+    double const resolution = 1 / (task.samples * task.step);
+    if (highest >= 0.5 / task.step) {
+      diagnostics_.add(errors::multisine_beyond_half_rate(place, highest, 0.5 / task.step));
+      return;
+    }
+    double const last = std::floor(highest / resolution);
+    if (last < 1 || last * resolution < lowest)
+      diagnostics_.add(errors::multisine_without_harmonic(place, lowest, highest, resolution));
   }
 
   void values(ast::Call const& call, Model const& model, SimulateTask& task) {
     std::vector<std::string> known;
+    std::map<std::string, Span> given;
     for (Parameter const& parameter : model.parameters) known.push_back(parameter.name);
     for (ast::Argument const& argument : call.arguments) {
       if (!argument.name) {
@@ -489,11 +534,15 @@ class TaskChecker {
       }
       auto const place = std::find(known.begin(), known.end(), argument.name->text);
       if (place == known.end()) {
-        diagnostics_.add(errors::unknown_item(*argument.name, "parameter of model `" + model.name + "`", known));
+        diagnostics_.add(errors::unknown_member(*argument.name, "model `" + model.name + "`", "parameter", known));
+        continue;
+      }
+      if (auto const [first, is_fresh] = given.emplace(argument.name->text, argument.span); !is_fresh) {
+        diagnostics_.add(errors::stated_twice(argument.span, first->second, "`" + argument.name->text + "`"));
         continue;
       }
       auto const index = static_cast<std::size_t>(place - known.begin());
-      Unit const unit = model.parameters[index].unit.value_or(Unit{});
+      std::optional<Unit> const& unit = model.parameters[index].unit;
       if (auto const value = number(argument.value, argument.name->text, unit, -1e300, 1e300)) task.values[index] = *value;
     }
   }

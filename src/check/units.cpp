@@ -78,4 +78,8 @@ std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& express
   return expression ? check_unit(*expression, diagnostics) : std::nullopt;
 }
 
+void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics) {
+  if (unit && unit->dimension != unit_atom("s").value().dimension) diagnostics.add(errors::not_a_time(span, *unit));
+}
+
 }  // namespace sysid

@@ -12,5 +12,7 @@ namespace sysid {
 /// non-constant exponent.
 std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics);
 std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics);
+/// A declared unit of time measures time.
+void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics);
 
 }  // namespace sysid

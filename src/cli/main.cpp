@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "app/experiments.hpp"
+#include "app/explain.hpp"
 #include "app/pipeline.hpp"
 #include "cli/lists.hpp"
 #include "core/files.hpp"
@@ -50,6 +52,11 @@ int guarded(CommandLine const& line, Source const& source, Verb const& verb) {
     diagnostics.add(error.diagnostic());
     show(diagnostics, source, line);
     return code(ExitCode::user_error);
+  } catch (UnreadableData const& error) {
+    Diagnostics diagnostics;
+    diagnostics.add(error.diagnostic());
+    show(diagnostics, source, line);
+    return code(ExitCode::io);
   } catch (IoError const& error) {
     std::cerr << "sysid: " << error.what() << '\n';
     return code(ExitCode::io);
@@ -114,6 +121,20 @@ int format(CommandLine const& line) {
   });
 }
 
+int explain(CommandLine const& line) {
+  if (line.code.empty()) {
+    std::cout << list_codes();
+    return code(ExitCode::success);
+  }
+  auto const text = sysid::explain(line.code);
+  if (!text) {
+    std::cerr << fmt::format("sysid: there is no message {}; `sysid explain` lists all\n", line.code);
+    return code(ExitCode::usage);
+  }
+  std::cout << *text;
+  return code(ExitCode::success);
+}
+
 void add_run_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("file", line.file, "the .sysid file")->required();
   verb.add_option("-o,--output", line.run.output, "folder for results (default: results)");
@@ -131,6 +152,7 @@ void add_run_options(CLI::App& verb, CommandLine& line) {
       ->check(CLI::IsMember({"ast", "model", "program"}));
   verb.add_option("--checkpoint-interval", line.run.checkpoint_interval, "seconds between checkpoints")->check(CLI::PositiveNumber);
   verb.add_option("--interrupt-after", line.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
+  verb.add_flag("!--no-figures", line.run.figures, "leave figures as scripts");
   verb.add_flag("-q,--quiet", line.quiet, "no progress, no notices");
 }
 
@@ -170,6 +192,9 @@ int main(int argument_count, char** arguments) {
       ->required()
       ->check(CLI::IsMember({"functions", "distributions", "backends"}));
   listing->callback([&] { std::cout << list(line.topic); });
+  CLI::App* explaining = app.add_subcommand("explain", "what an error code means, with an example and its mended twin");
+  explaining->add_option("code", line.code, "a code such as E2001; none: list all");
+  explaining->callback([&] { exit = explain(line); });
   CLI::App* version = app.add_subcommand("version", "print the version and the instruction set in use");
   version->callback([] { std::cout << fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())); });
   try {

@@ -1,0 +1,138 @@
+// The pages of docs/errors: every code has a section, its bad example gives the code and its mended twin does not.
+#include "app/explain.hpp"
+
+#include <doctest/doctest.h>
+
+#include <regex>
+#include <set>
+
+#include "answer.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+// Files of the frame, then those of the example, which may replace them.
+void write_files(ErrorSection const& section, std::vector<Example> const& examples, std::filesystem::path const& folder) {
+  for (std::vector<Example> const* blocks : {&section.frame, &examples})
+    for (Example const& block : *blocks)
+      if (block.kind.starts_with("csv ")) write(folder / block.kind.substr(4), block.text);
+}
+
+Answer answer_to(ErrorSection const& section, std::vector<Example> const& examples, Depth depth) {
+  TemporaryFolder const folder, output;
+  write_files(section, examples, folder.path);
+  WorkingFolder const here(folder.path);
+  return answer("example.sysid", section.complete(examples), depth, output.path);
+}
+
+std::set<std::string> codes_in_sources() {
+  std::set<std::string> codes;
+  std::regex const code("\"(E[1-6][0-9]{3})\"");
+  for (char const* folder : {"grammar", "src"})
+    for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
+      if (entry.path().extension() != ".cpp") continue;
+      std::string const text = content(entry.path());
+      for (std::sregex_iterator match(text.begin(), text.end(), code), end; match != end; ++match) codes.insert((*match)[1]);
+    }
+  return codes;
+}
+
+}  // namespace
+
+TEST_CASE("every code of the sources has one section, and every section a code of the sources") {
+  std::set<std::string> const codes = codes_in_sources();
+  std::set<std::string> explained;
+  for (ErrorSection const& section : error_sections()) {
+    CAPTURE(section.code);
+    CHECK(explained.insert(section.code).second);
+    CHECK(codes.contains(section.code));
+    CHECK_FALSE(section.title.empty());
+  }
+  for (std::string const& code : codes) CHECK_MESSAGE(explained.contains(code), code);
+}
+
+TEST_CASE("the bad example of a section gives its code, once and alone, and the mended twin gives nothing") {
+  // What a text cannot show, or not in a few lines: said in words on the page.
+  std::set<std::string> const in_words = {"E1122", "E1123", "E2109", "E2114", "E4003", "E6201", "E6202", "E6206", "E6207", "E6208"};
+  for (ErrorSection const& section : error_sections()) {
+    CAPTURE(section.code);
+    CHECK(section.bad.empty() == in_words.contains(section.code));
+    CHECK(section.mended.empty() == section.bad.empty());
+    if (section.bad.empty() || section.mended.empty()) continue;
+    Depth depth = Depth::front;
+    Answer bad = answer_to(section, section.bad, depth);
+    for (Depth const deeper : {Depth::data, Depth::run})
+      if (bad.messages.empty()) bad = answer_to(section, section.bad, depth = deeper);
+    CHECK_MESSAGE(count(bad.messages, "error[") == 1, bad.messages);
+    CHECK_MESSAGE(count(bad.messages, "error[" + section.code + "]") == 1, bad.messages);
+    Answer const mended = answer_to(section, section.mended, depth);
+    CHECK_MESSAGE(mended.messages.empty(), mended.messages);
+    CHECK(mended.exit <= ExitCode::doubtful);
+  }
+}
+
+TEST_CASE("a section is shown with its examples and the file they complete") {
+  std::string const page =
+      "# E2: names\n"
+      "\n"
+      "```sysid inside\n"
+      "model m {\n"
+      "  state y\n"
+      "}\n"
+      "```\n"
+      "\n"
+      "## E2001: unknown\n"
+      "\n"
+      "What it means.\n"
+      "\n"
+      "Bad:\n"
+      "\n"
+      "```sysid\n"
+      "let a = b\n"
+      "```\n"
+      "\n"
+      "Mended:\n"
+      "\n"
+      "```sysid\n"
+      "let a = y\n"
+      "```\n"
+      "\n"
+      "# Another frame\n"
+      "\n"
+      "```sysid above\n"
+      "model n { }\n"
+      "```\n"
+      "\n"
+      "```csv n.csv\n"
+      "t\n"
+      "```\n"
+      "\n"
+      "## E2002: twice\n"
+      "\n"
+      "In words.\n";
+  auto const sections = read_error_page(page);
+  REQUIRE(sections.size() == 2);
+  CHECK(sections[0].code == "E2001");
+  CHECK(sections[0].title == "unknown");
+  CHECK(sections[0].complete(sections[0].bad) == "model m {\n  state y\n  let a = b\n}\n");
+  CHECK(sections[0].complete(sections[0].mended) == "model m {\n  state y\n  let a = y\n}\n");
+  CHECK(sections[0].complete({{"sysid file", "model o { }\n"}}) == "model o { }\n");
+  CHECK(sections[1].bad.empty());
+  REQUIRE(sections[1].frame.size() == 2);
+  CHECK(sections[1].complete({{"sysid", "fit n\n"}}) == "model n { }\nfit n\n");
+}
+
+TEST_CASE("explain finds a code however it is written") {
+  auto const text = explain("E2001");
+  REQUIRE(text.has_value());
+  CHECK(text->starts_with("E2001: a name that is not declared\n"));
+  CHECK(text->find("\nMended:\n\n    derive fn [Hz] = sqrt(k/m) / (2*pi)\n") != std::string::npos);
+  CHECK(text->find("stand inside the model of this file:\n\n    model oscillator {\n") != std::string::npos);
+  CHECK(text->find("```") == std::string::npos);
+  CHECK(explain("e2001") == text);
+  CHECK(explain("2001") == text);
+  CHECK_FALSE(explain("E9999").has_value());
+  CHECK_FALSE(explain("").has_value());
+}

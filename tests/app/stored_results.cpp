@@ -1,0 +1,126 @@
+// What a run meets in its output folder: earlier results, draws of another model, damaged checkpoints, places that take no files.
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "answer.hpp"
+#include "core/interrupt.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+std::string text(std::string const& parameter) {
+  return "model decay {\n  state y\n  initial y = 1\n  parameter " + parameter + " ~ log_uniform(0.1, 10)\n  y' = -" + parameter +
+         "*y\n  observe size ~ normal(y, sd = 0.1)\n}\n" +
+         "data dish {\n  file \"data/growth.csv\"\n  time t [s]\n  measure size = y\n}\n" +
+         "posterior = fit decay to dish with mh(samples = 60, burn_in = 20, thin = 1, chains = 2), seed = 1\n" +
+         "forecast = predict posterior on dish with draws(10), seed = 1\n";
+}
+
+Answer run(std::string const& parameter, std::filesystem::path const& output, std::vector<std::string> const& verbs = {},
+           RunOptions options = {}) {
+  WorkingFolder const here(error_examples);
+  return answer("example.sysid", text(parameter), Depth::run, output, std::move(options), verbs);
+}
+
+// Interrupts runs ever later, until one has begun to sample.
+std::string checkpoint_of_an_interrupted_run(std::filesystem::path const& output) {
+  std::filesystem::path const checkpoint = output / "posterior" / "checkpoint.cbor";
+  RunOptions options;
+  options.force = true;
+  for (options.interrupt_after = 16; !std::filesystem::exists(checkpoint) && options.interrupt_after < 1U << 20;
+       options.interrupt_after *= 2) {
+    ExitCode const exit = run("k", output, {"fit"}, options).exit;
+    clear_interrupt();
+    REQUIRE(exit == ExitCode::interrupted);
+  }
+  return content(checkpoint);
+}
+
+}  // namespace
+
+TEST_CASE("results that exist already are kept unless force is asked for") {
+  TemporaryFolder const output;
+  CHECK(run("k", output.path).exit <= ExitCode::doubtful);
+  std::string const before = content(output.path / "posterior" / "draws_1.csv");
+  Answer const again = run("k", output.path);
+  CHECK(again.exit == ExitCode::user_error);
+  CHECK(again.messages ==
+        "example.sysid: error: `OUT/posterior` holds results already\n"
+        "help: add --force to replace them, or -o DIR to write elsewhere\n");
+  CHECK(content(output.path / "posterior" / "draws_1.csv") == before);
+  RunOptions options;
+  options.force = true;
+  CHECK(run("k", output.path, {}, options).exit <= ExitCode::doubtful);
+}
+
+TEST_CASE("a prediction without stored draws says what to run first") {
+  TemporaryFolder const output;
+  Answer const shown = run("k", output.path, {"predict"});
+  CHECK(shown.exit == ExitCode::user_error);
+  CHECK(shown.messages ==
+        "example.sysid: error[E6202]: there are no draws of `posterior` in `OUT/posterior`\n"
+        "help: run the fit first: sysid run FILE, or sysid fit FILE\n"
+        "more: sysid explain E6202\n");
+}
+
+TEST_CASE("stored draws of a model with other parameters are refused") {
+  TemporaryFolder const output;
+  CHECK(run("k", output.path, {"fit"}).exit <= ExitCode::doubtful);
+  Answer const shown = run("rate", output.path, {"predict"});
+  CHECK(shown.exit == ExitCode::user_error);
+  CHECK(shown.messages.find("error[E6201]: `OUT/posterior/draws_1.csv` has no column `rate`: it is of another model") !=
+        std::string::npos);
+  CHECK(run("k", output.path, {"predict"}).exit == ExitCode::success);
+}
+
+TEST_CASE("a damaged checkpoint and one of another text are told apart") {
+  TemporaryFolder const output;
+  std::string const checkpoint = checkpoint_of_an_interrupted_run(output.path);
+  REQUIRE_FALSE(checkpoint.empty());
+  RunOptions options;
+  options.resume = true;
+  Answer const other = run("rate", output.path, {}, options);
+  CHECK(other.exit == ExitCode::user_error);
+  CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` is of another text, data or seed") != std::string::npos);
+  write(output.path / "posterior" / "checkpoint.cbor", checkpoint.substr(0, checkpoint.size() / 2));
+  Answer const damaged = run("k", output.path, {}, options);
+  CHECK(damaged.exit == ExitCode::user_error);
+  CHECK(damaged.messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") != std::string::npos);
+}
+
+TEST_CASE("an output folder that cannot be made or written is an error of input and output, before any work") {
+  for (char const* folder : {"/dev/full/x", "/proc/x", "/dev/null"}) {
+    CAPTURE(folder);
+    Answer const shown = run("k", folder);
+    CHECK(shown.exit == ExitCode::io);
+    CHECK(shown.messages.starts_with("sysid: cannot make the folder `OUT/posterior`: "));
+  }
+  TemporaryFolder const output;
+  std::filesystem::permissions(output.path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  if (::geteuid() != 0) {  // nothing is read-only to root
+    Answer const shown = run("k", output.path / "x");
+    CHECK(shown.exit == ExitCode::io);
+    CHECK(shown.messages.starts_with("sysid: cannot make the folder `OUT/posterior`: permission denied"));
+  }
+}
+
+TEST_CASE("a disk that takes no byte is found before any work, and nothing half-written stays") {
+  // A limit on the size of files stands in for the full disk.
+  TemporaryFolder const output;
+  auto const before_signal = ::signal(SIGXFSZ, SIG_IGN);
+  rlimit before = {};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  rlimit none = before;
+  none.rlim_cur = 0;
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &none) == 0);
+  Answer const shown = run("k", output.path);
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+  ::signal(SIGXFSZ, before_signal);
+  CHECK(shown.exit == ExitCode::io);
+  CHECK(shown.messages == "sysid: cannot write `OUT/posterior/claim`: file too large\n");
+  CHECK(std::filesystem::is_empty(output.path / "posterior"));
+}

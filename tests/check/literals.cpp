@@ -1,0 +1,133 @@
+// Plain numbers take the unit of what they meet; expected values are conversions by hand to coherent SI.
+#include "checking.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+// Statements around which the tests put one more: y in mm, k in N/mm.
+std::string const oscillator =
+    "input x [N]\nstate y [mm]\ninitial y = 5, y' = 2\nparameter m [kg] = 2\nparameter k [N/mm] ~ log_uniform(1, 10)\n"
+    "observe displacement ~ normal(y, sd = 0.1)\n";
+
+// The right-hand side of a first-order state in mm, evaluated at y = 7 mm.
+double rate_at_7_mm(std::string const& right) {
+  Model const model = model_of("state y [mm]\ninitial y = 0\nparameter g = 3\nobserve d ~ normal(y, sd = 1)\ny' = " + right);
+  return rate_of(model, "y", {{"y", 7e-3}, {"g", 3}});
+}
+
+Distribution prior(Model const& model) { return model.parameters.at(0).prior.value(); }
+
+Model with_prior(std::string const& unit, std::string const& call) {
+  return model_of("parameter a " + unit + " ~ " + call + "\nobserve c ~ normal(a, sd = 1)");
+}
+
+}  // namespace
+
+TEST_CASE("initial values are in the unit of their state, derivatives per second") {
+  Model const model = model_of(oscillator + "m*y'' + k*y = x");
+  CHECK(initial_of(model, "y") == near(5e-3));
+  CHECK(initial_of(model, "y'") == near(2e-3));
+  CHECK(model.states[1].unit_text() == "mm/s");
+  CHECK(model.states[1].from_si(2e-3) == near(2));
+}
+
+TEST_CASE("a number with a unit of its own is converted, not adapted") {
+  Model const model = model_of("state y [mm]\ninitial y = 5 [m]\ny' = 3 [m/s]\nobserve d ~ normal(y, sd = 1 [um])");
+  CHECK(initial_of(model, "y") == near(5));
+  CHECK(rate_of(model, "y", {}) == near(3));
+  CHECK(at(model, model.channels[0].noise.arguments[1], {}) == near(1e-6));
+}
+
+TEST_CASE("equations are in SI whatever the declared units are") {
+  Model const model = model_of(oscillator + "m*y'' + k*y = x");
+  // y'' = (x - k y)/m with k = 2 N/mm = 2000 N/m, y = 5 mm
+  CHECK(rate_of(model, "y'", {{"x", 3}, {"k", 2000}, {"y", 5e-3}, {"m", 2}}) == near((3 - 10) / 2.0));
+}
+
+TEST_CASE("a number on one side of an equation takes the unit of the other") {
+  Model const model = model_of(oscillator + "y'' = 3");
+  CHECK(rate_of(model, "y'", {}) == near(3e-3));
+}
+
+TEST_CASE("addends, comparisons, branches and arguments of min adapt, factors do not") {
+  CHECK(rate_at_7_mm("(y - 5)/1 [s]") == near(2e-3));
+  CHECK(rate_at_7_mm("(5 - y)/1 [s]") == near(-2e-3));
+  CHECK(rate_at_7_mm("2*y/1 [s]") == near(14e-3));
+  CHECK(rate_at_7_mm("if y > 6 then 1 else 2") == near(1e-3));
+  CHECK(rate_at_7_mm("if y > 8 then 1 else 2") == near(2e-3));
+  CHECK(rate_at_7_mm("min(y, 5)/1 [s]") == near(5e-3));
+  CHECK(rate_at_7_mm("max(5, y, 9)/1 [s]") == near(9e-3));
+  CHECK(rate_at_7_mm("(y + (2 + 3))/1 [s]") == near(12e-3));
+  CHECK(rate_at_7_mm("sqrt(16)") == near(4e-3));
+}
+
+TEST_CASE("what is undeclared is taken as it is") {
+  // g has no unit: the number beside it stays 2, and nothing is known of the sum
+  CHECK(rate_at_7_mm("g + 2") == near(5));
+}
+
+TEST_CASE("a definition with a unit gives its number that unit; without one the number is pure") {
+  CHECK(rate_at_7_mm("1\nlet d [mm] = 5") == near(1e-3));
+  Model const model = model_of(
+      "state y [mm]\ninitial y = 0\nlet d [mm] = 5\nlet five = 5\n"
+      "y' = (y - d)/1 [s]\nderive with_unit = y - d\nderive pure = y*five\nobserve c ~ normal(y, sd = 1)");
+  CHECK(rate_of(model, "y", {{"y", 7e-3}}) == near(2e-3));
+  CHECK(at(model, model.derived[0].value, {{"y", 7e-3}}) == near(2e-3));
+  CHECK(at(model, model.derived[1].value, {{"y", 7e-3}}) == near(35e-3));
+}
+
+TEST_CASE("fixed values of parameters are in their unit") {
+  CHECK(
+      at(model_of("parameter k [N/mm] = 2\nparameter a ~ normal(0, sd = 1)\nobserve c ~ normal(a*k, sd = 1)"),
+         *model_of("parameter k [N/mm] = 2\nparameter a ~ normal(0, sd = 1)\nobserve c ~ normal(a*k, sd = 1)").parameters[0].value,
+         {}) == near(2000));
+}
+
+TEST_CASE("each argument of a prior has the power of the unit that its role has") {
+  // 1 N/mm = 1000 N/m
+  for (char const* call :
+       {"normal(10, sd = 2)", "normal(10, variance = 4)", "normal(10, precision = 0.25)", "normal(mean = 10, sd = 2)"}) {
+    CAPTURE(call);
+    Model const model = with_prior("[N/mm]", call);
+    CHECK(at(model, prior(model).arguments[0], {}) == near(10e3));
+    CHECK(at(model, prior(model).arguments[1], {}) == near(2e3));
+  }
+  Model const shape = with_prior("[mm]", "gamma(3, rate = 4)");
+  CHECK(at(shape, prior(shape).arguments[0], {}) == near(3));
+  CHECK(at(shape, prior(shape).arguments[1], {}) == near(1e-3 / 4));
+  // the width of a log-normal is that of a logarithm: a pure number
+  Model const log_normal = with_prior("[mm]", "log_normal(2, sd = 0.5)");
+  CHECK(at(log_normal, prior(log_normal).arguments[0], {}) == near(2e-3));
+  CHECK(at(log_normal, prior(log_normal).arguments[1], {}) == near(0.5));
+}
+
+TEST_CASE("bounds are in the unit of the parameter, or in their own") {
+  Model const model = with_prior("[N/mm]", "normal(10, sd = 2, lower = 5, upper = 20000 [N/m])");
+  CHECK(at(model, prior(model).lower.value(), {}) == near(5e3));
+  CHECK(at(model, prior(model).upper.value(), {}) == near(20e3));
+  Model const open = with_prior("[N/mm]", "normal(10, sd = 2, lower = -inf, upper = inf)");
+  CHECK_FALSE(prior(open).lower.has_value());
+  CHECK_FALSE(prior(open).upper.has_value());
+}
+
+TEST_CASE("noise is in the unit of the channel: the declared one, else that of the model's value") {
+  Model const model = model_of(oscillator +
+                               "m*y'' + k*y = x\nobserve fine [um] ~ normal(y, sd = 3)\n"
+                               "observe force ~ normal(k*y, precision = 4)");
+  CHECK(model.channels[0].unit_text() == "mm");
+  CHECK(at(model, model.channels[0].noise.arguments[1], {}) == near(0.1e-3));
+  CHECK(at(model, model.channels[1].noise.arguments[1], {}) == near(3e-6));
+  CHECK(at(model, model.channels[1].noise.arguments[0], {{"y", 5e-3}}) == near(5e-3));
+  // N/mm times mm is N
+  CHECK(at(model, model.channels[2].noise.arguments[1], {}) == near(0.5));
+}
+
+TEST_CASE("a temperature is counted from the zero of its unit, and shifted only between units") {
+  Model const model = model_of(
+      "state T [degC]\ninitial T = 293.15 [K]\nparameter Ta [degC] = 20\nT' = (Ta - T)/10 [s]\nobserve c ~ normal(T, sd = 1)");
+  CHECK(initial_of(model, "T") == doctest::Approx(20).epsilon(1e-12));
+  CHECK(at(model, *model.parameters[0].value, {}) == near(20));
+  CHECK(rate_of(model, "T", {{"T", 30}, {"Ta", 20}}) == near(-1));
+}

@@ -1,0 +1,95 @@
+// Hierarchies of priors: the order of drawing, cycles, what a prior may read.
+#include <algorithm>
+
+#include "checking.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+Model with(std::string const& parameters) { return model_of(parameters + "\nobserve c ~ normal(a, sd = 1)"); }
+std::string refused(std::string const& parameters) {
+  return messages("model m {\n" + parameters + "\nobserve c ~ normal(a, sd = 1)\n}\n");
+}
+
+// Position of a parameter in the order of drawing.
+std::ptrdiff_t place(Model const& model, std::string const& name) {
+  auto const parameter =
+      std::find_if(model.parameters.begin(), model.parameters.end(), [&](Parameter const& each) { return each.name == name; });
+  auto const index = static_cast<int>(parameter - model.parameters.begin());
+  return std::find(model.sampling_order.begin(), model.sampling_order.end(), index) - model.sampling_order.begin();
+}
+
+}  // namespace
+
+TEST_CASE("parameters are drawn after those their priors read, also through definitions") {
+  Model const model = with(
+      "parameter a ~ normal(b, sd = spread)\nlet spread = 2*s\nparameter b ~ normal(0, sd = s)\nparameter s ~ half_normal(sd = f)\n"
+      "parameter f = 3");
+  REQUIRE(model.sampling_order.size() == 3);
+  CHECK(place(model, "s") < place(model, "b"));
+  CHECK(place(model, "b") < place(model, "a"));
+  CHECK(model.parameters[0].name == "a");  // reports keep the user's order
+}
+
+TEST_CASE("bounds count as what a prior reads") {
+  Model const model = with("parameter a ~ normal(0, sd = 1, lower = b)\nparameter b ~ normal(0, sd = 1)");
+  CHECK(place(model, "b") < place(model, "a"));
+  CHECK(at(model, model.parameters[0].prior->lower.value(), {{"b", 0.25}}) == 0.25);
+}
+
+TEST_CASE("priors that need each other are refused with the loop written out") {
+  std::string const shown =
+      refused("parameter a ~ normal(b, sd = 1)\nparameter b ~ normal(0, sd = 1, upper = c)\nparameter c ~ normal(a, sd = 1)");
+  CHECK(errors_in(shown) == 1);
+  CHECK(shown.find("error[E2111]: these priors need each other: a -> b -> c -> a") != std::string::npos);
+  CHECK(errors_in(refused("parameter a ~ normal(a, sd = 1)")) == 1);
+}
+
+TEST_CASE("a prior may not read what moves") {
+  for (char const* moving : {"x", "t", "y"}) {
+    CAPTURE(moving);
+    std::string const shown =
+        refused(std::string("input x\ntime t\nstate y\ninitial y = 0\ny' = a\nparameter a ~ normal(") + moving + ", sd = 1)");
+    CHECK(errors_in(shown) == 1);
+    CHECK(shown.find("error[E2110]") != std::string::npos);
+  }
+}
+
+TEST_CASE("one spelling of a width is wanted, and is named") {
+  CHECK(refused("parameter a ~ normal(0, sd = 1, precision = 1)").find("`sd` and `precision` say the same thing twice") !=
+        std::string::npos);
+  CHECK(refused("parameter a ~ normal(0, 1)").find("error[E2106]: say which this is: `sd`, `variance` or `precision`") !=
+        std::string::npos);
+  CHECK(refused("parameter a ~ normal(0, precison = 1)").find("help: did you mean `precision`?") != std::string::npos);
+  CHECK(refused("parameter a ~ normal(mean = 0, mean = 1, sd = 1)").find("`mean` is given twice") != std::string::npos);
+}
+
+TEST_CASE("impossible numbers are refused before the run") {
+  for (char const* call : {"normal(0, sd = -1)", "normal(0, sd = 0)", "uniform(2, 1)", "log_uniform(0, 1)", "gamma(-1, rate = 1)",
+                           "normal(0, sd = 1, lower = 2, upper = 1)"}) {
+    CAPTURE(call);
+    std::string const shown = refused(std::string("parameter a ~ ") + call);
+    CHECK(errors_in(shown) == 1);
+    CHECK(shown.find("error[E2112]") != std::string::npos);
+  }
+}
+
+TEST_CASE("bounds that leave nothing are refused before the run, those that leave a tail are not") {
+  for (char const* call :
+       {"normal(0, sd = 1, lower = 50)", "log_normal(1, sd = 1, upper = -1)", "exponential(mean = 1, upper = 0)"}) {
+    CAPTURE(call);
+    CHECK(refused(std::string("parameter a ~ ") + call).find("error[E2115]") != std::string::npos);
+  }
+  for (char const* call : {"normal(0, sd = 1, lower = 30)", "exponential(mean = 1, lower = 0.5)", "flat(lower = 0)"}) {
+    CAPTURE(call);
+    CHECK(refused(std::string("parameter a ~ ") + call).empty());
+  }
+}
+
+TEST_CASE("a share has no unit but those of pure numbers") {
+  CHECK(refused("parameter a [m] ~ beta(2, 2)").find("error[E2117]") != std::string::npos);
+  CHECK(refused("parameter a [percent] ~ beta(2, 2)").empty());
+  CHECK(refused("parameter a ~ beta(2, 2)").empty());
+}
