@@ -69,10 +69,12 @@ ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fin
 
 Findings tolerance_findings(ToleranceCheck const& check, int substeps) {
   if (check.move <= tolerable_move) return {};
-  return {{Severity::error, "integration_step",
-           fmt::format("the integration step shapes the result: with half the step the mean of {} moves by about {:.2g} sd",
-                       check.parameter, check.move),
-           fmt::format("fit again with `substeps = {}` or more, or leave `substeps` out and it is chosen", 2 * substeps)}};
+  // To first order only: far beyond a few sds the number means no more than "many".
+  std::string const move = check.move > 5 ? "many sds" : fmt::format("about {:.2g} sd", check.move);
+  return {
+      {Severity::error, "integration_step",
+       fmt::format("the integration step shapes the result: with half the step the mean of {} moves by {}", check.parameter, move),
+       fmt::format("fit again with `substeps = {}` or more, or leave `substeps` out and it is chosen", 2 * substeps)}};
 }
 
 }  // namespace sysid
