@@ -19,6 +19,10 @@
 
 #include "app/markdown.hpp"
 #include "app/pipeline.hpp"
+#include "distribution/distribution.hpp"
+#include "function/table.hpp"
+#include "inference/backend.hpp"
+#include "syntax/words.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -228,6 +232,45 @@ TEST_CASE("quoted C++ stands in the file it is said to be from") {
     CHECK_MESSAGE(read_file(root / file).find(block.joined()) != std::string::npos,
                   page.name << ":" << block.line << ": not in " << file);
   });
+}
+
+TEST_CASE("the reference names every distribution, function, back end, setting and statement") {
+  std::string const text = read_file(root / "docs/language.md");
+  auto const named = [&](std::string_view name, std::string const& kind) {
+    std::regex const word("[^A-Za-z0-9_]" + std::string(name) + "[^A-Za-z0-9_]");
+    CHECK_MESSAGE(std::regex_search(text, word), "docs/language.md does not name the " << kind << " " << name);
+  };
+  for (DistributionRow const& row : distributions()) {
+    named(row.name, "distribution");
+    for (ArgumentRow const& argument : row.arguments)
+      for (Spelling const& spelling : argument.spellings) named(spelling.name, "argument");
+  }
+  for (FunctionRow const& row : functions()) named(row.name, "function");
+  for (BackendRow const& row : backends()) {
+    named(row.name, "back end");
+    for (SettingRow const& setting : row.settings) named(setting.name, "setting");
+  }
+  for (std::string_view const word : words::model_statements) named(word, "statement");
+  for (std::string_view const word : words::data_statements) named(word, "statement");
+  for (std::string_view const word : words::verbs) named(word, "verb");
+}
+
+TEST_CASE("findings that the methods page lists are made somewhere") {
+  std::string source;
+  for (char const* folder : {"src/app", "src/inference"})
+    for (auto const& entry : fs::directory_iterator(root / folder)) source += read_file(entry.path());
+  int count = 0;
+  std::regex const code("`([a-z_]+)`");
+  for (std::string const& line : read_page(root / "docs/methods.md").prose) {
+    if (!line.starts_with("| error |") && !line.starts_with("| warning |") && !line.starts_with("| note |")) continue;
+    for (std::sregex_iterator i(line.begin(), line.end(), code), end; i != end; ++i) {
+      std::string const name = (*i)[1].str();
+      if (name == "map" || name == "ml") continue;
+      CHECK_MESSAGE(source.find('"' + name + '"') != std::string::npos, "nothing finds " << name);
+      ++count;
+    }
+  }
+  CHECK(count > 15);
 }
 
 TEST_CASE("links lead to files and headings that exist") {
