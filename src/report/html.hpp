@@ -17,7 +17,4 @@ struct DrawnFigure {
 
 std::string report_html(Report const& report, std::vector<DrawnFigure> const& figures);
 
-/// An equation of the language for the eye: names slanted, powers raised, primes as primes, the user's names untouched. HTML.
-std::string typeset(std::string_view equation);
-
 }  // namespace sysid
