@@ -52,7 +52,9 @@ void check_motion(ChainReport const& report, Findings& findings) {
     for (std::size_t const c : stuck) most = std::max(most, report.acceptance_rate[c]);
     findings.push_back({Severity::error, "chain_did_not_move",
                         fmt::format("the chain did not move: {} accepted {} of the proposed moves{}", chain_list(stuck),
-                                    stuck.size() == 1 ? percent(most) : "at most " + percent(most),
+                                    most == 0           ? "none"
+                                    : stuck.size() == 1 ? percent(most)
+                                                        : "at most " + percent(most),
                                     report.adaptive ? "" : ", because the fixed proposal does not fit the posterior"),
                         report.adaptive ? "let it adapt longer (burn_in), and look at the failures the run counted"
                                         : "use proposal = adaptive, which learns its size and shape during burn-in"});
