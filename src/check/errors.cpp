@@ -191,7 +191,7 @@ Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
 }
 Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings) {
   return error("E2106", span, fmt::format("say which this is: {}", quoted(spellings, "or")),
-               fmt::format("write `{}(..., {} = ...)`; scales are never positional", distribution, spellings.front()));
+               fmt::format("write `{}(..., {} = ...)`", distribution, spellings.front()));
 }
 Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature) {
   return error("E2107", span, fmt::format("`{}` has no further argument", distribution),
@@ -360,8 +360,9 @@ Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::
                guess_or(name.text, known, choose(known, kind)));
 }
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
-  return error("E6002", span, fmt::format("`{}` has no option `{}`", task, option),
-               guess_or(option, known, fmt::format("its options are {}", quoted(known))));
+  return error(
+      "E6002", span, fmt::format("`{}` has no option `{}`", task, option),
+      guess_or(option, known, known.empty() ? std::string("it has none") : fmt::format("its options are {}", quoted(known))));
 }
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example) {
   return error("E6003", task.verb.span, fmt::format("`{}` needs the option `{}`", task.verb.text, option),
@@ -400,6 +401,10 @@ Diagnostic data_unused(ast::Task const& task, Span data) {
 }
 Diagnostic not_a_fit(ast::Name const& name) {
   return error("E6010", name.span, fmt::format("`{}` is not a fit", name.text), "predict needs the name of a fit task");
+}
+Diagnostic fixed_parameter(ast::Name const& name, Span declaration) {
+  return conflict("E6014", name.span, "another value here", declaration, "fixed here",
+                  fmt::format("parameter `{}` has a fixed value in the model", name.text), "change it there, or give it a prior");
 }
 Diagnostic value_missing(Span span, Names const& parameters) {
   return error("E6011", span, fmt::format("simulating needs a value for {}", quoted(parameters)),

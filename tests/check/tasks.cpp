@@ -93,6 +93,8 @@ TEST_CASE("options are given once") {
   CHECK(shown.find("the back end is given twice") != std::string::npos);
   CHECK(errors_in(refused(
             "simulate m with values(k = 2, s = 1, k = 3), input x = gaussian(sd = 1, sd = 2), samples = 8, rate = 9")) == 2);
+  CHECK(refused("simulate m with values(k = 2, s = 1), input x = gaussian(sd = 1), samples = 8, rate = 9, step = 1")
+            .find("error[E4104]: the time between samples is given twice") != std::string::npos);
 }
 
 TEST_CASE("numbers outside their range or of the wrong kind are refused with what is allowed") {
@@ -103,6 +105,11 @@ TEST_CASE("numbers outside their range or of the wrong kind are refused with wha
        {"`samples` must lie between 1 and 1000000000000, here it is 0", "`chains` must be a whole number", "`k` is not declared",
         "help: choose `adaptive` or `spherical`", "`substeps` must lie between 1 and 10000", "`seed` must"})
     CHECK_MESSAGE(shown.find(each) != std::string::npos, each);
+}
+
+TEST_CASE("a back end without settings says so") {
+  CHECK(refused("fit m to d with map(3)").find("help: it takes none") != std::string::npos);
+  CHECK(refused("fit m to d with map(samples = 3)").find("help: it has none") != std::string::npos);
 }
 
 TEST_CASE("a number in a unit of another kind is refused where one is wanted") {

@@ -1,0 +1,19 @@
+// Signals that `simulate` makes for an input: `gaussian(sd = 10)`, `multisine(sd = 1, lowest = 1, highest = 50)`.
+#pragma once
+#include <optional>
+
+#include "check/checked.hpp"
+#include "check/option_reader.hpp"
+#include "core/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// The value of `input NAME = ...`, numbers in the unit of the input; nothing when a diagnostic was added.
+std::optional<InputGenerator> check_generator(ast::Option const& option, Quantity const& input, OptionReader& reader,
+                                              Diagnostics& diagnostics);
+
+/// A multisine has a harmonic k/(samples*step) in its band, and none at or above half the rate.
+void check_band(InputGenerator const& generator, SimulateTask const& task, Span place, Diagnostics& diagnostics);
+
+}  // namespace sysid
