@@ -315,7 +315,7 @@ class Fit {
     report.verdict = verdict.text;
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
     report.timing = {{"wall_seconds", wall.count()},
-                     {"threads", static_cast<std::int64_t>(session_.options.execution.threads)},
+                     {"threads", static_cast<std::int64_t>(session_.threads())},
                      {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
     write_result(report, folder_, session_.options.figures);
     session_.out << terminal_summary(report);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <random>
+#include <thread>
 
 #include "core/interrupt.hpp"
 
@@ -29,6 +31,11 @@ std::uint64_t Session::seed(Task const& task, std::optional<std::uint64_t> const
 
 std::string Session::describe(int model, Graph const& graph, NodeId node) const {
   return sysid::describe(file.models[static_cast<std::size_t>(model)], graph, node, source);
+}
+
+int Session::threads() const {
+  return options.execution.threads > 0 ? options.execution.threads
+                                       : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 bool Session::interrupted() {

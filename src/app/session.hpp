@@ -44,6 +44,8 @@ class Session {
   std::uint64_t seed(Task const& task, std::optional<std::uint64_t> const& stated);
   /// A sub-expression in the user's words, for the ledger.
   std::string describe(int model, Graph const& graph, NodeId node) const;
+  /// Threads in use, 0 resolved.
+  int threads() const;
   /// Whether an interruption was asked for; counts polls for `interrupt_after`.
   bool interrupted();
 

@@ -21,6 +21,24 @@ double population_sd(std::vector<double> const& values) {
   return std::sqrt(square / static_cast<double>(values.size()));
 }
 
+// Made data carry the error of the integrator: said when it is more than a tenth of the noise (or a thousandth of the response).
+void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
+                Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
+  Trajectory const finer(compiled, experiment, 2 * what.substeps, 0, session.options.execution);
+  Trajectory::Result const fine = finer.run_si(parameters, {});
+  double const tolerable = what.noise_fraction > 0 ? 0.1 * what.noise_fraction : 1e-3;
+  for (std::size_t q = 0; q < finer.quantities().size() && fine.failed == 0; ++q) {
+    if (finer.quantities()[q].channel < 0) continue;
+    std::vector<double> difference = result.values[q][0];
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= fine.values[q][0][i];
+    double const share = population_sd(difference) / population_sd(fine.values[q][0]);
+    if (share > tolerable)
+      session.notices << fmt::format(
+          "{}: warning: with half the step {} changes by {:.2g} % of its size; add `substeps = {}` or more\n", task.name,
+          finer.quantities()[q].name, 100 * share, 2 * what.substeps);
+  }
+}
+
 std::string unit_suffix(std::string const& unit) { return unit.empty() ? std::string() : " [" + unit + "]"; }
 
 }  // namespace
@@ -53,6 +71,8 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
                      Label{task.span, {}},
                      {},
                      "take smaller steps (substeps = 10) or other values"});
+
+  check_step(session, task, what, compiled, experiment, parameters, result);
 
   std::string header = "t",
               comments = fmt::format("# made by sysid {}: {} of model {}, seed {}\n", SYSID_VERSION, task.name, model.name, seed);

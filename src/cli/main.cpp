@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 
@@ -197,6 +198,16 @@ int main(int argument_count, char** arguments) {
   explaining->callback([&] { exit = explain(line); });
   CLI::App* version = app.add_subcommand("version", "print the version and the instruction set in use");
   version->callback([] { std::cout << fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())); });
+  if (argument_count > 1 && arguments[1][0] != '-') {
+    std::vector<std::string> verbs;
+    for (CLI::App const* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+    if (std::find(verbs.begin(), verbs.end(), arguments[1]) == verbs.end()) {
+      std::string const guess = did_you_mean(arguments[1], verbs);
+      std::cerr << fmt::format("sysid: there is no verb `{}`; {}\n", arguments[1],
+                               guess.empty() ? fmt::format("verbs: {}", fmt::join(verbs, ", ")) : guess);
+      return code(ExitCode::usage);
+    }
+  }
   try {
     app.parse(argument_count, arguments);
   } catch (CLI::ParseError const& error) {
