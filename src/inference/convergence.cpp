@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 #include "core/elementary.hpp"
+#include "inference/fourier.hpp"
 
 namespace sysid {
 namespace {
@@ -124,67 +124,6 @@ ChainValues rank_normalised(ChainValues const& draws) {
   }
   return scores;
 }
-
-/// Discrete Fourier transforms of one power-of-two length, real and imaginary parts apart. Ours, because library transforms take
-/// their factors from the C library's sine, whose last digit depends on the processor.
-class Fourier {
- public:
-  using Parts = std::vector<double>;
-
-  explicit Fourier(std::size_t size) : size_(size), cosine_(size), sine_(size) {
-    // The factors of the stage with blocks of 2 h stand at h .. 2 h - 1.
-    for (std::size_t k = 0; k < size / 2; ++k) {
-      double const angle = -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(size);
-      cosine_[size / 2 + k] = elementary::cos(angle);
-      sine_[size / 2 + k] = elementary::sin(angle);
-    }
-    for (std::size_t i = size / 2 - 1; i > 0; --i) {
-      std::size_t const half = std::bit_floor(i), k = i - half;
-      cosine_[i] = cosine_[2 * half + 2 * k];
-      sine_[i] = sine_[2 * half + 2 * k];
-    }
-  }
-
-  std::size_t size() const { return size_; }
-
-  /// From natural order to bit-reversed order.
-  void to_reversed(Parts& re, Parts& im) const {
-    for (std::size_t half = size_ / 2; half > 0; half /= 2) {
-      double const *const c = &cosine_[half], *const s = &sine_[half];
-      for (std::size_t start = 0; start < size_; start += 2 * half) {
-        double *const ar = &re[start], *const ai = &im[start], *const br = ar + half, *const bi = ai + half;
-        for (std::size_t k = 0; k < half; ++k) {
-          double const dr = ar[k] - br[k], di = ai[k] - bi[k];
-          ar[k] += br[k];
-          ai[k] += bi[k];
-          br[k] = dr * c[k] - di * s[k];
-          bi[k] = dr * s[k] + di * c[k];
-        }
-      }
-    }
-  }
-
-  /// From bit-reversed order to natural order.
-  void from_reversed(Parts& re, Parts& im) const {
-    for (std::size_t half = 1; half < size_; half *= 2) {
-      double const *const c = &cosine_[half], *const s = &sine_[half];
-      for (std::size_t start = 0; start < size_; start += 2 * half) {
-        double *const ar = &re[start], *const ai = &im[start], *const br = ar + half, *const bi = ai + half;
-        for (std::size_t k = 0; k < half; ++k) {
-          double const tr = br[k] * c[k] - bi[k] * s[k], ti = br[k] * s[k] + bi[k] * c[k];
-          br[k] = ar[k] - tr;
-          bi[k] = ai[k] - ti;
-          ar[k] += tr;
-          ai[k] += ti;
-        }
-      }
-    }
-  }
-
- private:
-  std::size_t size_;
-  Parts cosine_, sine_;
-};
 
 /// A transform long enough for the autocovariance of the halves of these chains.
 Fourier fourier_for(ChainValues const& draws) {

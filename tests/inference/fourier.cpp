@@ -1,0 +1,46 @@
+// The transform against its defining sum.
+#include "inference/fourier.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/random.hpp"
+
+using namespace sysid;
+
+TEST_CASE("both transforms are the defining sum, up to the order of their ends") {
+  for (std::size_t const n : {4U, 8U, 64U}) {
+    Fourier const fourier(n);
+    Stream stream({1, Purpose::test, n, 0});
+    std::vector<double> re(n), im(n), sum_re(n, 0.0), sum_im(n, 0.0), reversed_re(n), reversed_im(n);
+    for (std::size_t t = 0; t < n; ++t) {
+      re[t] = stream.normal();
+      im[t] = stream.normal();
+    }
+    auto const reversed = [n](std::size_t k) {
+      std::size_t r = 0;
+      for (std::size_t bit = 1; bit < n; bit *= 2) r = 2 * r + (k & bit ? 1 : 0);
+      return r;
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t t = 0; t < n; ++t) {
+        double const angle = -2 * std::numbers::pi * static_cast<double>(k * t % n) / static_cast<double>(n);
+        sum_re[k] += re[t] * std::cos(angle) - im[t] * std::sin(angle);
+        sum_im[k] += re[t] * std::sin(angle) + im[t] * std::cos(angle);
+      }
+      reversed_re[k] = re[reversed(k)];
+      reversed_im[k] = im[reversed(k)];
+    }
+    fourier.to_reversed(re, im);
+    fourier.from_reversed(reversed_re, reversed_im);
+    // Rounding: a few units of 1e-16 per stage on sums of size sqrt(n).
+    for (std::size_t k = 0; k < n; ++k) {
+      CHECK(std::fabs(re[reversed(k)] - sum_re[k]) < 1e-13);
+      CHECK(std::fabs(im[reversed(k)] - sum_im[k]) < 1e-13);
+      CHECK(std::fabs(reversed_re[k] - sum_re[k]) < 1e-13);
+      CHECK(std::fabs(reversed_im[k] - sum_im[k]) < 1e-13);
+    }
+  }
+}
