@@ -37,8 +37,8 @@ std::string_view closer(std::string_view opener) { return opener == "{" ? "}" : 
 
 }  // namespace
 
-Diagnostic expected(Span where, std::string_view wanted, std::string_view found) {
-  return error("E1101", where, fmt::format("expected {} but found {}", wanted, found));
+Diagnostic expected(Span where, std::string_view wanted, std::string_view found, std::string help) {
+  return error("E1101", where, fmt::format("expected {} but found {}", wanted, found), std::move(help));
 }
 
 Diagnostic unclosed(Token const& opener, Span noticed) {

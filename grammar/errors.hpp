@@ -10,7 +10,7 @@
 namespace sysid::grammar::errors {
 
 /// E1101: `wanted` and `found` are noun phrases.
-Diagnostic expected(Span where, std::string_view wanted, std::string_view found);
+Diagnostic expected(Span where, std::string_view wanted, std::string_view found, std::string help = "");
 /// E1102: a bracket never closed; `noticed` is where it had to be closed at the latest.
 Diagnostic unclosed(Token const& opener, Span noticed);
 /// E1103

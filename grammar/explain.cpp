@@ -42,7 +42,7 @@ class Failure {
     if (wanted_ == wanted::shallower_nesting) return errors::nesting_too_deep(span(), deepest_nesting);
     if (auto incomplete = unfinished_line()) return *incomplete;
     if (auto specific = at_end_ ? at_end() : at_token()) return *specific;
-    return errors::expected(span(), noun_phrase(), found_phrase());
+    return errors::expected(span(), noun_phrase(), found_phrase(), misspelt());
   }
 
  private:
@@ -67,6 +67,20 @@ class Failure {
   /// The rules' names are noun phrases already; a literal is named 'x' by X3.
   std::string noun_phrase() const {
     return wanted_.size() == 3 && wanted_.front() == '\'' ? fmt::format("`{}`", wanted_[1]) : wanted_;
+  }
+
+  /// "did you mean ...": the words in quotes of what was wanted, and `hold` where a data input may go on.
+  std::string misspelt() const {
+    if (at_end_ || !is_word(found())) return {};
+    std::vector<std::string> known;
+    for (std::size_t begin = wanted_.find('`'); begin != std::string::npos; begin = wanted_.find('`', begin)) {
+      std::size_t const end = wanted_.find('`', begin + 1);
+      if (end == std::string::npos) break;
+      known.push_back(wanted_.substr(begin + 1, end - begin - 1));
+      begin = end + 1;
+    }
+    if (wanted_ == wanted::end_of_statement && begins_with("input")) known.emplace_back("hold");
+    return did_you_mean(found().text, known);
   }
 
   std::string found_phrase() const {

@@ -47,8 +47,7 @@ std::string data_name(DataBlock const& block, int part) {
   return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
 }
 
-std::optional<Record> load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder,
-                                  Diagnostics& diagnostics) {
+Record load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
   RecordRequest request;
   request.path = (folder / block.path).string();
   request.mention = block.path_span;
@@ -71,7 +70,10 @@ std::optional<Record> load_record(DataBlock const& block, Model const& model, st
       request.measured.push_back(ColumnRequest{bound->column, bound->unit, channel.unit, bound->span});
   }
   try {
-    return load(request, diagnostics);
+    Diagnostics diagnostics;
+    auto record = load(request, diagnostics);
+    if (!record) throw UnusableData(std::move(diagnostics));
+    return std::move(*record);
   } catch (IoError const& error) {
     throw UnreadableData(unreadable(block, request.path, error.what()));
   }

@@ -19,10 +19,19 @@ class UnreadableData : public IoError {
   Diagnostic diagnostic_;
 };
 
+/// Data that cannot be used, with all that is wrong with them.
+class UnusableData : public UserError {
+ public:
+  explicit UnusableData(Diagnostics diagnostics) : UserError(diagnostics.all().front()), diagnostics_(std::move(diagnostics)) {}
+  Diagnostics const& diagnostics() const { return diagnostics_; }
+
+ private:
+  Diagnostics diagnostics_;
+};
+
 /// The record of a data block as a model reads it; `folder`: that of the .sysid file, from which paths are relative.
-/// UserError-free: what is wrong with the data goes to `diagnostics`. UnreadableData when the file cannot be read.
-std::optional<Record> load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder,
-                                  Diagnostics& diagnostics);
+/// UnusableData when something is wrong with it, UnreadableData when the file cannot be read.
+Record load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder);
 
 /// The rows of a part (-1: all), started as the task says. Throws UserError when they are outside the record or the start needs
 /// more rows.

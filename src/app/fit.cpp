@@ -121,7 +121,7 @@ class Fit {
         compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated)),
         model_(compiled_->model),
         block_(session.file.data[static_cast<std::size_t>(what.data)]),
-        record_(read_record()),
+        record_(load_record(block_, model_, session.folder())),
         experiment_(cut(record_, block_, what.part, what.start)),
         began_(std::chrono::steady_clock::now()) {}
 
@@ -151,13 +151,6 @@ class Fit {
   }
 
  private:
-  Record read_record() {
-    Diagnostics diagnostics;
-    auto record = load_record(block_, model_, session_.folder(), diagnostics);
-    if (!record) throw UserError(diagnostics.all().front());
-    return std::move(*record);
-  }
-
   std::unique_ptr<ModelTarget> make_target(int substeps) const {
     TargetOptions options;
     options.substeps = substeps;
@@ -227,15 +220,8 @@ class Fit {
   }
 
   Diagnostic no_result(Finding const& failure) const {
-    Diagnostic diagnostic{
-        Severity::error, failure.code == "no_finite_start" ? "E5002" : "E6206", failure.message, Label{task_.span, {}}, {},
-        failure.help};
-    for (Failure const& each : ledger_.failures())
-      if (each.where != "not traced") {
-        diagnostic.message += fmt::format("; first non-finite: {} at t = {:.4g} s", each.where, each.time);
-        break;
-      }
-    return diagnostic;
+    std::string const code = failure.code == "no_finite_start" ? "E5002" : "E6206";
+    return {Severity::error, code, failure.message, Label{task_.span, {}}, {}, failure.help};
   }
 
   ExitCode stop_early() const {

@@ -40,10 +40,8 @@ ExitCode run_predict(Session& session, Task const& task, PredictTask const& what
   auto const compiled = session.compiled(fit.model, free_start);
   Model const& model = compiled->model;
   DataBlock const& block = session.file.data[static_cast<std::size_t>(what.data)];
-  Diagnostics diagnostics;
-  auto const record = load_record(block, model, session.folder(), diagnostics);
-  if (!record) throw UserError(diagnostics.all().front());
-  Experiment const experiment = cut(*record, block, what.part, what.start);
+  Record const record = load_record(block, model, session.folder());
+  Experiment const experiment = cut(record, block, what.part, what.start);
   std::uint64_t const seed = session.seed(task, what.seed);
 
   Trajectory const trajectory(compiled, experiment, fitted.substeps, free_start ? what.start.rows : 0, session.options.execution);
@@ -58,7 +56,7 @@ ExitCode run_predict(Session& session, Task const& task, PredictTask const& what
                                fmt::format("predict {} on {} with draws({})",
                                            session.file.tasks[static_cast<std::size_t>(what.fit)].name, experiment.name, wanted),
                                seed);
-  report.data.push_back(describe_data(*record, block, what.part, model, experiment));
+  report.data.push_back(describe_data(record, block, what.part, model, experiment));
   report.predictions.push_back(predict_along(trajectory, result, experiment, model));
   for (PredictedQuantity const& quantity : report.predictions.front().quantities)
     for (Score score : scores(quantity, experiment.scored)) {

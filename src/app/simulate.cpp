@@ -41,6 +41,25 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
 
 std::string unit_suffix(std::string const& unit) { return unit.empty() ? std::string() : " [" + unit + "]"; }
 
+// ": `y^3` (duffing.sysid:10:27) at t = 0.1 s", or nothing when plain arithmetic stays finite.
+std::string first_failure(Session const& session, SimulateTask const& what, CompiledModel const& compiled, Experiment experiment,
+                          LaneArray const& parameters) {
+  // A solve is looked into up to the last sample to score: the states on the way, not what they would be compared with.
+  for (auto& channel : experiment.measured) {
+    channel.assign(experiment.time.size(), std::nan(""));
+    channel.back() = 0;
+  }
+  Simulator const simulator(compiled.likelihood, Schedule(*compiled.likelihood, experiment, what.substeps),
+                            session.options.execution);
+  std::vector<double> values;
+  // What only the noise reads may have no value; any does here.
+  for (int p = 0; p < parameters.rows(); ++p) values.push_back(std::isnan(parameters(p, 0)) ? 1.0 : parameters(p, 0));
+  auto const found = simulator.diagnose(values);
+  if (!found) return {};
+  return fmt::format(": {} at t = {:.4g} s", session.describe(what.model, simulator.program().source.graph, found->node),
+                     found->time);
+}
+
 }  // namespace
 
 ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) {
@@ -67,7 +86,8 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   if (result.failed > 0)
     throw UserError({Severity::error,
                      "E5001",
-                     fmt::format("the simulation `{}` does not stay finite", task.name),
+                     fmt::format("the simulation `{}` does not stay finite{}", task.name,
+                                 first_failure(session, what, *compiled, experiment, parameters)),
                      Label{task.span, {}},
                      {},
                      "take smaller steps (substeps = 10) or other values"});

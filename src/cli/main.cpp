@@ -48,6 +48,9 @@ template <class Verb>
 int guarded(CommandLine const& line, Source const& source, Verb const& verb) {
   try {
     return verb();
+  } catch (UnusableData const& error) {
+    show(error.diagnostics(), source, line);
+    return code(ExitCode::user_error);
   } catch (UserError const& error) {
     Diagnostics diagnostics;
     diagnostics.add(error.diagnostic());

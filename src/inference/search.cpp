@@ -269,15 +269,18 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
 }
 
 Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
+  // Only the first failures are traced to a sub-expression; they are examples, their counts say little.
   std::vector<Failure> failures = ledger.failures();
+  std::erase_if(failures, [](Failure const& each) { return each.where == "not traced"; });
   std::stable_sort(failures.begin(), failures.end(), [](Failure const& a, Failure const& b) { return a.count > b.count; });
-  std::string classes;
+  std::string places;
   for (std::size_t i = 0; i < failures.size() && i < 3; ++i)
-    classes +=
-        fmt::format("{}{} in {} ({} times)", i == 0 ? ": " : ", ", name(failures[i].kind), failures[i].where, failures[i].count);
+    places += fmt::format("{}{} in {} at t = {:.4g} s", i == 0 ? ": " : ", ", name(failures[i].kind), failures[i].where,
+                          failures[i].time);
   return {Severity::error, "no_finite_start",
-          fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, classes),
-          "narrow the priors towards values for which the model can be solved, or shorten the integration step"};
+          fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, places),
+          "look at this part of the equations, narrow the priors towards values for which the model can be solved, or take shorter "
+          "steps (substeps = 10)"};
 }
 
 }  // namespace sysid

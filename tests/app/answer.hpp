@@ -88,9 +88,8 @@ inline Answer answer(std::string const& name, std::string const& text, Depth dep
       for (Task const& task : file->tasks)
         if (auto const* fit = std::get_if<FitTask>(&task.what)) {
           DataBlock const& block = file->data[static_cast<std::size_t>(fit->data)];
-          auto const record = load_record(block, file->models[static_cast<std::size_t>(fit->model)], {}, diagnostics);
-          if (!record) answer.exit = ExitCode::user_error;
-          if (record) cut(*record, block, fit->part, fit->start);
+          Record const record = load_record(block, file->models[static_cast<std::size_t>(fit->model)], {});
+          cut(record, block, fit->part, fit->start);
         }
     if (file && depth == Depth::run) {
       SilentProgress progress;
@@ -100,6 +99,8 @@ inline Answer answer(std::string const& name, std::string const& text, Depth dep
       if (!options.seed) options.seed = 1;
       answer.exit = run_tasks(source, *file, verbs, options, progress, summaries, notices);
     }
+  } catch (UnusableData const& error) {
+    for (Diagnostic const& each : error.diagnostics().all()) failed(each, ExitCode::user_error);
   } catch (UserError const& error) {
     failed(error.diagnostic(), ExitCode::user_error);
   } catch (UnreadableData const& error) {
