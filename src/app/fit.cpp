@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/bands.hpp"
 #include "app/experiments.hpp"
 #include "app/fit_checks.hpp"
 #include "app/reporting.hpp"
@@ -23,10 +24,6 @@
 #include "report/terminal.hpp"
 
 namespace sysid {
-
-// predict.cpp
-Prediction predict_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
-                         Model const& model);
 
 namespace {
 
@@ -328,7 +325,7 @@ class Fit {
     LaneArray const columns = spread(draws, 100);
     Trajectory const trajectory(compiled_, experiment_, preparation_.substeps,
                                 what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
-    return predict_along(trajectory, trajectory.run(columns, {seed_, Purpose::noise, 0, 0}), experiment_, model_);
+    return bands_along(trajectory, trajectory.run(columns, {seed_, Purpose::noise, 0, 0}), experiment_, model_);
   }
 
   Session& session_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "app/bands.hpp"
 #include "app/experiments.hpp"
 #include "app/reporting.hpp"
 #include "app/stored_draws.hpp"
@@ -11,28 +12,6 @@
 #include "report/terminal.hpp"
 
 namespace sysid {
-Prediction predict_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
-                         Model const& model) {
-  Prediction prediction;
-  prediction.experiment = experiment.name;
-  prediction.time = experiment.time;
-  prediction.scored = experiment.scored;
-  for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
-    TrajectoryQuantity const& quantity = trajectory.quantities()[q];
-    PredictedQuantity predicted;
-    predicted.name = quantity.name;
-    predicted.unit = quantity.unit;
-    predicted.response = band(result.values[q]);
-    if (quantity.channel >= 0) {
-      auto const channel = static_cast<std::size_t>(quantity.channel);
-      predicted.noisy = band(result.noisy[channel]);
-      for (double const si : experiment.measured[channel]) predicted.measured.push_back(model.channels[channel].from_si(si));
-    }
-    prediction.quantities.push_back(std::move(predicted));
-  }
-  return prediction;
-}
-
 ExitCode run_predict(Session& session, Task const& task, PredictTask const& what) {
   FittedModel const& fitted = fitted_model(session, what.fit);
   FitTask const& fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
@@ -57,7 +36,7 @@ ExitCode run_predict(Session& session, Task const& task, PredictTask const& what
                                            session.file.tasks[static_cast<std::size_t>(what.fit)].name, experiment.name, wanted),
                                seed);
   report.data.push_back(describe_data(record, block, what.part, model, experiment));
-  report.predictions.push_back(predict_along(trajectory, result, experiment, model));
+  report.predictions.push_back(bands_along(trajectory, result, experiment, model));
   for (PredictedQuantity const& quantity : report.predictions.front().quantities)
     for (Score score : scores(quantity, experiment.scored)) {
       if (model.channels.size() > 1) score.name += "(" + quantity.name + ")";

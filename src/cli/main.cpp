@@ -24,7 +24,7 @@ namespace {
 struct CommandLine {
   std::string file, dump, error_format = "text", instruction_set, topic, code;
   RunOptions run;
-  bool quiet = false, in_place = false;
+  bool quiet = false;
 };
 
 int code(ExitCode exit) { return static_cast<int>(exit); }

@@ -1,0 +1,28 @@
+// Trajectories to bands, quantity by quantity.
+#include "app/bands.hpp"
+
+namespace sysid {
+
+Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
+                       Model const& model) {
+  Prediction prediction;
+  prediction.experiment = experiment.name;
+  prediction.time = experiment.time;
+  prediction.scored = experiment.scored;
+  for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
+    TrajectoryQuantity const& quantity = trajectory.quantities()[q];
+    PredictedQuantity predicted;
+    predicted.name = quantity.name;
+    predicted.unit = quantity.unit;
+    predicted.response = band(result.values[q]);
+    if (quantity.channel >= 0) {
+      auto const channel = static_cast<std::size_t>(quantity.channel);
+      predicted.noisy = band(result.noisy[channel]);
+      for (double const si : experiment.measured[channel]) predicted.measured.push_back(model.channels[channel].from_si(si));
+    }
+    prediction.quantities.push_back(std::move(predicted));
+  }
+  return prediction;
+}
+
+}  // namespace sysid
