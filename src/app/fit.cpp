@@ -222,7 +222,9 @@ class Fit {
   }
 
   ExitCode stop_early() const {
-    session_.notices << fmt::format("{}: interrupted before there was anything to keep; --resume starts it again\n", task_.name);
+    bool const kept = std::filesystem::exists(checkpoint_path(folder_));
+    session_.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task_.name,
+                                    kept ? "goes on from there" : "starts it again");
     return ExitCode::interrupted;
   }
 
