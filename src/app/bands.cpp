@@ -17,7 +17,7 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
     predicted.response = band(result.values[q]);
     if (quantity.channel >= 0) {
       auto const channel = static_cast<std::size_t>(quantity.channel);
-      predicted.noisy = band(result.noisy[channel]);
+      if (result.noisy[channel].size() > 1) predicted.noisy = band(result.noisy[channel]);  // one trajectory has no width
       for (double const si : experiment.measured[channel]) predicted.measured.push_back(model.channels[channel].from_si(si));
     }
     prediction.quantities.push_back(std::move(predicted));

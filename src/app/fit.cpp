@@ -17,6 +17,7 @@
 #include "core/files.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/checkpoint.hpp"
+#include "inference/refit.hpp"
 #include "inference/search.hpp"
 #include "inference/verdict.hpp"
 #include "likelihood/trajectory.hpp"
@@ -105,6 +106,18 @@ ChainValues column_of(Draws const& draws, std::size_t column) {
   return values;
 }
 
+// A run that drew its seed goes on with that one.
+std::uint64_t stored_seed(Session& session, Task const& task, FitTask const& what) {
+  auto const path = checkpoint_path(session.result_folder(task));
+  if (session.options.resume && !session.options.seed && !what.seed && std::filesystem::exists(path)) {
+    std::string const bytes = read_file(path);
+    json const stored = json::from_cbor(bytes.begin(), bytes.end(), true, false);
+    if (stored.is_object() && stored.contains("who") && stored.at("who").contains("seed"))
+      return stored.at("who").at("seed").get<std::uint64_t>();
+  }
+  return session.seed(task, what.seed);
+}
+
 class Fit {
  public:
   Fit(Session& session, int index, Task const& task, FitTask const& what)
@@ -113,7 +126,7 @@ class Fit {
         task_(task),
         what_(what),
         folder_(session.result_folder(task)),
-        seed_(session.seed(task, what.seed)),
+        seed_(stored_seed(session, task, what)),
         backend_(*find_backend(what.backend)),
         compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated)),
         model_(compiled_->model),
@@ -266,7 +279,8 @@ class Fit {
                                  fmt::format("fit {} to {} with {}", model_.name, experiment_.name, what_.backend), seed_);
     report.data.push_back(describe_data(record_, block_, what_.part, model_, experiment_));
     report.findings = result.findings;
-    if (what_.settings.all().contains("start") && what_.settings.word("start") == "prior")
+    // Chains that start from the search report its findings themselves.
+    if (!(what_.settings.all().contains("start") && what_.settings.word("start") == "global"))
       report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     report.summary = summarise(result);
@@ -277,9 +291,7 @@ class Fit {
       report.fit = std::move(check.scores);
       add(check.findings);
       if (!preparation_.modes.empty()) add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
-      if (result.draws.total() > 1)
-        add(tolerance_findings(check_tolerance(*target_, *make_target(2 * preparation_.substeps), result.draws, extra),
-                               preparation_.substeps));
+      add(tolerance_findings(step_check(result.draws, extra), preparation_.substeps));
     }
     add_failures(report);
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
@@ -311,6 +323,15 @@ class Fit {
     remove_file(checkpoint_path(folder_));
     session_.fitted[index_] = {std::move(report.draws), preparation_.substeps};
     return verdict.pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  // Draws tell by their weights, an optimum by where it moves.
+  ToleranceCheck step_check(Draws const& draws, Ledger& extra) const {
+    auto const fine = make_target(2 * preparation_.substeps);
+    if (draws.total() > 1) return check_tolerance(*target_, *fine, draws, extra);
+    if (what_.substeps == 0 || preparation_.modes.empty()) return {};  // settled before
+    Mode const& coarse = preparation_.modes.front();
+    return {target_->parameters().front().name, largest_move(refit(*fine, {coarse}, seed_, extra).front(), coarse)};
   }
 
   void add_failures(Report& report) const {

@@ -53,14 +53,32 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
   auto const wanted = [&](Task const& task) {
     return verbs.empty() || std::find(verbs.begin(), verbs.end(), verb_of(task)) != verbs.end();
   };
-  for (Task const& task : file.tasks)
-    if (wanted(task) && !(options.resume && complete(session.result_folder(task))))
-      claim_results(session.result_folder(task), options);
+  // A simulate task leaves its record and nothing else.
+  auto const kept = [&](Task const& task) {
+    auto const* made = std::get_if<SimulateTask>(&task.what);
+    if (made != nullptr) return std::filesystem::exists(session.result_folder(task) / made->file);
+    return complete(session.result_folder(task));
+  };
+  if (!verbs.empty() && std::none_of(file.tasks.begin(), file.tasks.end(), wanted)) {
+    notices << fmt::format("there is no {} task in {}\n", fmt::join(verbs, " or "), source.name());
+    return ExitCode::usage;
+  }
+  for (Task const& task : file.tasks) {
+    if (!wanted(task) || (options.resume && kept(task))) continue;
+    if (std::holds_alternative<SimulateTask>(task.what) && kept(task) && !options.force)
+      throw UserError({Severity::error,
+                       "",
+                       fmt::format("`{}` holds results already", session.result_folder(task).string()),
+                       std::nullopt,
+                       {},
+                       "add --force to replace them, or -o DIR to write elsewhere"});
+    claim_results(session.result_folder(task), options);
+  }
   ExitCode worst = ExitCode::success;
   for (std::size_t i = 0; i < file.tasks.size(); ++i) {
     Task const& task = file.tasks[i];
     if (!wanted(task)) continue;
-    if (options.resume && complete(session.result_folder(task))) {
+    if (options.resume && kept(task)) {
       notices << fmt::format("{}: complete, kept\n", task.name);
       continue;
     }

@@ -1,6 +1,7 @@
 // `simulate`: data made from stated values, as a CSV that a data block reads.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/experiments.hpp"
@@ -66,6 +67,13 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   auto const compiled = session.compiled(what.model, false);
   Model const& model = compiled->model;
   std::uint64_t const seed = session.seed(task, what.seed);
+  // Several records made in one run with one seed are different records.
+  std::uint64_t ordinal = 0;
+  for (Task const& each : session.file.tasks) {
+    if (&each == &task) break;
+    if (std::holds_alternative<SimulateTask>(each.what)) ++ordinal;
+  }
+  std::uint64_t const series = ordinal << 32;
 
   Experiment experiment;
   experiment.name = task.name;
@@ -74,14 +82,14 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   experiment.measured.resize(model.channels.size());
   std::vector<std::vector<double>> inputs;
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    inputs.push_back(generate(what.inputs[i], what.samples, what.step, {seed, Purpose::input, i, 0}));
+    inputs.push_back(generate(what.inputs[i], what.samples, what.step, {seed, Purpose::input, i + series, 0}));
     experiment.inputs.emplace_back(what.inputs[i].rule, experiment.time, inputs.back());
   }
   LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
   for (std::size_t p = 0; p < model.parameters.size(); ++p)
     parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
   Trajectory const trajectory(compiled, experiment, what.substeps, 0, session.options.execution);
-  StreamKey const noise_key{seed, Purpose::noise, 0, 0};
+  StreamKey const noise_key{seed, Purpose::noise, series, 0};
   Trajectory::Result const result = trajectory.run_si(parameters, noise_key);
   if (result.failed > 0)
     throw UserError({Severity::error,
@@ -92,6 +100,15 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
                      {},
                      "take smaller steps (substeps = 10) or other values"});
 
+  for (auto const& channel : result.noisy)
+    for (auto const& values : channel)
+      if (what.noise_fraction < 0 && std::any_of(values.begin(), values.end(), [](double y) { return std::isnan(y); }))
+        throw UserError({Severity::error,
+                         "E5001",
+                         fmt::format("the noise of the simulation `{}` is impossible at some samples", task.name),
+                         Label{task.span, {}},
+                         {},
+                         "its scale must stay positive along the whole record"});
   check_step(session, task, what, compiled, experiment, parameters, result);
 
   std::string header = "t",
@@ -115,7 +132,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
     std::vector<double> noisy = result.noisy[static_cast<std::size_t>(quantity.channel)][0];
     if (what.noise_fraction >= 0) {
       double const sd = what.noise_fraction * population_sd(clean);
-      Stream stream(noise_key.at(0, static_cast<std::uint64_t>(quantity.channel)));
+      Stream stream(noise_key.at(series, static_cast<std::uint64_t>(quantity.channel)));
       for (std::size_t i = 0; i < clean.size(); ++i) noisy[i] = clean[i] + sd * stream.normal();
       comments += fmt::format("# noise sd of {}: {}{}\n", quantity.name, shortest(sd), unit_suffix(quantity.unit));
     }

@@ -39,8 +39,9 @@ Chain read_chain(std::string const& text, std::vector<std::string> const& parame
     if (line.empty() || line.front() == '#') continue;
     auto const cells = split(line, ',');
     if (columns.empty()) {
-      auto const find = [&](std::string const& name) {
-        auto const place = std::find(cells.begin(), cells.end(), name);
+      // The sampler's own four columns come first; a parameter may have the name of one of them.
+      auto const find = [&](std::string const& name, std::ptrdiff_t from = 0) {
+        auto const place = std::find(cells.begin() + std::min<std::ptrdiff_t>(from, std::ssize(cells)), cells.end(), name);
         if (place == cells.end())
           throw UserError({Severity::error,
                            "E6201",
@@ -54,9 +55,10 @@ Chain read_chain(std::string const& text, std::vector<std::string> const& parame
       accept = find("accept_stat__");
       prior = find("log_prior__");
       likelihood = find("log_likelihood__");
-      for (std::string const& name : parameters) columns.push_back(find(name));
+      for (std::string const& name : parameters) columns.push_back(find(name, 4));
       continue;
     }
+    if (cells.size() <= std::max({lp, accept, prior, likelihood})) continue;  // a row cut short
     std::vector<double> values;
     for (std::size_t const column : columns) values.push_back(column < cells.size() ? number(cells[column]) : std::nan(""));
     chain.values.push_back(std::move(values));

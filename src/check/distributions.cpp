@@ -124,7 +124,16 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
       good = false;
       continue;
     }
-    NodeId node = adapt(graph, *value, unit_of_argument(unit, given[i].spelling->unit_power));
+    // Widths of a temperature are intervals: they have no zero to shift.
+    std::string_view const spelt = given[i].spelling->name;
+    bool const place = spelt == "mean" || spelt == "median" || spelt == "location" || spelt == "lower" || spelt == "upper";
+    Typed argument_value = *value;
+    std::optional<Unit> argument_unit = unit_of_argument(unit, given[i].spelling->unit_power);
+    if (!place) {
+      argument_value.unit.offset = 0;
+      if (argument_unit) argument_unit->offset = 0;
+    }
+    NodeId node = adapt(graph, argument_value, argument_unit);
     if (given[i].spelling->to_canonical != nullptr) node = given[i].spelling->to_canonical(graph, node, use.arguments);
     use.arguments.push_back(node);
   }

@@ -61,9 +61,25 @@ Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> c
 
 Typed add(Graph& graph, Typed a, Typed b, bool subtract) {
   Typed operands[] = {std::move(a), std::move(b)};
-  auto const unit = unify(graph, operands);
+  auto const temperature = [](Typed const& t) { return t.kind == Kind::known && t.unit.offset != 0; };
+  bool const difference = subtract && temperature(operands[0]) && temperature(operands[1]);
+  // A temperature and an interval ([delta_degC], or a difference of two temperatures): the interval keeps its size. What is written
+  // in [K] is a temperature and converted.
+  auto const is_interval = [](Typed const& t) { return t.kind == Kind::known && t.unit.offset == 0 && t.unit.text != "K"; };
+  bool const interval =
+      (temperature(operands[0]) && is_interval(operands[1])) || (temperature(operands[1]) && is_interval(operands[0]));
+  std::optional<Unit> unit;
+  if (interval)
+    unit = temperature(operands[0]) ? operands[0].unit : operands[1].unit;
+  else
+    unit = unify(graph, operands);
   NodeId const node = subtract ? graph.subtract(operands[0].node, operands[1].node) : graph.add(operands[0].node, operands[1].node);
-  return shared(node, operands, unit);
+  Typed result = shared(node, operands, unit);
+  if (difference && result.unit.offset != 0) {
+    result.unit.offset = 0;  // the difference of two temperatures has no zero of its own
+    result.unit.text.clear();
+  }
+  return result;
 }
 
 Typed multiply(Graph& graph, Typed const& a, Typed const& b) {

@@ -145,9 +145,10 @@ class TaskChecker {
       }
       if (key == "draws") {
         ast::Call const* call = as_call(option.value);
-        ast::Expression const* count = option.key                                       ? &option.value
-                                       : call != nullptr && call->arguments.size() == 1 ? &call->arguments[0].value
-                                                                                        : nullptr;
+        ast::Expression const* count = option.key ? &option.value
+                                       : call != nullptr && call->arguments.size() == 1 && !call->arguments[0].name
+                                           ? &call->arguments[0].value
+                                           : nullptr;
         if (count == nullptr)
           diagnostics_.add(errors::option_kind(option.span, "draws", "a number of posterior draws", "draws(200)"));
         else if (auto const value = options_.number(*count, "draws", Unit{}, 1, 1e7, true))

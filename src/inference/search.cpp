@@ -172,7 +172,7 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
     context.progress.advance(static_cast<std::uint64_t>(pass + 1), "");
     if (ended.empty()) continue;
     result.modes = modes_of(*objective, ended, context);
-    if (result.modes.front().hits > 1 || ended.size() == 1) break;
+    if (!result.modes.empty() && (result.modes.front().hits > 1 || ended.size() == 1)) break;
   }
   context.progress.end();
   if (stop()) {

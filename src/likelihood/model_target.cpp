@@ -57,12 +57,21 @@ void ModelTarget::sample_prior(StreamKey key, Lanes theta) const {
     };
     for (std::size_t i = 0; i < model.parameters.size(); ++i)
       if (model.parameters[i].value) values(static_cast<int>(i), w) = number(*model.parameters[i].value);
-    for (int const index : model.sampling_order) {
-      Distribution const& prior = *model.parameters[static_cast<std::size_t>(index)].prior;
-      std::vector<double> arguments;
-      for (NodeId const argument : prior.arguments) arguments.push_back(number(argument));
-      values(index, w) = draw(*prior.row, arguments, prior.lower ? number(*prior.lower) : -infinity,
-                              prior.upper ? number(*prior.upper) : infinity, stream);
+    // A drawn hyperparameter may make what depends on it impossible (a negative sd): the density is zero there, so the vector is
+    // drawn again, which is the joint prior.
+    for (int attempt = 0;; ++attempt) {
+      try {
+        for (int const index : model.sampling_order) {
+          Distribution const& prior = *model.parameters[static_cast<std::size_t>(index)].prior;
+          std::vector<double> arguments;
+          for (NodeId const argument : prior.arguments) arguments.push_back(number(argument));
+          values(index, w) = draw(*prior.row, arguments, prior.lower ? number(*prior.lower) : -infinity,
+                                  prior.upper ? number(*prior.upper) : infinity, stream);
+        }
+        break;
+      } catch (UserError const&) {
+        if (attempt == 1000) throw;
+      }
     }
   }
   run(compiled_->unconstrain, values, theta);

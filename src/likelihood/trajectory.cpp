@@ -71,7 +71,8 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
       Distribution const& noise = model.channels[static_cast<std::size_t>(record.index)].noise;
       std::size_t const arguments = noise.arguments.size();
       std::vector<double> noisy(static_cast<std::size_t>(samples), nan), numbers(arguments);
-      Stream stream(noise_key.at(static_cast<std::uint64_t>(first + w), static_cast<std::uint64_t>(record.index)));
+      Stream stream(
+          noise_key.at(noise_key.index + static_cast<std::uint64_t>(first + w), static_cast<std::uint64_t>(record.index)));
       for (int i = 0; good && i < samples; ++i) {
         for (std::size_t a = 0; a < arguments; ++a) numbers[a] = records(i * rows + r + 1 + static_cast<int>(a), w);
         bool const usable = std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });

@@ -1,0 +1,52 @@
+// An interruption at any safe point ends with 75 or not at all, never with a crash, from the first poll of the search on.
+#include <doctest/doctest.h>
+
+#include "app/running.hpp"
+
+using namespace sysid;
+
+TEST_CASE("an interruption at each of the first hundred safe points is answered with 75") {
+  auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
+  std::string const text = with(read_file(name), "rows 1..500, test", "rows 1..60, test");
+  for (std::uint64_t poll = 1; poll <= 100; poll += 3) {
+    CAPTURE(poll);
+    TemporaryFolder folder;
+    RunOptions options;
+    options.output = folder.path() / "results";
+    options.interrupt_after = poll;
+    RunResult const result = run_text(name, text, options, {"fit"});
+    clear_interrupt();
+    CHECK(result.exit == 75);
+  }
+}
+
+TEST_CASE("a run that drew its seed goes on with that seed") {
+  auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
+  std::string text = with(read_file(name), "rows 1..500, test", "rows 1..60, test");
+  text =
+      with(with(text, "chains = 4), seed = 1", "chains = 4)"), "samples = 25000, burn_in = 5000", "samples = 2000, burn_in = 500");
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  options.interrupt_after = 500;
+  CHECK(run_text(name, text, options, {"fit"}).exit == 75);
+  clear_interrupt();
+  options.interrupt_after = 0;
+  options.resume = true;
+  CHECK(run_text(name, text, options, {"fit"}).exit != 75);
+}
+
+TEST_CASE("two records made in one run with one seed differ, and neither is overwritten unasked") {
+  auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
+  std::string const text = read_file(name);
+  auto const line = text.find("truth     = simulate");
+  std::string const second = with(text.substr(line, text.find('\n', line) - line), "truth ", "other ");
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(name, text + second + "\n", options, {"simulate"});
+  std::string const a = read_file(options.output / "truth/duffing_1pct.csv"),
+                    b = read_file(options.output / "other/duffing_1pct.csv");
+  CHECK(a.substr(a.find("\nt,")) != b.substr(b.find("\nt,")));
+  CHECK_THROWS_AS(run_text(name, text + second + "\n", options, {"simulate"}), UserError);
+}
