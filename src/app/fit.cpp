@@ -293,6 +293,9 @@ class Fit {
       if (!preparation_.modes.empty()) add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
       add(tolerance_findings(step_check(result.draws, extra), preparation_.substeps));
     }
+    if (interrupted)
+      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
+                                 "go on with --resume; it ends with the bytes of an unbroken run"});
     add_failures(report);
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
     add_derived(*compiled_, result.draws);

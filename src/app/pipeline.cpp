@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "app/reporting.hpp"
 #include "app/results.hpp"
 #include "app/session.hpp"
 #include "check/check.hpp"
@@ -57,7 +58,18 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
   auto const kept = [&](Task const& task) {
     auto const* made = std::get_if<SimulateTask>(&task.what);
     if (made != nullptr) return std::filesystem::exists(session.result_folder(task) / made->file);
-    return complete(session.result_folder(task));
+    if (!complete(session.result_folder(task))) return false;
+    int model = 0;
+    std::optional<std::uint64_t> seed = options.seed;
+    if (auto const* fit = std::get_if<FitTask>(&task.what)) {
+      model = fit->model;
+      if (!seed) seed = fit->seed;
+    } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
+      model = std::get<FitTask>(file.tasks[static_cast<std::size_t>(prediction->fit)].what).model;
+      if (!seed) seed = prediction->seed;
+    }
+    if (auto const wrong = stored_otherwise(session, task, model, seed); wrong && options.resume) throw UserError(*wrong);
+    return true;
   };
   if (!verbs.empty() && std::none_of(file.tasks.begin(), file.tasks.end(), wanted)) {
     notices << fmt::format("there is no {} task in {}\n", fmt::join(verbs, " or "), source.name());

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "core/instruction_set.hpp"
+#include <nlohmann/json.hpp>
+
+#include "core/files.hpp"
+#include "data/digest.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 
@@ -46,7 +49,9 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
   report.model_name = model.name;
   report.model_title = model.title;
-  report.versions = {{"sysid", std::string(SYSID_VERSION)}, {"random_numbers", std::string("Philox4x64-10")}};
+  report.versions = {{"sysid", std::string(SYSID_VERSION)},
+                     {"random_numbers", std::string("Philox4x64-10")},
+                     {"model_sha256", model_digest(session.source, model.name)}};
   Diagnostics ignored;
   auto const tree = parse(session.source, ignored);
   ast::Model const* text = tree ? find_model(*tree, model.name) : nullptr;
@@ -64,6 +69,28 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
                                  prior_density(checked, model)});
   }
   return report;
+}
+
+std::string model_digest(Source const& source, std::string const& model) {
+  Diagnostics ignored;
+  auto const tree = parse(source, ignored);
+  ast::Model const* found = tree ? find_model(*tree, model) : nullptr;
+  return found == nullptr ? std::string() : sha256(source.text(found->span));
+}
+
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, int model, std::optional<std::uint64_t> seed) {
+  auto const folder = session.result_folder(task);
+  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  auto const refuse = [&](std::string const& what) {
+    return Diagnostic{Severity::error, "E6208", fmt::format("the results in `{}` are of another {}", folder.string(), what),
+                      std::nullopt,    {},      "run the task again with --force, or write elsewhere with -o"};
+  };
+  if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
+  std::string const& name = session.file.models[static_cast<std::size_t>(model)].name;
+  if (summary["versions"].value("model_sha256", "") != model_digest(session.source, name))
+    return refuse("text of model `" + name + "`");
+  if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");
+  return std::nullopt;
 }
 
 }  // namespace sysid

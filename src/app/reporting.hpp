@@ -1,11 +1,21 @@
 // What reports of all tasks share: model text, equations, priors, versions.
 #pragma once
+#include <optional>
+
 #include "app/session.hpp"
+#include "core/diagnostic.hpp"
 #include "report/report.hpp"
 
 namespace sysid {
 
 /// A report with everything known before the task has run.
 Report begin_report(Session const& session, Task const& task, int model, std::string what, std::uint64_t seed);
+
+/// SHA-256 of a model's text: what stored results are compared by.
+std::string model_digest(Source const& source, std::string const& model);
+
+/// What is wrong with taking up stored results of a task: they are of another text of the model, or of another seed (when one is
+/// stated); nothing when they fit.
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, int model, std::optional<std::uint64_t> seed);
 
 }  // namespace sysid

@@ -1,6 +1,9 @@
 // Claiming result folders.
 #include "app/results.hpp"
 
+#include <fmt/format.h>
+
+#include "core/diagnostic.hpp"
 #include "core/files.hpp"
 #include "report/result.hpp"
 
@@ -13,8 +16,19 @@ bool complete(std::filesystem::path const& folder) {
 }
 
 void claim_results(std::filesystem::path const& folder, RunOptions const& options) {
-  prepare_result(folder, options.force || options.resume);
-  if (!options.resume) remove_file(checkpoint_path(folder));
+  if (options.resume) {
+    make_folder(folder);  // what is there stays until the run has shown that it goes on with it
+  } else {
+    if (std::filesystem::exists(checkpoint_path(folder)) && !options.force)
+      throw UserError({Severity::error,
+                       "",
+                       fmt::format("`{}` holds an interrupted run", folder.string()),
+                       std::nullopt,
+                       {},
+                       "go on with --resume, or start again with --force"});
+    prepare_result(folder, options.force);
+    remove_file(checkpoint_path(folder));
+  }
   // A byte, since a full disk takes empty files.
   write_file(folder / "claim", ".");
   remove_file(folder / "claim");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/reporting.hpp"
 #include "app/results.hpp"
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
@@ -97,6 +98,10 @@ FittedModel const& fitted_model(Session& session, int fit) {
                      std::nullopt,
                      {},
                      "run the fit first: sysid run FILE, or sysid fit FILE"});
+  if (auto wrong = stored_otherwise(session, task, std::get<FitTask>(task.what).model, std::nullopt)) {
+    wrong->code = "E6201";
+    throw UserError(*wrong);
+  }
   Model const& model = session.file.models[static_cast<std::size_t>(std::get<FitTask>(task.what).model)];
   std::vector<std::string> names;
   for (Parameter const& parameter : model.parameters)

@@ -38,12 +38,24 @@ NodeId adapt(Graph& graph, Typed const& typed, std::optional<Unit> const& unit) 
 std::optional<Unit> unify(Graph& graph, std::span<Typed> operands) {
   auto const known = std::find_if(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::known; });
   if (known == operands.end()) return std::nullopt;
-  Unit const unit = known->unit;
+  Unit unit = known->unit;
+  // Beside a pure number a bare number is one: 1 + a/L is not 1 mm/m more than a/L.
+  if (unit.dimensionless() &&
+      std::any_of(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::literal; })) {
+    unit.scale = 1;
+    unit.text.clear();
+  }
   for (Typed& operand : operands) operand.node = adapt(graph, operand, unit);
   return unit;
 }
 
 namespace {
+
+// A ratio of like quantities is a pure number, whatever the scales they were declared in.
+Unit pure(Unit unit) {
+  if (unit.dimensionless() && unit.text.empty()) unit.scale = 1;
+  return unit;
+}
 
 // The kind of a result whose operands share one unit.
 Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> const& unit) {
@@ -88,7 +100,7 @@ Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
-    result.unit = a.kind == Kind::literal ? b.unit : b.kind == Kind::literal ? a.unit : sysid::multiply(a.unit, b.unit);
+    result.unit = a.kind == Kind::literal ? b.unit : b.kind == Kind::literal ? a.unit : pure(sysid::multiply(a.unit, b.unit));
   }
   return result;
 }
@@ -100,7 +112,7 @@ Typed divide(Graph& graph, Typed const& a, Typed const& b) {
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
     Unit const one;
-    result.unit = sysid::divide(a.kind == Kind::literal ? one : a.unit, b.kind == Kind::literal ? one : b.unit);
+    result.unit = pure(sysid::divide(a.kind == Kind::literal ? one : a.unit, b.kind == Kind::literal ? one : b.unit));
   }
   return result;
 }
@@ -116,7 +128,7 @@ Typed power(Graph& graph, Typed const& a, Typed const& b) {
       result.kind = Kind::known;
     } else if (rational) {
       result.kind = Kind::known;
-      result.unit = sysid::power(a.unit, *rational);
+      result.unit = pure(sysid::power(a.unit, *rational));
     }
   }
   return result;

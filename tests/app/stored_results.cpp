@@ -72,9 +72,19 @@ TEST_CASE("stored draws of a model with other parameters are refused") {
   CHECK(run("k", output.path, {"fit"}).exit <= ExitCode::doubtful);
   Answer const shown = run("rate", output.path, {"predict"});
   CHECK(shown.exit == ExitCode::user_error);
-  CHECK(shown.messages.find("error[E6201]: `OUT/posterior/draws_1.csv` has no column `rate`: it is of another model") !=
-        std::string::npos);
+  CHECK(shown.messages.find("error[E6201]: the results in `OUT/posterior` are of another text of model") != std::string::npos);
   CHECK(run("k", output.path, {"predict"}).exit == ExitCode::success);
+}
+
+TEST_CASE("complete results of another text are not kept by --resume") {
+  TemporaryFolder const output;
+  CHECK(run("k", output.path, {"fit"}).exit <= ExitCode::doubtful);
+  RunOptions options;
+  options.resume = true;
+  CHECK(run("k", output.path, {"fit"}, options).exit == ExitCode::success);
+  Answer const shown = run("rate", output.path, {"fit"}, options);
+  CHECK(shown.exit == ExitCode::user_error);
+  CHECK(shown.messages.find("error[E6208]: the results in `OUT/posterior` are of another text of model") != std::string::npos);
 }
 
 TEST_CASE("a damaged checkpoint and one of another text are told apart") {

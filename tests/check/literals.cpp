@@ -131,3 +131,28 @@ TEST_CASE("a temperature is counted from the zero of its unit, and shifted only 
   CHECK(at(model, *model.parameters[0].value, {}) == near(20));
   CHECK(rate_of(model, "T", {{"T", 30}, {"Ta", 20}}) == near(-1));
 }
+
+TEST_CASE("beside a pure number a bare number is pure, and ratios of like quantities are pure numbers") {
+  Model const model = model_of(R"(
+  input x
+  state y [mm]
+  initial y = 0
+  parameter a [mm] = 500
+  parameter l [m] = 2
+  parameter zeta [percent] = 5
+  y' = x - y
+  derive stretched = 1 + a/l
+  derive ratio = a/l
+  derive damped = 1 - zeta
+  observe d ~ normal(y, sd = 1)
+)");
+  auto const value = [&](std::size_t i) {
+    double const si = model.graph.evaluate(model.derived.at(i).value, [&](NodeId leaf) {
+      return *model.graph.constant_value(*model.parameters.at(static_cast<std::size_t>(model.graph[leaf].index)).value);
+    });
+    return model.derived.at(i).from_si(si);  // as it is printed
+  };
+  CHECK(value(0) == doctest::Approx(1.25).epsilon(1e-12));
+  CHECK(value(1) == doctest::Approx(0.25).epsilon(1e-12));
+  CHECK(value(2) == doctest::Approx(0.95).epsilon(1e-12));
+}
