@@ -1,6 +1,8 @@
 // Trajectories to bands, quantity by quantity.
 #include "app/bands.hpp"
 
+#include <algorithm>
+
 namespace sysid {
 
 Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
@@ -11,6 +13,10 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
   prediction.scored = experiment.scored;
   for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
     TrajectoryQuantity const& quantity = trajectory.quantities()[q];
+    // A state that a channel of its name observes is shown once, as the channel.
+    bool const shown = quantity.channel < 0 && std::any_of(model.channels.begin(), model.channels.end(),
+                                                           [&](Channel const& channel) { return channel.name == quantity.name; });
+    if (shown) continue;
     PredictedQuantity predicted;
     predicted.name = quantity.name;
     predicted.unit = quantity.unit;
