@@ -13,7 +13,7 @@
 namespace sysid::optimum {
 namespace {
 
-/// Names of parameters whose optimum lies within a millionth of the prior's width of a bound.
+/// Names of parameters whose optimum lies within a thousandth of the prior's width (or of a positive lower bound) of a bound.
 std::string parameters_at_bound(Target const& target, Mode const& mode) {
   std::string names;
   auto const parameters = target.parameters();
