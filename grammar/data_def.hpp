@@ -13,6 +13,7 @@ struct data_time_tag {};
 struct data_rate_tag {};
 struct data_input_tag {};
 struct data_measure_tag {};
+struct data_constant_tag {};
 struct data_split_tag {};
 struct split_part_tag {};
 struct rows_tag {};
@@ -26,6 +27,7 @@ constexpr x3::rule<data_time_tag, ast::DataTime> data_time = "a time column";
 constexpr x3::rule<data_rate_tag, ast::DataRate> data_rate = "a rate";
 constexpr x3::rule<data_input_tag, ast::DataInput> data_input = "an input column";
 constexpr x3::rule<data_measure_tag, ast::DataMeasure> data_measure = "a measured column";
+constexpr x3::rule<data_constant_tag, ast::DataConstant> data_constant = "a constant";
 constexpr x3::rule<data_split_tag, ast::DataSplit> data_split = "a split";
 constexpr x3::rule<split_part_tag, ast::SplitPart> split_part = wanted::name;
 constexpr x3::rule<rows_tag> rows_word = "`rows`";
@@ -38,8 +40,8 @@ constexpr auto column_text = [](auto& context) { x3::_val(context).name = std::m
 auto const data_def = located[keyword("data") > name[to(&ast::Data::name)] > opening_brace >
                               *(data_line[append(&ast::Data::statements)] | '\n' | ';') > '}'];
 auto const data_line_def = (!(x3::lit('\n') | ';' | '}' | x3::eoi)) > data_statement[take] > end_of_statement;
-auto const data_statement_def =
-    data_file[take] | data_time[take] | data_rate[take] | data_input[take] | data_measure[take] | data_split[take];
+auto const data_statement_def = data_file[take] | data_time[take] | data_rate[take] | data_input[take] | data_measure[take] |
+                                data_constant[take] | data_split[take];
 
 auto const column_def = located[(name[column_name] | text[column_text]) >> -unit[to(&ast::Column::unit)]];
 auto const data_file_def = located[word("file") > text[to(&ast::DataFile::path)]];
@@ -50,6 +52,8 @@ auto const data_input_def = located[word("input") > name[to(&ast::DataInput::inp
                                     column[to(&ast::DataInput::column)] > -(word("hold") > name[to(&ast::DataInput::rule)])];
 auto const data_measure_def =
     located[word("measure") > name[to(&ast::DataMeasure::channel)] > equals > column[to(&ast::DataMeasure::column)]];
+auto const data_constant_def =
+    located[word("constant") > name[to(&ast::DataConstant::parameter)] > equals > expression[to(&ast::DataConstant::value)]];
 auto const data_split_def =
     located[word("split") > split_part[append(&ast::DataSplit::parts)] > *(',' > split_part[append(&ast::DataSplit::parts)])];
 auto const split_part_def = located[name[to(&ast::SplitPart::name)] > equals > rows_word > expression[to(&ast::SplitPart::first)] >
@@ -57,7 +61,7 @@ auto const split_part_def = located[name[to(&ast::SplitPart::name)] > equals > r
 auto const rows_word_def = word("rows");
 auto const range_def = x3::lit("..");
 
-BOOST_SPIRIT_DEFINE(data, data_line, data_statement, column, data_file, data_time, data_rate, data_input, data_measure, data_split,
-                    split_part, rows_word, range)
+BOOST_SPIRIT_DEFINE(data, data_line, data_statement, column, data_file, data_time, data_rate, data_input, data_measure,
+                    data_constant, data_split, split_part, rows_word, range)
 
 }  // namespace sysid::grammar

@@ -96,10 +96,10 @@ Diagnostic unknown_statement(Token const& word, std::string_view place, std::spa
 Diagnostic unknown_item(Token const& word) {
   std::vector<std::string> known = words::list(words::items);
   for (std::string_view const verb : words::verbs) known.emplace_back(verb);
-  return error(
-      "E1110", word.span, fmt::format("nothing in a file begins with `{}`", word.text),
-      guess_or(word.text, known,
-               fmt::format("a file holds {} blocks and tasks; a task begins with {}", choice(words::items), choice(words::verbs))));
+  return error("E1110", word.span, fmt::format("nothing in a file begins with `{}`", word.text),
+               guess_or(word.text, known,
+                        fmt::format("what stands in a file begins with {}; a task begins with {}", choice(words::items),
+                                    choice(words::verbs))));
 }
 
 Diagnostic unknown_verb(Token const& word) {

@@ -20,11 +20,14 @@ struct signed_value_tag {};
 struct power_tag {};
 struct primary_tag {};
 struct group_tag {};
-struct argument_tag {};
 struct number_tag {};
 struct then_tag {};
 struct else_tag {};
 struct no_value_follows_tag {};
+struct index_tag {};
+struct closing_bracket_of_index_tag {};
+struct sizes_tag {};
+struct experiment_word_tag {};
 
 constexpr x3::rule<conditional_tag, ast::Conditional> conditional = wanted::value;
 constexpr x3::rule<disjunction_tag, ast::Expression> disjunction = wanted::value;
@@ -41,8 +44,12 @@ constexpr x3::rule<power_tag, ast::Expression> power = wanted::value;
 constexpr x3::rule<primary_tag, ast::Expression> primary = wanted::value;
 /// One expression in parentheses, or a list of several.
 constexpr x3::rule<group_tag, ast::List> group = wanted::value;
-constexpr x3::rule<argument_tag, ast::Argument> argument = "an argument";
 constexpr x3::rule<number_tag, ast::Number> number = wanted::value;
+/// What stands between `[` and `]` behind a name, and between `(` and `)` behind a declared one.
+constexpr x3::rule<index_tag, std::vector<ast::Expression>> index = "an index";
+constexpr x3::rule<closing_bracket_of_index_tag> closing_bracket_of_index = "`]`";
+constexpr x3::rule<sizes_tag, std::vector<ast::Expression>> sizes = "the size of a vector or matrix";
+constexpr x3::rule<experiment_word_tag> experiment_word = "`experiment`";
 constexpr x3::rule<then_tag> then_word = "`then`";
 constexpr x3::rule<else_tag> else_word = "`else`";
 constexpr x3::rule<no_value_follows_tag> no_value_follows = wanted::operator_between;
@@ -77,6 +84,9 @@ constexpr auto take_group = [](auto& context) {
   else
     x3::_val(context).node = ast::Box<ast::List>(std::move(list));
 };
+constexpr auto push_item = [](auto& context) { x3::_val(context).push_back(std::move(x3::_attr(context))); };
+constexpr auto count_prime = [](auto& context) { ++x3::_val(context).primes; };
+
 auto const expression_def = conditional[take_boxed] | disjunction[take];
 
 auto const then_word_def = word("then");
@@ -108,10 +118,22 @@ auto const call_def = located[name[to(&ast::Call::function)] >> '(' >>
 auto const distribution_def = located[call[take]];
 auto const argument_def = located[-(name >> equals)[to(&ast::Argument::name)] >> nested[expression][to(&ast::Argument::value)]];
 
-auto const declared_def = located[name[to(&ast::Declared::name)] >> -unit[to(&ast::Declared::unit)]];
+auto const reference_def =
+    located[path[to(&ast::Reference::name)] >> -(x3::no_skip[&x3::lit('[')] >> index[to(&ast::Reference::index)]) >>
+            x3::no_skip[*x3::lit('\'')[count_prime]]];
+auto const index_def = '[' > nested[expression][push_item] > *(',' > nested[expression][push_item]) > closing_bracket_of_index;
+auto const closing_bracket_of_index_def = x3::lit(']');
+
+auto const declared_def =
+    located[name[to(&ast::Declared::name)] >> -sizes[to(&ast::Declared::sizes)] >> -unit[to(&ast::Declared::unit)]];
+auto const declared_parameter_def =
+    located[name[to(&ast::Declared::name)] >> -sizes[to(&ast::Declared::sizes)] >>
+            -(word("per") > experiment_word)[set(&ast::Declared::per_experiment, true)] >> -unit[to(&ast::Declared::unit)]];
+auto const experiment_word_def = word("experiment");
+auto const sizes_def = '(' > nested[expression][push_item] > *(',' > nested[expression][push_item]) > ')';
 
 BOOST_SPIRIT_DEFINE(expression, conditional, then_word, else_word, disjunction, conjunction, negation, denial, comparison, sum,
                     product, signed_value, negative, power, no_value_follows, primary, number, group, call, distribution, argument,
-                    declared)
+                    reference, index, closing_bracket_of_index, declared, declared_parameter, experiment_word, sizes)
 
 }  // namespace sysid::grammar

@@ -40,6 +40,13 @@ class LayoutPass {
 
   bool is_opener(std::size_t i) const { return tokens_[i].is("(") || tokens_[i].is("["); }
 
+  /// An index stands directly behind its name.
+  bool opens_index(std::vector<std::size_t> const& open) const {
+    if (open.empty() || open.back() == 0) return false;
+    Token const& before = tokens_[open.back() - 1];
+    return before.kind == TokenKind::word && before.span.end == tokens_[open.back()].span.begin;
+  }
+
   /// Inside brackets no declaration can stand: a line that begins like one means that the bracket was never closed.
   bool begins_declaration(std::size_t i) const {
     if (!tokens_[i].newline_before || tokens_[i].kind != TokenKind::word || i + 1 == tokens_.size()) return false;
@@ -90,7 +97,8 @@ class LayoutPass {
     Token const& token = tokens_[i];
     if (is_opener(i)) {
       open_.push_back(i);
-    } else if ((token.is("~") || token.is("=") || token.is(",")) && !open_.empty() && tokens_[open_.back()].is("[")) {
+    } else if ((token.is("~") || token.is("=") || (token.is(",") && !opens_index(open_))) && !open_.empty() &&
+               tokens_[open_.back()].is("[")) {
       // None of these stands in a unit.
       mistake(open_.back(), errors::unclosed(tokens_[open_.back()], token.span));
       open_.pop_back();

@@ -8,6 +8,8 @@ namespace sysid::grammar {
 
 struct model_line_tag : resumes_behind_statement {};
 struct model_statement_tag {};
+struct model_argument_tag {};
+struct discrete_time_tag {};
 struct time_declaration_tag {};
 struct input_declaration_tag {};
 struct state_declaration_tag {};
@@ -16,10 +18,13 @@ struct initial_value_tag {};
 struct parameter_declaration_tag {};
 struct definition_tag {};
 struct observation_tag {};
+struct part_tag {};
 struct equation_tag {};
 
 constexpr x3::rule<model_line_tag, ast::ModelStatement> model_line = wanted::model_statement;
 constexpr x3::rule<model_statement_tag, ast::ModelStatement> model_statement = wanted::model_statement;
+constexpr x3::rule<model_argument_tag, ast::ModelArgument> model_argument = wanted::name;
+constexpr x3::rule<discrete_time_tag, ast::DiscreteTimeDeclaration> discrete_time = "a declaration of time";
 constexpr x3::rule<time_declaration_tag, ast::TimeDeclaration> time_declaration = "a declaration of time";
 constexpr x3::rule<input_declaration_tag, ast::InputDeclaration> input_declaration = "a declaration of inputs";
 constexpr x3::rule<state_declaration_tag, ast::StateDeclaration> state_declaration = "a declaration of states";
@@ -28,15 +33,22 @@ constexpr x3::rule<initial_value_tag, ast::InitialValue> initial_value = wanted:
 constexpr x3::rule<parameter_declaration_tag, ast::ParameterDeclaration> parameter_declaration = "a declaration of a parameter";
 constexpr x3::rule<definition_tag, ast::Definition> definition = "a definition";
 constexpr x3::rule<observation_tag, ast::Observation> observation = "an observation";
+constexpr x3::rule<part_tag, ast::Part> part = "a part";
 constexpr x3::rule<equation_tag, ast::Equation> equation = "an equation";
 
-auto const model_def = located[keyword("model") > name[to(&ast::Model::name)] > -text[to(&ast::Model::title)] > opening_brace >
-                               *(model_line[append(&ast::Model::statements)] | '\n' | ';') > '}'];
+auto const model_def =
+    located[keyword("model") > name[to(&ast::Model::name)] > -('(' > model_argument[append(&ast::Model::arguments)] >
+                                                               *(',' > model_argument[append(&ast::Model::arguments)]) > ')') >
+            -text[to(&ast::Model::title)] > opening_brace > *(model_line[append(&ast::Model::statements)] | '\n' | ';') > '}'];
 auto const model_line_def = (!(x3::lit('\n') | ';' | '}' | x3::eoi)) > model_statement[take] > end_of_statement;
-auto const model_statement_def = time_declaration[take] | input_declaration[take] | state_declaration[take] |
+auto const model_statement_def = discrete_time[take] | time_declaration[take] | input_declaration[take] | state_declaration[take] |
                                  initial_declaration[take] | parameter_declaration[take] | definition[take] |
-                                 function_definition[take] | observation[take] | equation[take];
+                                 function_definition[take] | observation[take] | part[take] | equation[take];
 
+auto const model_argument_def =
+    located[name[to(&ast::ModelArgument::name)] >> -(equals > expression[to(&ast::ModelArgument::value)])];
+auto const discrete_time_def = located[keyword("time") >> word("discrete") >>
+                                       (&end_of_statement | (&digit >> expression[to(&ast::DiscreteTimeDeclaration::step)]))];
 auto const time_declaration_def = located[keyword("time") > declared[to(&ast::TimeDeclaration::time)]];
 auto const input_declaration_def = located[keyword("input") > declared[append(&ast::InputDeclaration::names)] >
                                            *(',' > declared[append(&ast::InputDeclaration::names)])];
@@ -46,7 +58,7 @@ auto const initial_declaration_def = located[keyword("initial") > initial_value[
                                              *(',' > initial_value[append(&ast::InitialDeclaration::values)])];
 auto const initial_value_def =
     located[reference[to(&ast::InitialValue::state)] > equals > expression[to(&ast::InitialValue::value)]];
-auto const parameter_declaration_def = located[keyword("parameter") > declared[to(&ast::ParameterDeclaration::name)] >
+auto const parameter_declaration_def = located[keyword("parameter") > declared_parameter[to(&ast::ParameterDeclaration::name)] >
                                                -((tilde > distribution[to(&ast::ParameterDeclaration::prior)]) |
                                                  (equals > expression[to(&ast::ParameterDeclaration::value)]))];
 auto const definition_def = located[(keyword("constant")[set(&ast::Definition::kind, ast::DefinitionKind::constant)] |
@@ -59,10 +71,12 @@ auto const function_definition_def =
             ')' > equals > expression[to(&ast::FunctionDefinition::value)]];
 auto const observation_def =
     located[keyword("observe") > declared[to(&ast::Observation::channel)] > tilde > distribution[to(&ast::Observation::noise)]];
+auto const part_def = located[keyword("part") > name[to(&ast::Part::name)] > equals > call[to(&ast::Part::model)]];
 auto const equation_def =
     located[!(x3::lit('+') | '-') >> expression[to(&ast::Equation::left)] > equals > expression[to(&ast::Equation::right)]];
 
-BOOST_SPIRIT_DEFINE(model, model_line, model_statement, time_declaration, input_declaration, state_declaration, initial_declaration,
-                    initial_value, parameter_declaration, definition, function_definition, observation, equation)
+BOOST_SPIRIT_DEFINE(model, model_line, model_statement, model_argument, discrete_time, time_declaration, input_declaration,
+                    state_declaration, initial_declaration, initial_value, parameter_declaration, definition, function_definition,
+                    observation, part, equation)
 
 }  // namespace sysid::grammar

@@ -18,20 +18,23 @@ constexpr std::size_t most_errors = 20;
 
 struct file_tag {};
 struct file_line_tag : resumes_behind_item {};
+struct use_tag {};
 struct item_tag {};
 struct lone_expression_tag : resumes_behind_item {};
 
 constexpr x3::rule<file_tag, ast::File> file = "a file";
 constexpr x3::rule<file_line_tag, ast::Item> file_line = wanted::item;
+constexpr x3::rule<use_tag, ast::Use> use = "a module";
 constexpr x3::rule<item_tag, ast::Item> item = wanted::item;
 constexpr x3::rule<lone_expression_tag, ast::Expression> lone_expression = wanted::value;
 
 auto const file_def = *(file_line[append(&ast::File::items)] | '\n' | ';');
 auto const file_line_def = (!(x3::lit('\n') | ';' | x3::eoi)) > item[take] > end_of_statement;
-auto const item_def = model[take] | data[take] | function_definition[take] | task[take];
+auto const use_def = located[keyword("use") > name[to(&ast::Use::module)]];
+auto const item_def = use[take] | model[take] | data[take] | function_definition[take] | task[take];
 auto const lone_expression_def = x3::eps > *x3::lit('\n') > expression[take] > end_of_statement > *x3::lit('\n') > x3::eoi;
 
-BOOST_SPIRIT_DEFINE(file, file_line, item, lone_expression)
+BOOST_SPIRIT_DEFINE(file, file_line, use, item, lone_expression)
 
 namespace {
 

@@ -1,5 +1,5 @@
-// Definitions of task.hpp: `[NAME =] VERB SUBJECT [to DATA[.PART]] [with OPTION, ...]`. Verbs and prepositions are rows of
-// syntax/words.hpp; which preposition and which options a verb takes is the checker's business.
+// Definitions of task.hpp: `[NAME =] VERB SUBJECT[(ARGUMENT, ...)] [to DATA[.PART], ...] [with OPTION, ...]`. Verbs and
+// prepositions are rows of syntax/words.hpp; which preposition and which options a verb takes is the checker's business.
 #pragma once
 #include "grammar/actions.hpp"
 #include "grammar/task.hpp"
@@ -33,9 +33,11 @@ constexpr auto push = [](auto& context) { x3::_val(context).push_back(std::move(
 
 auto const task_def =
     located[(((name >> equals)[to(&ast::Task::name)] > verb[to(&ast::Task::verb)]) | verb[to(&ast::Task::verb)]) >
-            name[to(&ast::Task::subject)] > ((preposition[to(&ast::Task::preposition)] > data_reference[to(&ast::Task::data)] >
-                                              (settings[to(&ast::Task::options)] | x3::expect[with_or_end])) |
-                                             settings[to(&ast::Task::options)] | x3::expect[preposition_or_end])];
+            name[to(&ast::Task::subject)] >
+            -('(' > argument[append(&ast::Task::arguments)] > *(',' > argument[append(&ast::Task::arguments)]) > ')') >
+            ((preposition[to(&ast::Task::preposition)] > data_reference[append(&ast::Task::data)] >
+              *(',' > data_reference[append(&ast::Task::data)]) > (settings[to(&ast::Task::options)] | x3::expect[with_or_end])) |
+             settings[to(&ast::Task::options)] | x3::expect[preposition_or_end])];
 auto const settings_def = word("with") > option[push] > *(',' > option[push]);
 auto const verb_def = located[name[take_one_of<words::verbs>]];
 auto const preposition_def = located[name[take_one_of<words::prepositions>]];

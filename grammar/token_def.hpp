@@ -28,20 +28,20 @@ inline constexpr auto take_byte = [](auto& context) { x3::_val(context).value +=
 inline constexpr auto take_escape = [](auto& context) {
   x3::_val(context).value += x3::_attr(context) == 'n' ? '\n' : x3::_attr(context);
 };
-inline constexpr auto count_prime = [](auto& context) { ++x3::_val(context).primes; };
 
 auto const name_def = located[x3::lexeme[x3::raw[name_begin >> *name_byte][take_name]]];
+// `a..b` is a range: behind the dot of a path a name follows.
+auto const path_def = located[x3::lexeme[x3::raw[name_begin >> *name_byte >> *('.' >> name_begin >> *name_byte)][take_name]]];
 auto const text_def = located[x3::lexeme['"' >> *(('\\' >> x3::char_[take_escape]) | (x3::char_ - '"' - '\n')[take_byte]) >> '"']];
 // The dot needs a digit behind it, so `1..500` is a range; `inf` and `nan` are names.
 auto const fraction = '.' >> +digit;
 auto const exponent_part = (x3::lit('e') | 'E') >> -(x3::lit('+') | '-') >> +digit;
 auto const plain_number_def = located[x3::lexeme[x3::raw[+digit >> -fraction >> -exponent_part][take_value]]];
-auto const reference_def = located[name[to(&ast::Reference::name)] >> x3::no_skip[*x3::lit('\'')[count_prime]]];
 auto const equals_def = '=' >> !x3::lit('=');
 auto const tilde_def = x3::lit('~');
 auto const opening_brace_def = x3::lit('{');
 auto const end_of_statement_def = &(x3::lit('\n') | ';' | '}' | x3::eoi);
 
-BOOST_SPIRIT_DEFINE(name, text, plain_number, reference, equals, tilde, opening_brace, end_of_statement)
+BOOST_SPIRIT_DEFINE(name, path, text, plain_number, equals, tilde, opening_brace, end_of_statement)
 
 }  // namespace sysid::grammar

@@ -105,6 +105,7 @@ class DataChecker {
     use.channel_span = tree.channel.span;
     block_.measured.push_back(std::move(use));
   }
+  void take(ast::DataConstant const& tree) { fresh(constants_, tree.parameter, "constant"); }
   void take(ast::DataSplit const& tree) {
     for (ast::SplitPart const& part : tree.parts) {
       if (!fresh(parts_, part.name, "part")) continue;
@@ -125,7 +126,7 @@ class DataChecker {
   Scope scope_;
   DataBlock block_;
   std::optional<Span> file_, times_;
-  std::map<std::string, Span> inputs_, channels_, parts_;
+  std::map<std::string, Span> inputs_, channels_, parts_, constants_;
 };
 
 }  // namespace

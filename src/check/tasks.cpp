@@ -54,26 +54,26 @@ class TaskChecker {
   }
 
   void data(int& index, int& part, Model const* model, std::string const& preposition) {
-    if (!tree_.data) {
+    if (tree_.data.empty()) {
       diagnostics_.add(errors::data_missing(tree_, preposition));
       return;
     }
-    auto const found = item(tree_.data->data, names_.data, "data block");
+    auto const found = item(tree_.data.front().data, names_.data, "data block");
     if (!found) return;
     index = *found;
     DataBlock const& block = file_.data[static_cast<std::size_t>(index)];
-    if (tree_.data->part) {
+    if (tree_.data.front().part) {
       auto const place = std::find_if(block.parts.begin(), block.parts.end(),
-                                      [&](DataPart const& each) { return each.name == tree_.data->part->text; });
+                                      [&](DataPart const& each) { return each.name == tree_.data.front().part->text; });
       if (place == block.parts.end()) {
         std::vector<std::string> known;
         for (DataPart const& each : block.parts) known.push_back(each.name);
-        diagnostics_.add(errors::unknown_member(*tree_.data->part, "data `" + block.name + "`", "part", known));
+        diagnostics_.add(errors::unknown_member(*tree_.data.front().part, "data `" + block.name + "`", "part", known));
         return;
       }
       part = static_cast<int>(place - block.parts.begin());
     }
-    if (model != nullptr) check_binding(block, *model, tree_.data->span, diagnostics_);
+    if (model != nullptr) check_binding(block, *model, tree_.data.front().span, diagnostics_);
   }
 
   FitTask fit() {
@@ -194,7 +194,7 @@ class TaskChecker {
 
   SimulateTask simulate() {
     SimulateTask task;
-    if (tree_.data) diagnostics_.add(errors::data_unused(tree_, tree_.data->span));
+    if (!tree_.data.empty()) diagnostics_.add(errors::data_unused(tree_, tree_.data.front().span));
     auto const found = item(tree_.subject, names_.models, "model");
     if (!found) return task;
     task.model = *found;

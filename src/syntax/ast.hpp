@@ -46,7 +46,7 @@ struct UnitExpression;
 
 /// `m`, `s^2`, `s^-1`, `N^(1-n)`, `(m s)`: an atom or a group, a power, and whether a `/` stands before it.
 struct UnitFactor : Located {
-  std::variant<Name, Box<UnitExpression>> base;     // Name "1" for the digit 1
+  std::variant<Name, Box<UnitExpression>> base;  // Name "1" for the digit 1
   std::optional<Box<Expression>> exponent;
   bool reciprocal = false;
   friend bool operator==(UnitFactor const&, UnitFactor const&) = default;
@@ -71,11 +71,12 @@ struct Text : Located {
   friend bool operator==(Text const&, Text const&) = default;
 };
 
-/// `y''`: a name and how many primes follow it.
+/// `y''`, `spring.force`, `q[2]'`: a name, with those of the parts it lies in before it, its index and how many primes follow it.
 struct Reference : Located {
-  Name name;
+  Name name;                      // the whole path: "spring.force"
+  std::vector<Expression> index;  // `[i]` or `[i, j]`; empty: none
   int primes = 0;
-  friend bool operator==(Reference const&, Reference const&) = default;
+  friend bool operator==(Reference const&, Reference const&);
 };
 
 /// `- a`, `not a`.
@@ -123,22 +124,33 @@ struct Argument : Located {
   friend bool operator==(Argument const&, Argument const&) = default;
 };
 
+inline bool operator==(Reference const& a, Reference const& b) {
+  return a.name == b.name && a.index == b.index && a.primes == b.primes;
+}
 inline bool operator==(Call const& a, Call const& b) { return a.function == b.function && a.arguments == b.arguments; }
 inline bool operator==(List const& a, List const& b) { return a.items == b.items; }
 
-/// `m [kg]`.
+/// `m [kg]`, `q(3) [m]`, `M(2, 2)`, `k per experiment [N/m]`.
 struct Declared : Located {
   Name name;
+  std::vector<Expression> sizes;  // of a vector or a matrix; empty: a number
+  bool per_experiment = false;    // parameters only
   std::optional<UnitExpression> unit;
   friend bool operator==(Declared const&, Declared const&) = default;
 };
 
-// --- inside a model ---------------------------------------------------------------------------------------------------------------
+// --- inside a model
+// ---------------------------------------------------------------------------------------------------------------
 
 /// `time t [s]`.
 struct TimeDeclaration : Located {
   Declared time;
   friend bool operator==(TimeDeclaration const&, TimeDeclaration const&) = default;
+};
+/// `time discrete 0.25 [s]`: one step from each sample to the next; `step` may be left to the data.
+struct DiscreteTimeDeclaration : Located {
+  std::optional<Expression> step;
+  friend bool operator==(DiscreteTimeDeclaration const&, DiscreteTimeDeclaration const&) = default;
 };
 /// `input x [N], u [V]`.
 struct InputDeclaration : Located {
@@ -160,7 +172,8 @@ struct InitialDeclaration : Located {
   std::vector<InitialValue> values;
   friend bool operator==(InitialDeclaration const&, InitialDeclaration const&) = default;
 };
-/// `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`; neither: `prior` and `value` empty, which the checker refuses.
+/// `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`; neither: `prior` and `value` empty, which the checker
+/// refuses.
 struct ParameterDeclaration : Located {
   Declared name;
   std::optional<Call> prior;
@@ -188,24 +201,40 @@ struct Observation : Located {
   Call noise;
   friend bool operator==(Observation const&, Observation const&) = default;
 };
+/// `part spring = bouc_wen(n = 2, displacement = y)`: another model inside this one; its names are `spring.k`, ...
+struct Part : Located {
+  Name name;
+  Call model;
+  friend bool operator==(Part const&, Part const&) = default;
+};
 /// `m*y'' + c*y' = x`.
 struct Equation : Located {
   Expression left, right;
   friend bool operator==(Equation const&, Equation const&) = default;
 };
 
-using ModelStatement = std::variant<TimeDeclaration, InputDeclaration, StateDeclaration, InitialDeclaration, ParameterDeclaration, Definition,
-                                    FunctionDefinition, Observation, Equation>;
+using ModelStatement =
+    std::variant<TimeDeclaration, DiscreteTimeDeclaration, InputDeclaration, StateDeclaration, InitialDeclaration,
+                 ParameterDeclaration, Definition, FunctionDefinition, Observation, Part, Equation>;
 
-/// `model duffing "Duffing's oscillator" { ... }`.
+/// `n`, `n = 2`: an argument of a model, a whole number known when the model is used.
+struct ModelArgument : Located {
+  Name name;
+  std::optional<Expression> value;
+  friend bool operator==(ModelArgument const&, ModelArgument const&) = default;
+};
+
+/// `model duffing "Duffing's oscillator" { ... }`, `model bouc_wen(n) { ... }`.
 struct Model : Located {
   Name name;
+  std::vector<ModelArgument> arguments;
   std::optional<Text> title;
   std::vector<ModelStatement> statements;
   friend bool operator==(Model const&, Model const&) = default;
 };
 
-// --- inside a data block ----------------------------------------------------------------------------------------------------------
+// --- inside a data block
+// ----------------------------------------------------------------------------------------------------------
 
 /// A column by its name: an identifier or a text.
 struct Column : Located {
@@ -242,6 +271,12 @@ struct DataMeasure : Located {
   Column column;
   friend bool operator==(DataMeasure const&, DataMeasure const&) = default;
 };
+/// `constant dose = 30 [mg]`: what a parameter is in this experiment.
+struct DataConstant : Located {
+  Name parameter;
+  Expression value;
+  friend bool operator==(DataConstant const&, DataConstant const&) = default;
+};
 /// `split train = rows 1..500, test = rows 501..1500`; rows count from 1, both ends included.
 struct SplitPart : Located {
   Name name;
@@ -253,7 +288,7 @@ struct DataSplit : Located {
   friend bool operator==(DataSplit const&, DataSplit const&) = default;
 };
 
-using DataStatement = std::variant<DataFile, DataTime, DataRate, DataInput, DataMeasure, DataSplit>;
+using DataStatement = std::variant<DataFile, DataTime, DataRate, DataInput, DataMeasure, DataConstant, DataSplit>;
 
 /// `data bench { ... }`.
 struct Data : Located {
@@ -262,7 +297,8 @@ struct Data : Located {
   friend bool operator==(Data const&, Data const&) = default;
 };
 
-// --- tasks ------------------------------------------------------------------------------------------------------------------------
+// --- tasks
+// ------------------------------------------------------------------------------------------------------------------------
 
 /// `bench` or `bench.train`.
 struct DataReference : Located {
@@ -279,18 +315,25 @@ struct Option : Located {
   friend bool operator==(Option const&, Option const&) = default;
 };
 
-/// `posterior = fit duffing to bench.train with mh(samples = 25000), start = rest`.
+/// `posterior = fit duffing to bench.train with mh(samples = 25000), start = rest`; `fit bouc_wen(n = 2) to spring, summer`.
 struct Task : Located {
   std::optional<Name> name;
-  Name verb;                                // simulate, fit, predict
-  Name subject;                             // a model (simulate, fit) or a task (predict)
-  std::optional<Name> preposition;          // to, on
-  std::optional<DataReference> data;
+  Name verb;                        // simulate, fit, predict
+  Name subject;                     // a model (simulate, fit) or a task (predict)
+  std::vector<Argument> arguments;  // of the model
+  std::optional<Name> preposition;  // to, on
+  std::vector<DataReference> data;  // one experiment each
   std::vector<Option> options;
   friend bool operator==(Task const&, Task const&) = default;
 };
 
-using Item = std::variant<Model, Data, FunctionDefinition, Task>;
+/// `use hysteresis`: the models and functions of hysteresis.sysid, beside this file or in the standard library.
+struct Use : Located {
+  Name module;
+  friend bool operator==(Use const&, Use const&) = default;
+};
+
+using Item = std::variant<Use, Model, Data, FunctionDefinition, Task>;
 
 struct File {
   std::vector<Item> items;

@@ -7,7 +7,8 @@
 
 namespace sysid {
 
-/// The tree of a whole file, or nothing when anything was reported. Up to 20 independent syntax errors (E1...); never throws on any bytes.
+/// The tree of a whole file, or nothing when anything was reported. Up to 20 independent syntax errors (E1...); never throws on any
+/// bytes.
 std::optional<ast::File> parse(Source const& source, Diagnostics& diagnostics);
 
 /// One expression alone, for tests and for the command line (`--set k=1e4 [N/m]`).

@@ -78,6 +78,7 @@ std::string joined(Items const& items, std::string_view separator, Print print) 
 std::string bracketed(std::optional<ast::UnitExpression> const& unit) { return unit ? fmt::format(" [{}]", unparse(*unit)) : ""; }
 
 std::string text_of(ast::Call const& call);
+std::string text_of(ast::Reference const& reference);
 
 /// `leading`: nothing stands before the expression in its statement, and no statement begins with a sign.
 class Printer {
@@ -109,9 +110,7 @@ class Printer {
 
   std::string operator()(ast::Number const& number) const { return number_text(number.value) + bracketed(number.unit); }
   std::string operator()(ast::Text const& text) const { return quoted(text.value); }
-  std::string operator()(ast::Reference const& reference) const {
-    return reference.name.text + std::string(static_cast<std::size_t>(reference.primes), '\'');
-  }
+  std::string operator()(ast::Reference const& reference) const { return text_of(reference); }
   std::string operator()(ast::Box<ast::Unary> const& unary) const {
     if (unary->symbol == "not") return "not " + Printer()(*unary->operand, Binding::negation);
     return unary->symbol + Printer()(*unary->operand, Binding::sign);
@@ -134,6 +133,22 @@ class Printer {
 
   bool leading_;
 };
+
+std::string parenthesised(std::vector<ast::Expression> const& items) {
+  return items.empty() ? "" : fmt::format("({})", joined(items, ", ", [](auto const& item) { return unparse(item); }));
+}
+
+std::string text_of(ast::Reference const& reference) {
+  std::string out = reference.name.text;
+  if (!reference.index.empty())
+    out += fmt::format("[{}]", joined(reference.index, ", ", [](auto const& item) { return unparse(item); }));
+  return out + std::string(static_cast<std::size_t>(reference.primes), '\'');
+}
+
+std::string text_of(ast::Declared const& declared) {
+  return declared.name.text + parenthesised(declared.sizes) + (declared.per_experiment ? " per experiment" : "") +
+         bracketed(declared.unit);
+}
 
 std::string text_of(ast::Argument const& argument) {
   return argument.name ? fmt::format("{} = {}", argument.name->text, unparse(argument.value)) : unparse(argument.value);
@@ -164,17 +179,21 @@ std::string text_of(ast::UnitFactor const& factor) {
   return out;
 }
 
-std::string text_of(ast::Declared const& declared) { return declared.name.text + bracketed(declared.unit); }
 std::string text_of(ast::Name const& name) { return name.text; }
 
-std::string text_of(ast::InitialValue const& value) {
-  return fmt::format("{}{} = {}", value.state.name.text, std::string(static_cast<std::size_t>(value.state.primes), '\''),
-                     unparse(value.value));
-}
+std::string text_of(ast::InitialValue const& value) { return fmt::format("{} = {}", text_of(value.state), unparse(value.value)); }
 
 std::string text_of(ast::Option const& option) {
   std::string const key = option.key ? option.key->text + " = " : "";
   return (option.input ? "input " : "") + key + unparse(option.value);
+}
+
+std::string text_of(ast::ModelArgument const& argument) {
+  return argument.name.text + (argument.value ? " = " + unparse(*argument.value) : "");
+}
+
+std::string text_of(ast::DataReference const& reference) {
+  return reference.data.text + (reference.part ? "." + reference.part->text : "");
 }
 
 template <class Items>
@@ -199,6 +218,9 @@ std::string text_of(ast::FunctionDefinition const& function) {
 
 struct ModelStatementText {
   std::string operator()(ast::TimeDeclaration const& s) const { return "time " + text_of(s.time); }
+  std::string operator()(ast::DiscreteTimeDeclaration const& s) const {
+    return "time discrete" + (s.step ? " " + unparse(*s.step) : "");
+  }
   std::string operator()(ast::InputDeclaration const& s) const { return "input " + comma_list(s.names); }
   std::string operator()(ast::StateDeclaration const& s) const { return "state " + comma_list(s.names); }
   std::string operator()(ast::InitialDeclaration const& s) const { return "initial " + comma_list(s.values); }
@@ -216,6 +238,7 @@ struct ModelStatementText {
   std::string operator()(ast::Observation const& s) const {
     return fmt::format("observe {} ~ {}", text_of(s.channel), text_of(s.noise));
   }
+  std::string operator()(ast::Part const& s) const { return fmt::format("part {} = {}", s.name.text, text_of(s.model)); }
   std::string operator()(ast::Equation const& s) const {
     return fmt::format("{} = {}", Printer(true)(s.left, Binding::conditional), unparse(s.right));
   }
@@ -230,6 +253,9 @@ struct DataStatementText {
   }
   std::string operator()(ast::DataMeasure const& s) const {
     return fmt::format("measure {} = {}", s.channel.text, text_of(s.column));
+  }
+  std::string operator()(ast::DataConstant const& s) const {
+    return fmt::format("constant {} = {}", s.parameter.text, unparse(s.value));
   }
   std::string operator()(ast::DataSplit const& s) const {
     return "split " + joined(s.parts, ", ", [](ast::SplitPart const& part) {
@@ -246,9 +272,11 @@ std::string block(std::string const& head, Statements const& statements, Text te
 }
 
 struct ItemText {
+  std::string operator()(ast::Use const& use) const { return "use " + use.module.text; }
   std::string operator()(ast::Model const& model) const {
     std::string const title = model.title ? " " + quoted(model.title->value) : "";
-    return block("model " + model.name.text + title, model.statements, ModelStatementText{});
+    std::string const arguments = model.arguments.empty() ? "" : fmt::format("({})", comma_list(model.arguments));
+    return block("model " + model.name.text + arguments + title, model.statements, ModelStatementText{});
   }
   std::string operator()(ast::Data const& data) const {
     return block("data " + data.name.text, data.statements, DataStatementText{});
@@ -257,8 +285,8 @@ struct ItemText {
   std::string operator()(ast::Task const& task) const {
     std::string out = task.name ? task.name->text + " = " : "";
     out += task.verb.text + " " + task.subject.text;
-    if (task.preposition && task.data) out += fmt::format(" {} {}", task.preposition->text, task.data->data.text);
-    if (task.data && task.data->part) out += "." + task.data->part->text;
+    if (!task.arguments.empty()) out += fmt::format("({})", comma_list(task.arguments));
+    if (task.preposition && !task.data.empty()) out += fmt::format(" {} {}", task.preposition->text, comma_list(task.data));
     if (!task.options.empty()) out += " with " + comma_list(task.options);
     return out;
   }

@@ -14,17 +14,20 @@ namespace sysid::words {
 inline constexpr std::array<std::string_view, 6> reserved{"if", "then", "else", "and", "or", "not"};
 
 /// First words of what stands in a file; a task begins with its verb, or with its name and `=`.
-inline constexpr std::array<std::string_view, 3> items{"model", "data", "function"};
+inline constexpr std::array<std::string_view, 4> items{"use", "model", "data", "function"};
 inline constexpr std::array<std::string_view, 3> verbs{"simulate", "fit", "predict"};
 inline constexpr std::array<std::string_view, 3> prepositions{"to", "on", "from"};
 /// Inside a task.
 inline constexpr std::array<std::string_view, 2> task_words{"with", "input"};
 
 /// First words of the statements of a model; anything else there is an equation.
-inline constexpr std::array<std::string_view, 10> model_statements{"time",     "input", "state",  "initial",  "parameter",
-                                                                   "constant", "let",   "derive", "function", "observe"};
+inline constexpr std::array<std::string_view, 11> model_statements{"time", "input",  "state",    "initial", "parameter", "constant",
+                                                                   "let",  "derive", "function", "observe", "part"};
+/// Words inside them.
+inline constexpr std::array<std::string_view, 3> model_words{"discrete", "per", "experiment"};
 /// First words of the statements of a data block, and the words inside them.
-inline constexpr std::array<std::string_view, 7> data_statements{"file", "time", "rate", "step", "input", "measure", "split"};
+inline constexpr std::array<std::string_view, 8> data_statements{"file",  "time",    "rate",     "step",
+                                                                 "input", "measure", "constant", "split"};
 inline constexpr std::array<std::string_view, 2> data_words{"hold", "rows"};
 
 constexpr bool contains(std::span<std::string_view const> table, std::string_view word) {

@@ -183,6 +183,9 @@ void Ebnf::write_rule(std::string const& rule, int depth, Random& random, std::s
     write(rules_.at(rule), depth, random, out);
     // The side condition of the head: no statement begins with a sign.
   } while (rule == "equation" && out.compare(begin, 2, " -") == 0);
+  // Neither does a blank stand inside a path or before an index.
+  if (rule == "path") out.erase(std::remove(out.begin() + static_cast<std::ptrdiff_t>(begin) + 1, out.end(), ' '), out.end());
+  if (rule == "index") out.erase(begin, 1);
 }
 
 std::string Ebnf::sentence(std::string const& rule, int depth, Random& random) const {
@@ -244,6 +247,7 @@ TEST_CASE("the reference grammar and the tables hold the same words") {
   add(words::prepositions);
   add(words::task_words);
   add(words::model_statements);
+  add(words::model_words);
   add(words::data_statements);
   add(words::data_words);
   std::set<std::string> written;

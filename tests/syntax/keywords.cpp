@@ -104,7 +104,7 @@ TEST_CASE("tasks have an optional name, a place and options") {
   ast::Task const simulate =
       only_task("truth = simulate duffing with values(m = 1), input x = gaussian(sd = 10), noise = 1 [percent], seed = 1");
   CHECK(simulate.name->text == "truth");
-  CHECK_FALSE(simulate.data.has_value());
+  CHECK(simulate.data.empty());
   REQUIRE(simulate.options.size() == 4);
   CHECK_FALSE(simulate.options[0].key.has_value());
   CHECK(simulate.options[1].input);
@@ -114,11 +114,11 @@ TEST_CASE("tasks have an optional name, a place and options") {
   ast::Task const fit = only_task("fit duffing to bench.train with mh(samples = 25000, chains = 4), start = estimated(rows = 50)");
   CHECK_FALSE(fit.name.has_value());
   CHECK(fit.preposition->text == "to");
-  CHECK(fit.data->part->text == "train");
+  CHECK(fit.data.front().part->text == "train");
   ast::Task const predict = only_task("forecast = predict posterior on bench");
   CHECK(predict.verb.text == "predict");
   CHECK(predict.subject.text == "posterior");
-  CHECK_FALSE(predict.data->part.has_value());
+  CHECK_FALSE(predict.data.front().part.has_value());
   CHECK_FALSE(only_task("fit a with input = 3").options.at(0).input);
   CHECK_FALSE(only_task("fit a with input").options.at(0).key.has_value());
 }

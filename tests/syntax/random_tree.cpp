@@ -26,6 +26,13 @@ double RandomTree::value() {
   return random_.chance(4) ? static_cast<double>(random_.below(1U << 30U)) / 1024.0 * 1e-7 : random_.pick(values);
 }
 
+ast::Reference RandomTree::reference(int depth) {
+  ast::Reference out{{}, name(), {}, static_cast<int>(random_.below(3))};
+  if (random_.chance(6)) out.name.text += "." + name().text;
+  if (depth > 0 && random_.chance(4)) out.index = several(1, [&] { return expression(depth - 1); });
+  return out;
+}
+
 ast::Number RandomTree::number(int depth) {
   ast::Number out{{}, value(), {}};
   if (depth > 0 && random_.chance(3)) out.unit = unit(depth - 1);
@@ -58,7 +65,7 @@ ast::Expression RandomTree::expression(int depth) {
     case 0:
       return {{}, number(depth)};
     case 1:
-      return {{}, reference()};
+      return {{}, reference(depth)};
     case 2:
       return {{}, random_.chance(4) ? decltype(ast::Expression::node)(text()) : decltype(ast::Expression::node)(reference())};
     case 3:
@@ -75,7 +82,11 @@ ast::Expression RandomTree::expression(int depth) {
 }
 
 ast::Declared RandomTree::declared() {
-  return {{}, name(), perhaps([&] { return unit(1); })};
+  return {{},
+          name(),
+          random_.chance(4) ? several(1, [&] { return expression(1); }) : std::vector<ast::Expression>(),
+          false,
+          perhaps([&] { return unit(1); })};
 }
 ast::Column RandomTree::column() {
   return {{}, random_.chance(2) ? name().text : text().value, perhaps([&] { return unit(1); })};
@@ -86,7 +97,11 @@ ast::FunctionDefinition RandomTree::function() {
 
 ast::ModelStatement RandomTree::model_statement() {
   constexpr std::array kinds{ast::DefinitionKind::constant, ast::DefinitionKind::local, ast::DefinitionKind::derived};
-  switch (random_.below(9)) {
+  switch (random_.below(11)) {
+    case 9:
+      return ast::DiscreteTimeDeclaration{{}, perhaps([&] { return ast::Expression{{}, number(1)}; })};
+    case 10:
+      return ast::Part{{}, name(), call(2)};
     case 0:
       return ast::TimeDeclaration{{}, declared()};
     case 1:
@@ -97,6 +112,7 @@ ast::ModelStatement RandomTree::model_statement() {
       return ast::InitialDeclaration{{}, several(1, [&] { return ast::InitialValue{{}, reference(), expression(2)}; })};
     case 4: {
       ast::ParameterDeclaration out{{}, declared(), {}, {}};
+      out.name.per_experiment = random_.chance(3);
       if (random_.chance(2))
         out.prior = call(2);
       else
@@ -115,7 +131,9 @@ ast::ModelStatement RandomTree::model_statement() {
 }
 
 ast::DataStatement RandomTree::data_statement() {
-  switch (random_.below(6)) {
+  switch (random_.below(7)) {
+    case 5:
+      return ast::DataConstant{{}, name(), expression(2)};
     case 0:
       return ast::DataFile{{}, text()};
     case 1:
@@ -132,10 +150,12 @@ ast::DataStatement RandomTree::data_statement() {
 }
 
 ast::Task RandomTree::task() {
-  ast::Task out{{}, perhaps([&] { return name(); }), {{}, std::string(random_.pick(words::verbs))}, name(), {}, {}, {}};
+  ast::Task out{{}, perhaps([&] { return name(); }), {{}, std::string(random_.pick(words::verbs))}, name(), {}, {}, {}, {}};
+  if (random_.chance(3))
+    out.arguments = several(1, [&] { return ast::Argument{{}, perhaps([&] { return name(); }), expression(1)}; });
   if (random_.chance(2)) {
     out.preposition = ast::Name{{}, std::string(random_.pick(words::prepositions))};
-    out.data = ast::DataReference{{}, name(), perhaps([&] { return name(); })};
+    out.data = several(1, [&] { return ast::DataReference{{}, name(), perhaps([&] { return name(); })}; });
   }
   out.options = several(0, [&] {
     ast::Option option{{}, random_.chance(3), perhaps([&] { return name(); }), expression(2)};
@@ -148,7 +168,9 @@ ast::Task RandomTree::task() {
 ast::File RandomTree::file() {
   ast::File out;
   out.items = several(0, [&]() -> ast::Item {
-    switch (random_.below(4)) {
+    switch (random_.below(5)) {
+      case 3:
+        return ast::Use{{}, name()};
       case 0:
         return ast::Data{{}, name(), several(0, [&] { return data_statement(); })};
       case 1:
@@ -156,7 +178,14 @@ ast::File RandomTree::file() {
       case 2:
         return task();
       default:
-        return ast::Model{{}, name(), perhaps([&] { return text(); }), several(0, [&] { return model_statement(); })};
+        return ast::Model{{},
+                          name(),
+                          several(0,
+                                  [&] {
+                                    return ast::ModelArgument{{}, name(), perhaps([&] { return expression(1); })};
+                                  }),
+                          perhaps([&] { return text(); }),
+                          several(0, [&] { return model_statement(); })};
     }
   });
   return out;

@@ -37,7 +37,7 @@ class RandomTree {
   ast::Text text();
   double value();
   ast::Number number(int depth);
-  ast::Reference reference() { return {{}, name(), static_cast<int>(random_.below(3))}; }
+  ast::Reference reference(int depth = 0);
   ast::Call call(int depth);
   ast::Declared declared();
   ast::Column column();

@@ -61,7 +61,7 @@ TEST_CASE("a span over continued lines covers them") {
   Spans const text("p = fit a to b.c\n  with mh(samples =\n 10), start = rest # end\n");
   auto const& task = std::get<ast::Task>(text.file.items[0]);
   CHECK(text(task) == "p = fit a to b.c\n  with mh(samples =\n 10), start = rest");
-  CHECK(text(*task.data) == "b.c");
+  CHECK(text(task.data.front()) == "b.c");
   CHECK(text(task.options[0]) == "mh(samples =\n 10)");
   CHECK(text(task.options[1]) == "start = rest");
 }
