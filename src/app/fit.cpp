@@ -13,6 +13,7 @@
 #include "app/resolved.hpp"
 #include "app/results.hpp"
 #include "app/session.hpp"
+#include "app/solver_record.hpp"
 #include "app/tolerance.hpp"
 #include "core/files.hpp"
 #include "inference/bound_check.hpp"
@@ -32,35 +33,40 @@ using json = nlohmann::json;
 
 // What is known before the first sample: enough to go on from a checkpoint without searching again.
 struct Preparation {
-  int substeps = 1;
+  SolverSettings solver;
   std::vector<Mode> modes;
   Findings findings;
   Ledger ledger;
-  std::vector<std::pair<int, double>> moves;
+  std::vector<double> moves;
 };
 
 json store(Preparation const& preparation) {
-  json modes = json::array(), findings = json::array(), moves = json::array();
+  json modes = json::array(), findings = json::array();
   for (Mode const& mode : preparation.modes) modes.push_back(checkpoint::encode(mode));
   for (Finding const& f : preparation.findings) findings.push_back({static_cast<int>(f.severity), f.code, f.message, f.help});
-  for (auto const& [substeps, move] : preparation.moves) moves.push_back({substeps, move});
-  return {{"substeps", preparation.substeps},
+  return {{"solver", write_solver(preparation.solver)},
           {"modes", modes},
           {"findings", findings},
           {"ledger", checkpoint::encode(preparation.ledger)},
-          {"moves", moves}};
+          {"moves", preparation.moves}};
 }
 
 Preparation restore(json const& stored) {
   Preparation preparation;
-  preparation.substeps = stored.at("substeps").get<int>();
+  preparation.solver = read_solver(stored.at("solver"));
   for (auto const& mode : stored.at("modes")) preparation.modes.push_back(checkpoint::decode_mode(mode));
   for (auto const& f : stored.at("findings"))
     preparation.findings.push_back({static_cast<Severity>(f.at(0).get<int>()), f.at(1).get<std::string>(),
                                     f.at(2).get<std::string>(), f.at(3).get<std::string>()});
   preparation.ledger = checkpoint::decode_ledger(stored.at("ledger"));
-  for (auto const& move : stored.at("moves")) preparation.moves.emplace_back(move.at(0).get<int>(), move.at(1).get<double>());
+  preparation.moves = stored.at("moves").get<std::vector<double>>();
   return preparation;
+}
+
+// "8 integrator steps per sample", "cvode(relative = 1e-8)".
+std::string accuracy(SolverSettings const& solver) {
+  return solver.fixed_step() ? fmt::format("{} integrator step{} per sample", solver.substeps, solver.substeps == 1 ? "" : "s")
+                             : fmt::format("relative tolerances of {}", solver.relative);
 }
 
 std::vector<double> best_values(FitResult const& result) {
@@ -128,7 +134,7 @@ class Fit {
         folder_(session.result_folder(task)),
         seed_(stored_seed(session, task, what)),
         backend_(*find_backend(what.backend)),
-        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated)),
+        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method)),
         model_(compiled_->model),
         block_(session.file.data[static_cast<std::size_t>(what.data)]),
         record_(load_record(block_, model_, session.folder())),
@@ -150,7 +156,7 @@ class Fit {
       if (stored.contains("state")) context.resume = stored.at("state");
       session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
     }
-    target_ = make_target(preparation_.substeps);
+    target_ = make_target(preparation_.solver);
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     context.checkpoint = [this](json const& state) { save(state); };
@@ -161,9 +167,9 @@ class Fit {
   }
 
  private:
-  std::unique_ptr<ModelTarget> make_target(int substeps) const {
+  std::unique_ptr<ModelTarget> make_target(SolverSettings const& solver) const {
     TargetOptions options;
-    options.substeps = substeps;
+    options.solver = solver;
     options.start_rows = what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0;
     options.execution = session_.options.execution;
     options.describe = [this](NodeId node, Graph const& graph) { return session_.describe(what_.model, graph, node); };
@@ -199,9 +205,9 @@ class Fit {
 
   // Search and, unless the user fixed it, the step. False: interrupted.
   bool prepare(RunContext& context) {
-    MakeTarget const make = [this](int substeps) { return make_target(substeps); };
-    preparation_.substeps = what_.substeps > 0 ? what_.substeps : 1;
-    auto const target = make(preparation_.substeps);
+    MakeTarget const make = [this](SolverSettings const& solver) { return make_target(solver); };
+    preparation_.solver = what_.solver;
+    auto const target = make(preparation_.solver);
     RunContext search_context{
         seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
     SearchResult found = search(*target, Aim::posterior, search_context);
@@ -212,20 +218,19 @@ class Fit {
     }
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
-    if (what_.substeps > 0) return true;
-    SettledSubsteps settled = settle_substeps(make, std::move(preparation_.modes), seed_, preparation_.ledger);
-    preparation_.substeps = settled.substeps;
+    if (!what_.settle) return true;
+    SettledSolver settled = settle_solver(make, what_.solver, std::move(preparation_.modes), seed_, preparation_.ledger);
+    preparation_.solver = settled.solver;
     preparation_.modes = std::move(settled.modes);
     preparation_.moves = std::move(settled.moves);
-    if (settled.substeps > 1)
-      session_.notices << fmt::format(
-          "{}: {} integrator steps per sample (with one, parameters move by up to {:.2g} sd when the step is halved)\n", task_.name,
-          settled.substeps, preparation_.moves.front().second);
+    if (settled.solver != what_.solver)
+      session_.notices << fmt::format("{}: {} (with {}, parameters move by up to {:.2g} sd with {})\n", task_.name,
+                                      accuracy(settled.solver), accuracy(what_.solver), preparation_.moves.front(),
+                                      what_.solver.finer_words());
     if (!settled.settled)
-      preparation_.findings.push_back(
-          {Severity::error, "step_not_settled",
-           fmt::format("even {} integrator steps per sample do not settle the result", settled.substeps),
-           "the model may be stiff or chaotic on this record"});
+      preparation_.findings.push_back({Severity::error, "step_not_settled",
+                                       fmt::format("even {} do not settle the result", accuracy(settled.solver)),
+                                       "the model may be stiff or chaotic on this record"});
     return true;
   }
 
@@ -291,7 +296,7 @@ class Fit {
       report.fit = std::move(check.scores);
       add(check.findings);
       if (!preparation_.modes.empty()) add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
-      add(tolerance_findings(step_check(result.draws, extra), preparation_.substeps));
+      add(tolerance_findings(step_check(result.draws, extra), preparation_.solver));
     }
     if (interrupted)
       report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
@@ -306,8 +311,8 @@ class Fit {
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
-    report.settings.emplace_back("substeps", static_cast<std::int64_t>(preparation_.substeps));
-    report.resolved_text = resolved_fit(session_, task_, what_, result.settings, preparation_.substeps, seed_);
+    add_solver(preparation_.solver, report.settings);
+    report.resolved_text = resolved_fit(session_, task_, what_, result.settings, preparation_.solver, seed_);
     report.ledger = preparation_.ledger;
     report.ledger.merge(ledger_);
     report.draws = std::move(result.draws);
@@ -324,15 +329,15 @@ class Fit {
       return ExitCode::interrupted;
     }
     remove_file(checkpoint_path(folder_));
-    session_.fitted[index_] = {std::move(report.draws), preparation_.substeps};
+    session_.fitted[index_] = {std::move(report.draws), preparation_.solver};
     return verdict.pass ? ExitCode::success : ExitCode::doubtful;
   }
 
   // Draws tell by their weights, an optimum by where it moves.
   ToleranceCheck step_check(Draws const& draws, Ledger& extra) const {
-    auto const fine = make_target(2 * preparation_.substeps);
+    auto const fine = make_target(preparation_.solver.finer());
     if (draws.total() > 1) return check_tolerance(*target_, *fine, draws, extra);
-    if (what_.substeps == 0 || preparation_.modes.empty()) return {};  // settled before
+    if (what_.settle || preparation_.modes.empty()) return {};  // settled before
     Mode const& coarse = preparation_.modes.front();
     return {target_->parameters().front().name, largest_move(refit(*fine, {coarse}, seed_, extra).front(), coarse)};
   }
@@ -349,7 +354,7 @@ class Fit {
   // Bands over the fitted rows, for the report.
   Prediction fitted_rows(Draws const& draws) const {
     LaneArray const columns = spread(draws, 100);
-    Trajectory const trajectory(compiled_, experiment_, preparation_.substeps,
+    Trajectory const trajectory(compiled_, experiment_, preparation_.solver,
                                 what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
     return bands_along(trajectory, trajectory.run(columns, {seed_, Purpose::noise, 0, 0}), experiment_, model_);
   }

@@ -66,7 +66,7 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   target.residuals(theta, residuals, ledger);
   Experiment const& experiment = target.experiment();
   Model const& model = target.compiled().model;
-  Trajectory const trajectory(std::make_shared<CompiledModel const>(target.compiled()), experiment, target.options().substeps,
+  Trajectory const trajectory(std::make_shared<CompiledModel const>(target.compiled()), experiment, target.options().solver,
                               target.options().start_rows, target.options().execution);
   Trajectory::Result const predicted = trajectory.run(values, {});
   for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {

@@ -44,7 +44,8 @@ std::string dump_stage(Source const& source, std::string const& stage, Diagnosti
   auto const file = check(*tree, backend_settings(), diagnostics);
   if (!file) return {};
   std::string text;
-  for (Model const& model : file->models) text += stage == "model" ? dump(model) : dump_program(*compile(model, false));
+  for (Model const& model : file->models)
+    text += stage == "model" ? dump(model) : dump_program(*compile(model, false, SolverSettings{}.method));
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include "app/bands.hpp"
 #include "app/experiments.hpp"
 #include "app/reporting.hpp"
+#include "app/solver_record.hpp"
 #include "app/stored_draws.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/result.hpp"
@@ -16,14 +17,14 @@ ExitCode run_predict(Session& session, Task const& task, PredictTask const& what
   FittedModel const& fitted = fitted_model(session, what.fit);
   FitTask const& fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
   bool const free_start = what.start.kind == StartRule::Kind::estimated;
-  auto const compiled = session.compiled(fit.model, free_start);
+  auto const compiled = session.compiled(fit.model, free_start, fitted.solver.method);
   Model const& model = compiled->model;
   DataBlock const& block = session.file.data[static_cast<std::size_t>(what.data)];
   Record const record = load_record(block, model, session.folder());
   Experiment const experiment = cut(record, block, what.part, what.start);
   std::uint64_t const seed = session.seed(task, what.seed);
 
-  Trajectory const trajectory(compiled, experiment, fitted.substeps, free_start ? what.start.rows : 0, session.options.execution);
+  Trajectory const trajectory(compiled, experiment, fitted.solver, free_start ? what.start.rows : 0, session.options.execution);
   StreamKey const noise_key{seed, Purpose::noise, 0, 0};
   int const wanted = std::min<int>(what.draws, static_cast<int>(fitted.draws.total()));
   LaneArray const columns = spread(fitted.draws, what.redraw_each_step ? static_cast<int>(fitted.draws.total()) : wanted);
@@ -46,8 +47,8 @@ ExitCode run_predict(Session& session, Task const& task, PredictTask const& what
                      {"redraw", std::string(what.redraw_each_step ? "step" : "trajectory")},
                      {"start", std::string(free_start ? fmt::format("estimated(rows = {})", what.start.rows)
                                            : what.start.kind == StartRule::Kind::rest ? "rest"
-                                                                                      : "record")},
-                     {"substeps", static_cast<std::int64_t>(fitted.substeps)}};
+                                                                                      : "record")}};
+  add_solver(fitted.solver, report.settings);
   report.ledger.add_solves(static_cast<std::uint64_t>(wanted));
   if (result.failed > 0) {
     report.findings.push_back(

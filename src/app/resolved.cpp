@@ -48,18 +48,18 @@ std::string start_text(StartRule start) {
   return "?";
 }
 
-std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings, int substeps,
-                         std::uint64_t seed) {
+std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
+                         SolverSettings const& solver, std::uint64_t seed) {
   Diagnostics ignored;
   auto tree = parse(session.source, ignored);
   if (!tree) throw InternalError("a checked file does not parse again");
   std::erase_if(tree->items, [](ast::Item const& item) { return std::holds_alternative<ast::Task>(item); });
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
-      "start = {}, substeps = {}, seed = {}\n",
+      "start = {}, solver = {}, seed = {}\n",
       task.name, unparse(*tree), task.name, session.file.models[static_cast<std::size_t>(what.model)].name,
       data_name(session.file.data[static_cast<std::size_t>(what.data)], what.part), settings_text(what.backend, settings),
-      start_text(what.start), substeps, seed);
+      start_text(what.start), solver.text(), seed);
 }
 
 }  // namespace sysid

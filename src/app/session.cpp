@@ -11,9 +11,9 @@
 
 namespace sysid {
 
-std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start) {
-  auto& place = compiled_[{model, free_start}];
-  if (!place) place = compile(file.models[static_cast<std::size_t>(model)], free_start);
+std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start, std::string const& method) {
+  auto& place = compiled_[{model, free_start, method}];
+  if (!place) place = compile(file.models[static_cast<std::size_t>(model)], free_start, method);
   return place;
 }
 

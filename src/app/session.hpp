@@ -5,6 +5,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <tuple>
 
 #include "app/options.hpp"
 #include "check/checked.hpp"
@@ -18,7 +19,7 @@ namespace sysid {
 /// What a fit leaves for the tasks that refer to it.
 struct FittedModel {
   Draws draws;
-  int substeps = 1;
+  SolverSettings solver;
 };
 
 class Session {
@@ -39,7 +40,7 @@ class Session {
   std::filesystem::path folder() const { return std::filesystem::path(source.name()).parent_path(); }
   std::filesystem::path result_folder(Task const& task) const { return options.output / task.name; }
   /// Compiled on first use.
-  std::shared_ptr<CompiledModel const> compiled(int model, bool free_start);
+  std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method);
   /// The seed of a task: the command line's, the file's, or one drawn from the system and printed.
   std::uint64_t seed(Task const& task, std::optional<std::uint64_t> const& stated);
   /// A sub-expression in the user's words, for the ledger.
@@ -50,7 +51,7 @@ class Session {
   bool interrupted();
 
  private:
-  std::map<std::pair<int, bool>, std::shared_ptr<CompiledModel const>> compiled_;
+  std::map<std::tuple<int, bool, std::string>, std::shared_ptr<CompiledModel const>> compiled_;
   std::optional<std::uint64_t> drawn_seed_;
   std::uint64_t polls_ = 0;
 };

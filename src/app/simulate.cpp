@@ -25,7 +25,7 @@ double population_sd(std::vector<double> const& values) {
 // Made data carry the error of the integrator: said when it is more than a tenth of the noise (or a thousandth of the response).
 void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
-  Trajectory const finer(compiled, experiment, 2 * what.substeps, 0, session.options.execution);
+  Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.options.execution);
   Trajectory::Result const fine = finer.run_si(parameters, {});
   double const tolerable = what.noise_fraction > 0 ? 0.1 * what.noise_fraction : 1e-3;
   for (std::size_t q = 0; q < finer.quantities().size() && fine.failed == 0; ++q) {
@@ -34,9 +34,9 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= fine.values[q][0][i];
     double const share = population_sd(difference) / population_sd(fine.values[q][0]);
     if (share > tolerable)
-      session.notices << fmt::format(
-          "{}: warning: with half the step {} changes by {:.2g} % of its size; add `substeps = {}` or more\n", task.name,
-          finer.quantities()[q].name, 100 * share, 2 * what.substeps);
+      session.notices << fmt::format("{}: warning: with {} {} changes by {:.2g} % of its size; add `{}` or finer\n", task.name,
+                                     what.solver.finer_words(), finer.quantities()[q].name, 100 * share,
+                                     what.solver.finer().option());
   }
 }
 
@@ -50,7 +50,7 @@ std::string first_failure(Session const& session, SimulateTask const& what, Comp
     channel.assign(experiment.time.size(), std::nan(""));
     channel.back() = 0;
   }
-  Simulator const simulator(compiled.likelihood, Schedule(*compiled.likelihood, experiment, what.substeps),
+  Simulator const simulator(compiled.likelihood, Schedule(*compiled.likelihood, experiment, what.solver),
                             session.options.execution);
   std::vector<double> values;
   // What only the noise reads may have no value; any does here.
@@ -64,7 +64,7 @@ std::string first_failure(Session const& session, SimulateTask const& what, Comp
 }  // namespace
 
 ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) {
-  auto const compiled = session.compiled(what.model, false);
+  auto const compiled = session.compiled(what.model, false, what.solver.method);
   Model const& model = compiled->model;
   std::uint64_t const seed = session.seed(task, what.seed);
   // Several records made in one run with one seed are different records.
@@ -88,7 +88,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
   for (std::size_t p = 0; p < model.parameters.size(); ++p)
     parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
-  Trajectory const trajectory(compiled, experiment, what.substeps, 0, session.options.execution);
+  Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
   StreamKey const noise_key{seed, Purpose::noise, series, 0};
   Trajectory::Result const result = trajectory.run_si(parameters, noise_key);
   if (result.failed > 0)

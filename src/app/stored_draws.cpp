@@ -10,6 +10,7 @@
 
 #include "app/reporting.hpp"
 #include "app/results.hpp"
+#include "app/solver_record.hpp"
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
 
@@ -82,8 +83,7 @@ FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::st
     fitted.draws.chains.push_back(read_chain(read_file(path), parameters, path.string()));
   }
   auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
-  if (summary.is_object() && summary.contains("settings") && summary["settings"].contains("substeps"))
-    fitted.substeps = summary["settings"]["substeps"].get<int>();
+  if (summary.is_object() && summary.contains("settings")) fitted.solver = read_solver(summary["settings"]);
   return fitted;
 }
 

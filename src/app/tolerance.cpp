@@ -13,26 +13,34 @@ namespace sysid {
 namespace {
 
 constexpr int most_substeps = 256;
+constexpr double least_relative = 1e-12;
+
+bool too_fine(SolverSettings const& solver) {
+  return solver.fixed_step() ? solver.substeps > most_substeps : solver.relative < 0.99 * least_relative;
+}
+
 constexpr int checked_draws = 200;
 
 }  // namespace
 
-SettledSubsteps settle_substeps(MakeTarget const& make, std::vector<Mode> modes, std::uint64_t seed, Ledger& ledger) {
-  SettledSubsteps result;
+SettledSolver settle_solver(MakeTarget const& make, SolverSettings const& from, std::vector<Mode> modes, std::uint64_t seed,
+                            Ledger& ledger) {
+  SettledSolver result;
+  result.solver = from;
   result.modes = std::move(modes);
   while (true) {
-    std::vector<Mode> finer = refit(*make(2 * result.substeps), result.modes, seed, ledger);
+    std::vector<Mode> finer = refit(*make(result.solver.finer()), result.modes, seed, ledger);
     double move = 0;
     // Modes of no weight may move as they like.
     for (std::size_t m = 0; m < finer.size(); ++m)
       if (m == 0 || result.modes[m].share > 0.01) move = std::max(move, largest_move(finer[m], result.modes[m]));
-    result.moves.emplace_back(result.substeps, move);
+    result.moves.push_back(move);
     if (move <= tolerable_move) return result;
-    if (2 * result.substeps > most_substeps) {
+    if (too_fine(result.solver.finer())) {
       result.settled = false;
       return result;
     }
-    result.substeps *= 2;
+    result.solver = result.solver.finer();
     result.modes = std::move(finer);
   }
 }
@@ -67,14 +75,16 @@ ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fin
   return result;
 }
 
-Findings tolerance_findings(ToleranceCheck const& check, int substeps) {
+Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver) {
   if (check.move <= tolerable_move) return {};
   // To first order only: far beyond a few sds the number means no more than "many".
   std::string const move = check.move > 5 ? "many sds" : fmt::format("about {:.2g} sd", check.move);
-  return {
-      {Severity::error, "integration_step",
-       fmt::format("the integration step shapes the result: with half the step the mean of {} moves by {}", check.parameter, move),
-       fmt::format("fit again with `substeps = {}` or more, or leave `substeps` out and it is chosen", 2 * substeps)}};
+  return {{Severity::error, "integration_step",
+           fmt::format("the integration {} shapes the result: with {} the mean of {} moves by {}",
+                       solver.fixed_step() ? "step" : "tolerance", solver.finer_words(), check.parameter, move),
+           solver.fixed_step()
+               ? fmt::format("fit again with `{}` or more, or leave `substeps` out and it is chosen", solver.finer().option())
+               : fmt::format("fit again with `{}`, or leave the tolerances out and they are chosen", solver.finer().option())}};
 }
 
 }  // namespace sysid

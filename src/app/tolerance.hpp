@@ -9,22 +9,23 @@
 
 namespace sysid {
 
-/// A parameter may move by this many of its sds when the step is halved.
+/// A parameter may move by this many of its sds when the step is halved, or the tolerance made a hundred times smaller.
 constexpr double tolerable_move = 0.1;
 
-using MakeTarget = std::function<std::unique_ptr<ModelTarget>(int substeps)>;
+using MakeTarget = std::function<std::unique_ptr<ModelTarget>(SolverSettings const& solver)>;
 
-/// The smallest substeps = 1, 2, 4, ... for which no mode moves by more than `tolerable_move` sds at twice as many; the modes
+/// The first of `from`, `from.finer()`, ... for which no mode moves by more than `tolerable_move` sds at the next one; the modes
 /// there.
-struct SettledSubsteps {
-  int substeps = 1;
+struct SettledSolver {
+  SolverSettings solver;
   std::vector<Mode> modes;
-  std::vector<std::pair<int, double>> moves;  // substeps tried, largest move on doubling [sd]
-  bool settled = true;                        // false: still moving at the most that is tried (256)
+  std::vector<double> moves;  // of each that was tried: largest move to the next one [sd]
+  bool settled = true;        // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative)
 };
-SettledSubsteps settle_substeps(MakeTarget const& make, std::vector<Mode> modes, std::uint64_t seed, Ledger& ledger);
+SettledSolver settle_solver(MakeTarget const& make, SolverSettings const& from, std::vector<Mode> modes, std::uint64_t seed,
+                            Ledger& ledger);
 
-/// After sampling: by how many sds each posterior mean moves when the step is halved, from the change of log likelihood over up to
+/// After sampling: by how many sds each posterior mean moves with the finer solver, from the change of log likelihood over up to
 /// 200 draws (to first order the move of a mean is the covariance of the parameter with that change). Names the worst.
 struct ToleranceCheck {
   std::string parameter;
@@ -33,6 +34,6 @@ struct ToleranceCheck {
 ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fine, Draws const& draws, Ledger& ledger);
 
 /// Fires above `tolerable_move`.
-Findings tolerance_findings(ToleranceCheck const& check, int substeps);
+Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver);
 
 }  // namespace sysid

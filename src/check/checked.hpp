@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/settings.hpp"
+#include "core/solver.hpp"
 #include "data/experiment.hpp"
 #include "model/model.hpp"
 
@@ -77,7 +78,7 @@ struct SimulateTask {
   double noise_fraction = -1;                 // of the standard deviation of each clean channel; negative: the model's own noise
   int samples = 0;
   double step = 0;  // [s]
-  int substeps = 1;
+  SolverSettings solver;
   std::optional<std::uint64_t> seed;
   std::string file;  // name of the CSV in the result folder
 };
@@ -89,7 +90,8 @@ struct FitTask {
   std::string backend;
   Settings settings;  // of the back end
   StartRule start;
-  int substeps = 0;  // 0: chosen by the tolerance guard
+  SolverSettings solver;
+  bool settle = true;  // the tolerance guard chooses how fine the solver is, from `solver` on
   std::optional<std::uint64_t> seed;
 };
 

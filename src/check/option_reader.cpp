@@ -137,6 +137,34 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
   }
 }
 
+bool OptionReader::solver(ast::Option const& option, SolverSettings& place) {
+  if (solver_) {
+    diagnostics_.add(errors::stated_twice(option.span, *solver_, "the solver"));
+    return true;
+  }
+  solver_ = option.span;
+  if (option.key->text == "substeps") {
+    if (as_word(option.value) == "automatic") return false;
+    whole(option, "substeps", 1, 10000, place.substeps);
+    return true;
+  }
+  ast::Call const* call = as_call(option.value);
+  std::string const name = call != nullptr ? call->function.text : as_word(option.value).value_or("this");
+  SolverRow const* row = find_solver(name);
+  if (row == nullptr) {
+    std::vector<std::string> names;
+    for (SolverRow const& each : solvers()) names.emplace_back(each.name);
+    diagnostics_.add(errors::option_choice(head_span(option.value), "solver", name, names));
+    return true;
+  }
+  Settings values(row->settings);
+  if (call != nullptr) settings(*call, row->settings, values);
+  place = make_solver(*row, values);
+  return call != nullptr && std::any_of(call->arguments.begin(), call->arguments.end(), [](ast::Argument const& argument) {
+           return argument.name && argument.name->text != "steps";  // the work budget is no statement of accuracy
+         });
+}
+
 void OptionReader::unknown(ast::Option const& option, std::vector<std::string> const& known) {
   std::string const key = key_of(option);
   diagnostics_.add(

@@ -42,6 +42,8 @@ class OptionReader {
   void seed(ast::Option const& option, std::optional<std::uint64_t>& place);
   /// record, rest or estimated(rows = 50).
   void start(ast::Option const& option, StartRule& place);
+  /// `substeps = n`, short for rk4, or `solver = cvode(relative = 1e-8)`; one of them, once. Whether its accuracy was stated.
+  bool solver(ast::Option const& option, SolverSettings& place);
   /// A table of settings against `name(key = value, ...)`.
   void settings(ast::Call const& call, std::span<SettingRow const> rows, Settings& place);
 
@@ -57,6 +59,7 @@ class OptionReader {
   Graph graph_;
   Scope scope_;
   std::map<std::string, Span> seen_;
+  std::optional<Span> solver_;  // where the solver was stated
 };
 
 }  // namespace sysid

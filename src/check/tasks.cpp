@@ -93,16 +93,15 @@ class TaskChecker {
         if (ast::Call const* call = as_call(option.value)) options_.settings(*call, backend->settings, task.settings);
       } else if (!option.input && option.key && key == "start") {
         if (options_.fresh(option, key)) options_.start(option, task.start);
-      } else if (!option.input && option.key && key == "substeps") {
-        if (options_.fresh(option, key) && as_word(option.value) != "automatic")
-          options_.whole(option, key, 1, 10000, task.substeps);
+      } else if (!option.input && option.key && (key == "substeps" || key == "solver")) {
+        if (options_.fresh(option, key)) task.settle = !options_.solver(option, task.solver);
       } else if (!option.input && option.key && key == "seed") {
         if (options_.fresh(option, key)) options_.seed(option, task.seed);
       } else if (!option.input && !option.key && !key.empty()) {
         diagnostics_.add(errors::unknown_backend({{head_span(option.value)}, key}, names));
         task.backend = key;  // said once is enough
       } else {
-        options_.unknown(option, {"start", "substeps", "seed"});
+        options_.unknown(option, {"start", "solver", "substeps", "seed"});
       }
     }
     if (task.backend.empty() && diagnostics_.all().size() == before_) diagnostics_.add(errors::backend_missing(tree_, names));
@@ -204,7 +203,8 @@ class TaskChecker {
     std::vector<bool> given(model.inputs.size(), false);
     std::vector<Span> places(model.inputs.size());
     std::optional<Span> spacing;
-    std::vector<std::string> const options = {"values", "input", "noise", "samples", "rate", "step", "substeps", "seed", "file"};
+    std::vector<std::string> const options = {"values", "input",  "noise",    "samples", "rate",
+                                              "step",   "solver", "substeps", "seed",    "file"};
     for (ast::Option const& option : tree_.options) {
       std::string const key = key_of(option);
       if (!options_.fresh(option, key)) continue;
@@ -235,8 +235,8 @@ class TaskChecker {
         spacing = option.span;
         if (auto const value = options_.number(option.value, key, unit_of(key == "rate" ? "Hz" : "s"), 1e-300, 1e300))
           task.step = key == "rate" ? 1 / *value : *value;
-      } else if (option.key && key == "substeps") {
-        options_.whole(option, key, 1, 10000, task.substeps);
+      } else if (option.key && (key == "substeps" || key == "solver")) {
+        options_.solver(option, task.solver);
       } else if (option.key && key == "seed") {
         options_.seed(option, task.seed);
       } else if (option.key && key == "file") {

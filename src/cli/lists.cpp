@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "inference/backend.hpp"
@@ -20,6 +21,13 @@ std::string signature(DistributionRow const& row) {
   return fmt::format("{}({})", row.name, text);
 }
 
+std::string with_settings(std::string_view name, std::string_view summary, std::span<SettingRow const> settings) {
+  std::string text = fmt::format("{}: {}\n", name, summary);
+  for (SettingRow const& setting : settings)
+    text += fmt::format("  {:<10} {:<10} {}\n", setting.name, setting.fallback, setting.summary);
+  return text;
+}
+
 }  // namespace
 
 std::string list(std::string const& topic) {
@@ -29,12 +37,10 @@ std::string list(std::string const& topic) {
   } else if (topic == "distributions") {
     for (DistributionRow const& row : distributions())
       text += fmt::format("{:<68} {}{}\n", signature(row), row.summary, row.noise ? "; also as noise" : "");
+  } else if (topic == "solvers") {
+    for (SolverRow const& row : solvers()) text += with_settings(row.name, row.summary, row.settings);
   } else {
-    for (BackendRow const& row : backends()) {
-      text += fmt::format("{}: {}\n", row.name, row.summary);
-      for (SettingRow const& setting : row.settings)
-        text += fmt::format("  {:<10} {:<10} {}\n", setting.name, setting.fallback, setting.summary);
-    }
+    for (BackendRow const& row : backends()) text += with_settings(row.name, row.summary, row.settings);
   }
   return text;
 }

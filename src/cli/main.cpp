@@ -191,10 +191,10 @@ int main(int argument_count, char** arguments) {
   CLI::App* formatting = app.add_subcommand("fmt", "print a file in canonical layout (comments are not kept)");
   formatting->add_option("file", line.file, "the .sysid file")->required();
   formatting->callback([&] { exit = format(line); });
-  CLI::App* listing = app.add_subcommand("list", "list functions, distributions or backends");
-  listing->add_option("what", line.topic, "functions, distributions or backends")
+  CLI::App* listing = app.add_subcommand("list", "list functions, distributions, backends or solvers");
+  listing->add_option("what", line.topic, "functions, distributions, backends or solvers")
       ->required()
-      ->check(CLI::IsMember({"functions", "distributions", "backends"}));
+      ->check(CLI::IsMember({"functions", "distributions", "backends", "solvers"}));
   listing->callback([&] { std::cout << list(line.topic); });
   CLI::App* explaining = app.add_subcommand("explain", "what an error code means, with an example and its mended twin");
   explaining->add_option("code", line.code, "a code such as E2001; none: list all");

@@ -96,8 +96,11 @@ NodeId deviance_residual(Graph& graph, ChannelDensity const& density, int index)
   return graph.multiply(graph.unary(Operation::sign, graph.subtract(measured, density.centre)), size);
 }
 
-SimulationSource dynamics(Folded& folded, Model const& model, bool free_start) {
+SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
+  Model const& model = compiled.model;
+  bool const free_start = compiled.free_start;
   SimulationSource source;
+  source.integrator = compiled.method;
   int const all = static_cast<int>(model.parameters.size());
   source.parameters = all + (free_start ? static_cast<int>(model.states.size()) : 0);
   source.inputs = static_cast<int>(model.inputs.size());
@@ -184,7 +187,7 @@ void compile_programs(CompiledModel& compiled) {
   for (std::size_t c = 0; c < model.channels.size(); ++c)
     densities.push_back(channel_density(folded, model.channels[c], static_cast<int>(c)));
 
-  SimulationSource likelihood = dynamics(folded, model, compiled.free_start), residuals = likelihood, trajectory = likelihood;
+  SimulationSource likelihood = dynamics(folded, compiled), residuals = likelihood, trajectory = likelihood;
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     likelihood.channels.push_back({{densities[c].sample}});
     residuals.channels.push_back({{densities[c].saturated}});
@@ -229,10 +232,11 @@ int CompiledModel::parameter_rows() const {
   return static_cast<int>(model.parameters.size()) + (free_start ? static_cast<int>(model.states.size()) : 0);
 }
 
-std::shared_ptr<CompiledModel const> compile(Model model, bool free_start) {
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method) {
   auto compiled = std::make_shared<CompiledModel>();
   compiled->model = std::move(model);
   compiled->free_start = free_start;
+  compiled->method = method;
   compile_coordinates(*compiled);
   compile_programs(*compiled);
   return compiled;

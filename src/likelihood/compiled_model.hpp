@@ -18,6 +18,7 @@ struct CompiledModel {
   Model model;
   std::vector<int> sampled;  // model parameter of each coordinate, in the user's order; size D
   bool free_start = false;
+  std::string method;  // of the solver that the simulations are compiled for
 
   Kernel constrain;                // u [D] -> parameters, SI [all parameters]
   Kernel unconstrain;              // parameters, SI [all parameters] -> u [D]
@@ -40,8 +41,8 @@ struct CompiledModel {
   int parameter_rows() const;
 };
 
-/// free_start: the initial state is read from extra parameter rows instead of the model's initial values.
-std::shared_ptr<CompiledModel const> compile(Model model, bool free_start);
+/// free_start: the initial state is read from extra parameter rows instead of the model's initial values. method: a solver's name.
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method);
 
 /// What `--dump program` prints: the likelihood program and the kernels of the prior.
 std::string dump_program(CompiledModel const& compiled);

@@ -23,11 +23,11 @@ ModelTarget::ModelTarget(std::shared_ptr<CompiledModel const> compiled, Experime
     : compiled_(std::move(compiled)),
       experiment_(std::move(experiment)),
       options_(std::move(options)),
-      likelihood_(compiled_->likelihood, Schedule(*compiled_->likelihood, experiment_, options_.substeps), options_.execution),
-      residuals_(compiled_->residuals, Schedule(*compiled_->residuals, experiment_, options_.substeps), options_.execution) {
+      likelihood_(compiled_->likelihood, Schedule(*compiled_->likelihood, experiment_, options_.solver), options_.execution),
+      residuals_(compiled_->residuals, Schedule(*compiled_->residuals, experiment_, options_.solver), options_.execution) {
   if (compiled_->free_start != (options_.start_rows > 0)) throw InternalError("free start without rows to estimate it from");
   if (options_.start_rows > 0)
-    start_ = std::make_unique<StartState>(compiled_, experiment_, options_.start_rows, options_.substeps, options_.execution);
+    start_ = std::make_unique<StartState>(compiled_, experiment_, options_.start_rows, options_.solver, options_.execution);
   Model const& model = compiled_->model;
   Graph graph = model.graph;
   for (int const index : compiled_->sampled) {

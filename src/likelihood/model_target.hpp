@@ -11,8 +11,8 @@
 namespace sysid {
 
 struct TargetOptions {
-  int substeps = 1;
-  int start_rows = 0;  // > 0: the start state is estimated from so many rows
+  SolverSettings solver;  // of the method that the model was compiled for
+  int start_rows = 0;     // > 0: the start state is estimated from so many rows
   ExecutionOptions execution;
   std::function<std::string(NodeId, Graph const&)> describe;  // a sub-expression in the user's words, for the ledger
 };

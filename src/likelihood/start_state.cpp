@@ -25,12 +25,12 @@ int clamp_rows(Experiment const& experiment, int rows) { return std::min(rows, s
 
 }  // namespace
 
-StartState::StartState(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int rows, int substeps,
-                       ExecutionOptions options)
+StartState::StartState(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int rows,
+                       SolverSettings const& solver, ExecutionOptions options)
     : compiled_(std::move(compiled)),
       rows_(clamp_rows(experiment, rows)),
       simulator_(compiled_->trajectory,
-                 Schedule(*compiled_->trajectory, window_of(experiment, clamp_rows(experiment, rows)), substeps), options) {
+                 Schedule(*compiled_->trajectory, window_of(experiment, clamp_rows(experiment, rows)), solver), options) {
   for (std::size_t r = 0; r < compiled_->records.size(); ++r) {
     auto const& record = compiled_->records[r];
     if (record.kind != CompiledModel::Record::Kind::centre) continue;

@@ -14,7 +14,7 @@ namespace sysid {
 class StartState {
  public:
   /// compiled: with a free start. experiment: begins at the row whose state is wanted; its first `rows` rows are the window.
-  StartState(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int rows, int substeps,
+  StartState(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int rows, SolverSettings const& solver,
              ExecutionOptions options);
 
   /// parameters: [parameter_rows x W], SI; reads the model's parameters, writes the rows of the start state.

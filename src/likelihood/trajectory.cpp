@@ -22,11 +22,11 @@ Quantity const& quantity_of(Model const& model, CompiledModel::Record const& rec
 
 }  // namespace
 
-Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int substeps, int start_rows,
-                       ExecutionOptions options)
+Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
+                       int start_rows, ExecutionOptions options)
     : compiled_(std::move(compiled)),
-      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, substeps), options) {
-  if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, substeps, options);
+      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, solver), options) {
+  if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, solver, options);
   for (auto const& record : compiled_->records) {
     if (record.kind == RecordKind::noise_argument) continue;
     Quantity const& quantity = quantity_of(compiled_->model, record);

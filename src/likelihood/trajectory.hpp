@@ -20,8 +20,8 @@ struct TrajectoryQuantity {
 class Trajectory {
  public:
   /// start_rows > 0: the compiled model has a free start, fitted to the experiment's first rows.
-  Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int substeps, int start_rows,
-             ExecutionOptions options);
+  Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
+             int start_rows, ExecutionOptions options);
 
   std::vector<TrajectoryQuantity> const& quantities() const { return quantities_; }
   int samples() const { return simulator_.schedule().samples(); }

@@ -1,13 +1,14 @@
 // One block of lanes on its way through the schedule. State and accumulators stay in its register file between calls, so a run may
 // stop anywhere, be looked at, lose its dead lanes and go on.
 #pragma once
-#include <span>
+#include <memory>
 #include <vector>
 
 #include "core/lanes.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
 #include "simulate/schedule.hpp"
+#include "simulate/stepper.hpp"
 
 namespace sysid {
 
@@ -36,19 +37,20 @@ class Block {
   ConstLanes sums() const { return rows(program_.registers.first_sum(), program_.registers.sums); }
   /// The sample at which a lane was found dead; -1: it lives.
   std::vector<int> const& death() const { return death_; }
+  /// Why a dead lane died.
+  FailureClass failure(int lane) const { return failure_[static_cast<std::size_t>(lane)]; }
 
  private:
-  ConstLanes rows(int first, int count) const { return {rows_ + first * executor_.stride(), count, lanes_, executor_.stride()}; }
-  void load_row(double const* row, int width);
-
+  ConstLanes rows(int first, int count) const { return file_.rows(first, count).columns(0, lanes_); }
   SimulationProgram const& program_;
   Schedule const& schedule_;
   Executor executor_;
   int lanes_;
-  LaneArray file_;
-  double* row_;   // uniforms of the running section, after the constants
-  double* rows_;  // registers
+  LaneArray memory_;
+  LaneFile file_;
+  std::unique_ptr<Stepper> stepper_;
   std::vector<int> death_;
+  std::vector<FailureClass> failure_;
 };
 
 }  // namespace sysid

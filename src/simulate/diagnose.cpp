@@ -42,7 +42,7 @@ class Solve {
     states_ = graph.evaluate(initial, parameter);
     for (int sample = 0; sample < schedule_.last_summed(); ++sample) {
       if (auto const node = look_at_sums(sample)) return Diagnosis{*node, schedule_.time(sample), sample};
-      for (int substep = 0; substep < schedule_.substeps() && sample + 1 < schedule_.last_summed(); ++substep)
+      for (int substep = 0; substep < schedule_.solver().substeps && sample + 1 < schedule_.last_summed(); ++substep)
         if (auto const found = step(sample, substep)) return found;
     }
     return std::nullopt;

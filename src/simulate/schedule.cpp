@@ -8,10 +8,11 @@
 
 namespace sysid {
 
-Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, int substeps)
-    : experiment_(experiment), substeps_(substeps) {
+Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver)
+    : experiment_(experiment), solver_(solver) {
   std::size_t const channels = program.source.channels.size();
-  if (substeps < 1 || static_cast<int>(experiment.inputs.size()) < program.source.inputs || experiment.measured.size() < channels)
+  if (solver.substeps < 1 || solver.method != program.source.integrator ||
+      static_cast<int>(experiment.inputs.size()) < program.source.inputs || experiment.measured.size() < channels)
     throw InternalError("the experiment does not fit the program");
 
   for (std::size_t c = 0; c < channels; ++c) {
@@ -28,7 +29,7 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
     counts_.push_back(count);
   }
 
-  steps_ = tabulate(program.step.uniforms, (samples() - 1) * substeps, true);
+  if (solver.fixed_step()) steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
   records_ = tabulate(program.record.uniforms, samples(), false);
   for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
 
@@ -50,7 +51,7 @@ int Schedule::count(int channel) const { return counts_[static_cast<std::size_t>
 
 double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const {
   double const place = leaf.stage == Stage::begin ? 0 : leaf.stage == Stage::middle ? 0.5 : 1;
-  double const s = (substep + place) / substeps_;
+  double const s = (substep + place) / solver_.substeps;
   double const interval = time(sample + 1) - time(sample);
   switch (leaf.kind) {
     case LeafKind::input:
@@ -60,7 +61,7 @@ double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const
     case LeafKind::time:
       return time(sample) + s * interval;
     case LeafKind::step_size:
-      return interval / substeps_;
+      return interval / solver_.substeps;
     default:
       throw InternalError("a step reads what only a sample has");
   }
@@ -91,7 +92,8 @@ UniformRows Schedule::tabulate(UniformTable const& table, int rows, bool steps) 
   LaneArray leaves(table.kernel.inputs, rows), values(width, rows);
   for (int k = 0; k < table.kernel.inputs; ++k) {
     UniformLeaf const& leaf = table.leaves[static_cast<std::size_t>(k)];
-    for (int r = 0; r < rows; ++r) leaves(k, r) = steps ? at_step(leaf, r / substeps_, r % substeps_) : at_sample(leaf, r);
+    for (int r = 0; r < rows; ++r)
+      leaves(k, r) = steps ? at_step(leaf, r / solver_.substeps, r % solver_.substeps) : at_sample(leaf, r);
   }
   run(table.kernel, leaves, values);
   for (int r = 0; r < rows; ++r)

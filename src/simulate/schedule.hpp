@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/solver.hpp"
 #include "data/experiment.hpp"
 #include "program/simulation_program.hpp"
 
@@ -19,12 +20,12 @@ struct UniformRows {
 
 class Schedule {
  public:
-  /// substeps >= 1: integrator steps per sampling interval. Needs as many inputs and channels in the experiment as the program
+  /// solver: of the method that the program was compiled for. Needs as many inputs and channels in the experiment as the program
   /// reads.
-  Schedule(SimulationProgram const& program, Experiment const& experiment, int substeps);
+  Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver);
 
   int samples() const { return static_cast<int>(experiment_.time.size()); }
-  int substeps() const { return substeps_; }
+  SolverSettings const& solver() const { return solver_; }
   Experiment const& experiment() const { return experiment_; }
   double time(int sample) const { return experiment_.time[static_cast<std::size_t>(sample)]; }
   /// Whether the sample of the channel is summed: its row is scored and it is not missing.
@@ -34,8 +35,8 @@ class Schedule {
   /// One past the last sample that is summed in any channel.
   int last_summed() const { return last_summed_; }
 
-  /// Step `substep` of the interval after `sample`.
-  double const* step_row(int sample, int substep) const { return steps_.row(sample * substeps_ + substep); }
+  /// Step `substep` of the interval after `sample`; fixed steps only.
+  double const* step_row(int sample, int substep) const { return steps_.row(sample * solver_.substeps + substep); }
   double const* observe_row(int channel, int sample) const { return observe_[static_cast<std::size_t>(channel)].row(sample); }
   double const* record_row(int sample) const { return records_.row(sample); }
   std::vector<double> const& epilogue_row() const { return epilogue_; }
@@ -49,7 +50,7 @@ class Schedule {
   UniformRows tabulate(UniformTable const& table, int rows, bool steps) const;
 
   Experiment experiment_;
-  int substeps_ = 1;
+  SolverSettings solver_;
   std::vector<std::vector<std::uint8_t>> summed_;  // [channels][samples]
   std::vector<int> counts_;
   int last_summed_ = 0;

@@ -33,7 +33,7 @@ Simulator::Simulator(std::shared_ptr<SimulationProgram const> program, Schedule 
 
 void Simulator::for_each_block(int width, int samples, Work const& work) const {
   if (width == 0) return;
-  double const instructions = static_cast<double>(program_->step.code.size()) * schedule_.substeps() * samples * width;
+  double const instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
   bool const threaded = pool_ && instructions > small_job;
   int widest = options_.lanes;
   if (widest == 0) {
@@ -71,9 +71,10 @@ void Simulator::sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcom
     ConstLanes const sums = block.sums();
     for (int w = 0; w < lanes; ++w) {
       Outcome& result = outcome[static_cast<std::size_t>(lane + w)];
-      result = {block.death()[static_cast<std::size_t>(w)] < 0, block.death()[static_cast<std::size_t>(w)]};
+      int const death = block.death()[static_cast<std::size_t>(w)];
+      result = {death < 0, death, block.failure(w)};
       for (int r = 0; r < sums.rows() && result.ok; ++r)
-        if (!std::isfinite(sums(r, w))) result = {false, std::max(0, end - 1)};
+        if (!std::isfinite(sums(r, w))) result = {false, std::max(0, end - 1), FailureClass::non_finite};
       for (int r = 0; r < sums.rows(); ++r) out(r, lane + w) = result.ok ? sums(r, w) : not_a_number;
     }
   });
@@ -103,7 +104,7 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
   }
   for (int w = 0; w < lanes; ++w) {
     int const death = block.death()[static_cast<std::size_t>(w)];
-    outcome[static_cast<std::size_t>(lane + w)] = {death < 0, death};
+    outcome[static_cast<std::size_t>(lane + w)] = {death < 0, death, block.failure(w)};
     if (death < 0) continue;
     for (int r = 0; r < (last - first) * records; ++r) out(r, lane + w) = not_a_number;
   }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/lanes.hpp"
+#include "core/ledger.hpp"
 #include "program/simulation_program.hpp"
 #include "simulate/schedule.hpp"
 
@@ -25,6 +26,7 @@ struct ExecutionOptions {
 struct Outcome {
   bool ok = true;
   int sample = -1;
+  FailureClass kind = FailureClass::non_finite;
 };
 
 /// The first sub-expression of a failed solve that is not finite, and when.

@@ -12,7 +12,8 @@ namespace {
 
 void run_batches(benchmark::State& state, Case const& each, InstructionSet set, int width) {
   force_instruction_set(set);
-  Simulator const simulator(each.program, Schedule(*each.program, each.experiment, 1), {.lanes = width, .threads = 1});
+  Simulator const simulator(each.program, Schedule(*each.program, each.experiment, {.substeps = 1}),
+                            {.lanes = width, .threads = 1});
   LaneArray const parameters = each.parameters(width);
   LaneArray sums(each.program->sum_count(), width);
   std::vector<Outcome> outcome(static_cast<std::size_t>(width));
@@ -33,7 +34,7 @@ void compilation(benchmark::State& state) {
 }
 
 void schedule(benchmark::State& state, Case const& each) {
-  for (auto _ : state) benchmark::DoNotOptimize(Schedule(*each.program, each.experiment, 1));
+  for (auto _ : state) benchmark::DoNotOptimize(Schedule(*each.program, each.experiment, {.substeps = 1}));
 }
 
 }  // namespace

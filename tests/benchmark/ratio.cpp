@@ -42,7 +42,8 @@ void compare(Case const& each, InstructionSet set, int width) {
     columns.emplace_back();
     for (int r = 0; r < parameters.rows(); ++r) columns.back().push_back(parameters(r, w));
   }
-  Simulator const simulator(each.program, Schedule(*each.program, each.experiment, 1), {.lanes = width, .threads = 1});
+  Simulator const simulator(each.program, Schedule(*each.program, each.experiment, {.substeps = 1}),
+                            {.lanes = width, .threads = 1});
   LaneArray sums(each.program->sum_count(), width);
   std::vector<Outcome> outcome(static_cast<std::size_t>(width));
   int const batches = std::max(1, trajectories / 4 / width);

@@ -56,10 +56,15 @@ TEST_CASE("settings of a back end are its defaults where they are not given") {
   CHECK(task.settings.integer("burn_in") == 5000);
   CHECK(task.settings.word("proposal") == "spherical");
   CHECK(task.seed.value() == 7);
-  CHECK(task.substeps == 3);
+  CHECK(task.solver == SolverSettings{.substeps = 3});
+  CHECK_FALSE(task.settle);
   CHECK(task.part == 1);
   CHECK(fit("mh").settings.integer("samples") == 25000);
-  CHECK(fit("mh, substeps = automatic").substeps == 0);
+  CHECK(fit("mh, substeps = automatic").settle);
+  CHECK(fit("mh, solver = heun").solver.method == "heun");
+  CHECK(fit("mh, solver = heun").settle);
+  CHECK(fit("mh, solver = heun(substeps = 3)").solver == SolverSettings{.method = "heun", .substeps = 3});
+  CHECK_FALSE(fit("mh, solver = heun(substeps = 3)").settle);
 }
 
 TEST_CASE("a start is the record's first row, rest or estimated") {
@@ -95,12 +100,15 @@ TEST_CASE("options are given once") {
             "simulate m with values(k = 2, s = 1, k = 3), input x = gaussian(sd = 1, sd = 2), samples = 8, rate = 9")) == 2);
   CHECK(refused("simulate m with values(k = 2, s = 1), input x = gaussian(sd = 1), samples = 8, rate = 9, step = 1")
             .find("error[E4104]: the time between samples is given twice") != std::string::npos);
+  CHECK(refused("fit m to d with mh, solver = heun, substeps = 2").find("error[E4104]: the solver is given twice") !=
+        std::string::npos);
 }
 
 TEST_CASE("numbers outside their range or of the wrong kind are refused with what is allowed") {
   std::string const shown =
       refused("fit m to d with mh(samples = 0, chains = 1.5, burn_in = k, proposal = 3), substeps = 0, seed = -1");
   CHECK(errors_in(shown) == 6);
+  CHECK(refused("fit m to d with mh, solver = rk5").find("did you mean `rk4`?") != std::string::npos);
   for (char const* each :
        {"`samples` must lie between 1 and 1000000000000, here it is 0", "`chains` must be a whole number", "`k` is not declared",
         "help: choose `adaptive` or `spherical`", "`substeps` must lie between 1 and 10000", "`seed` must"})

@@ -38,7 +38,7 @@ model oscillator {
 )";
 
 struct Case {
-  std::shared_ptr<CompiledModel const> compiled = compile(checked(text).models.front(), false);
+  std::shared_ptr<CompiledModel const> compiled = compile(checked(text).models.front(), false, "rk4");
   Experiment experiment;
   std::vector<double> force;
 
@@ -184,7 +184,7 @@ model runaway {
   experiment.measured = {std::vector<double>(200, 0.0)};
   TargetOptions options;
   options.describe = [](NodeId, Graph const&) { return std::string("the cube"); };
-  ModelTarget const target(compile(checked(unstable).models.front(), false), experiment, options);
+  ModelTarget const target(compile(checked(unstable).models.front(), false, "rk4"), experiment, options);
   LaneArray declared(1, 3), theta(1, 3);
   declared(0, 0) = -1;
   declared(0, 1) = 900;

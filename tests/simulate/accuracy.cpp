@@ -43,7 +43,7 @@ double exact(double t, double d, double w, double f, double y0, double v0) {
 double error(std::string const& integrator, int substeps) {
   auto const program = std::make_shared<SimulationProgram const>(compile(oscillator(integrator)));
   Experiment const record = testing::experiment(testing::uniform_times(41, 0.1), {}, {});
-  Simulator const simulator(program, Schedule(*program, record, substeps));
+  Simulator const simulator(program, Schedule(*program, record, {.method = integrator, .substeps = substeps}));
   LaneArray parameters(5, 1), out(2, 1);
   double const values[] = {0.1, 2.0, 3.0, 0.4, -0.3};
   for (int r = 0; r < 5; ++r) parameters(r, 0) = values[r];
@@ -66,13 +66,19 @@ TEST_CASE("halving the step divides the error by 2 to the order of the method") 
   }
 }
 
+TEST_CASE("a task can name every fixed-step method of the program, and no other") {
+  for (IntegratorRow const& row : integrators()) CHECK(find_solver(row.name) != nullptr);
+  for (SolverRow const& row : solvers())
+    if (row.stepping == Stepping::fixed) CHECK(find_integrator(row.name) != nullptr);
+}
+
 TEST_CASE("a free damped oscillation follows its closed form at every sample") {
   auto const program = std::make_shared<SimulationProgram const>(compile(oscillator("rk4")));
   // Uneven samples: the step is data, not part of the program.
   std::vector<double> time;
   for (int i = 0; i < 60; ++i) time.push_back(0.05 * i + (i % 3) * 0.01);
   Experiment const record = testing::experiment(time, {}, {});
-  Simulator const simulator(program, Schedule(*program, record, 4));
+  Simulator const simulator(program, Schedule(*program, record, {.substeps = 4}));
   int const width = 10;
   LaneArray parameters(5, width), out(2 * 60, width);
   for (int w = 0; w < width; ++w) {

@@ -15,7 +15,7 @@ Simulator simulator_of(SimulationSource source, int samples) {
   auto const program = std::make_shared<SimulationProgram const>(compile(std::move(source)));
   Experiment const data =
       testing::experiment(testing::uniform_times(samples, 0.01), {[](double) { return 1.0; }}, {[](double) { return 0.0; }});
-  return Simulator(program, Schedule(*program, data, 1));
+  return Simulator(program, Schedule(*program, data, {.substeps = 1}));
 }
 
 /// y' = -sqrt(y), y(0) = p: reaches zero at t = 2 sqrt(p); RK4 then steps below zero. With `source.channels` empty sums.

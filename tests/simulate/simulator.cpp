@@ -74,7 +74,7 @@ TEST_CASE("trajectories equal a plain RK4 loop to rounding, sums a plain sum ove
   int const samples = 200, width = 5;
   Experiment const data = record(samples);
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Simulator const simulator(program, Schedule(*program, data, 1));
+  Simulator const simulator(program, Schedule(*program, data, {.substeps = 1}));
   LaneArray const parameters = duffing_parameters(width);
   LaneArray out(2 * samples, width);
   std::vector<Outcome> outcome(width);
@@ -115,14 +115,14 @@ TEST_CASE("the result of a lane depends on neither width, position, threads nor 
     }
     parameters(0, 17) = missing;  // one lane fails in every setting
     InstructionSet const before = instruction_set();
-    Sums const expected = sums(Simulator(program, Schedule(*program, data, 2)), parameters);
+    Sums const expected = sums(Simulator(program, Schedule(*program, data, {.substeps = 2})), parameters);
     CHECK_FALSE(expected.outcome[17].ok);
     for (InstructionSet const set : {InstructionSet::avx2, InstructionSet::avx512}) {
       if (set > *supported_instruction_set()) continue;
       force_instruction_set(set);
       for (int const lanes : {4, 8, 16, 32, 64}) {
         for (int const threads : {1, 3}) {
-          Simulator const simulator(program, Schedule(*program, data, 2), {.lanes = lanes, .threads = threads});
+          Simulator const simulator(program, Schedule(*program, data, {.substeps = 2}), {.lanes = lanes, .threads = threads});
           for (int const first : {0, 3, 17}) {
             Sums const other = sums(simulator, parameters.view().columns(first, width - first));
             bool equal = true;
@@ -149,7 +149,7 @@ TEST_CASE("the result of a lane depends on neither width, position, threads nor 
 TEST_CASE("the scalar oracle gives the same bytes") {
   Experiment const data = record(100);
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Schedule const schedule(*program, data, 1);
+  Schedule const schedule(*program, data, {.substeps = 1});
   LaneArray const parameters = duffing_parameters(3);
   Sums const expected = sums(Simulator(program, schedule), parameters);
   for (int w = 0; w < 3; ++w) {
@@ -177,12 +177,12 @@ TEST_CASE("missing and unscored samples are simulated but not summed") {
   int const samples = 120;
   Experiment data = record(samples);
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Sums const all = sums(Simulator(program, Schedule(*program, data, 1)), duffing_parameters(2));
+  Sums const all = sums(Simulator(program, Schedule(*program, data, {.substeps = 1})), duffing_parameters(2));
   data.measured[0][7] = missing;
   data.measured[0][50] = missing;
   for (int i = 0; i < 30; ++i) data.scored[static_cast<std::size_t>(i)] = 0;
   data.scored[119] = 0;
-  Schedule const schedule(*program, data, 1);
+  Schedule const schedule(*program, data, {.substeps = 1});
   CHECK(schedule.count(0) == 120 - 30 - 1 - 1);
   CHECK(schedule.last_summed() == 119);
   CHECK_FALSE(schedule.summed(0, 50));
@@ -210,7 +210,7 @@ TEST_CASE("a channel that is not in the data adds nothing") {
   Experiment data = record(50);
   data.measured[0].clear();
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Sums const none = sums(Simulator(program, Schedule(*program, data, 1)), duffing_parameters(3));
+  Sums const none = sums(Simulator(program, Schedule(*program, data, {.substeps = 1})), duffing_parameters(3));
   for (int w = 0; w < 3; ++w) {
     CHECK(none.outcome[static_cast<std::size_t>(w)].ok);
     CHECK(none.values(0, w) == 0);
@@ -221,7 +221,7 @@ TEST_CASE("a channel that is not in the data adds nothing") {
 TEST_CASE("failed lanes are reported, are NaN, and leave their neighbours alone") {
   Experiment const data = record(300);
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Simulator const simulator(program, Schedule(*program, data, 1));
+  Simulator const simulator(program, Schedule(*program, data, {.substeps = 1}));
   int const width = 20;
   LaneArray parameters = duffing_parameters(width);
   Sums const healthy = sums(simulator, parameters);
@@ -245,7 +245,7 @@ TEST_CASE("failed lanes are reported, are NaN, and leave their neighbours alone"
 TEST_CASE("a batch of failed lanes ends early and in order") {
   Experiment const data = record(300);
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Simulator const simulator(program, Schedule(*program, data, 1));
+  Simulator const simulator(program, Schedule(*program, data, {.substeps = 1}));
   LaneArray parameters = duffing_parameters(6);
   for (int w = 0; w < 6; ++w) parameters(0, w) = 0;
   Sums const dead = sums(simulator, parameters);
@@ -258,7 +258,7 @@ TEST_CASE("a batch of failed lanes ends early and in order") {
 TEST_CASE("records of part of the samples are those rows of all records") {
   Experiment const data = record(90);
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Simulator const simulator(program, Schedule(*program, data, 3));
+  Simulator const simulator(program, Schedule(*program, data, {.substeps = 3}));
   LaneArray const parameters = duffing_parameters(2);
   LaneArray all(2 * 90, 2), part(2 * 20, 2);
   std::vector<Outcome> outcome(2);
@@ -271,7 +271,7 @@ TEST_CASE("records of part of the samples are those rows of all records") {
 TEST_CASE("redrawing the same parameters changes nothing, other parameters act from their sample on") {
   Experiment const data = record(80);
   auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
-  Simulator const simulator(program, Schedule(*program, data, 1), {.lanes = 8, .threads = 2});
+  Simulator const simulator(program, Schedule(*program, data, {.substeps = 1}), {.lanes = 8, .threads = 2});
   int const width = 20;
   LaneArray const parameters = duffing_parameters(width), others = duffing_parameters(width, 2);
   auto const copy = [](ConstLanes from, int lane, Lanes to) {

@@ -1,0 +1,111 @@
+// The table of solvers and the arithmetic of their settings.
+#include "core/solver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/diagnostic.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr SettingRow fixed_settings[] = {
+    {"substeps", SettingKind::integer, "1", 1, 10000, "",
+     "equal steps per sampling interval; left out in a fit: chosen by the tolerance guard"},
+};
+
+// Shortest decimals that read back as the same number.
+std::string value_text(SettingValue const& value) {
+  if (auto const* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
+  return fmt::format("{}", std::get<double>(value));
+}
+
+}  // namespace
+
+std::span<SolverRow const> solvers() {
+  static constexpr SolverRow rows[] = {
+      {"rk4", Stepping::fixed, "the classical Runge-Kutta method of order 4", fixed_settings},
+      {"heun", Stepping::fixed, "Heun's method of order 2 (explicit trapezoidal rule)", fixed_settings},
+      {"euler", Stepping::fixed, "Euler's explicit method of order 1", fixed_settings},
+  };
+  return rows;
+}
+
+SolverRow const* find_solver(std::string_view name) {
+  for (SolverRow const& row : solvers())
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+SolverRow const& SolverSettings::row() const {
+  SolverRow const* found = find_solver(method);
+  if (found == nullptr) throw InternalError(fmt::format("there is no solver `{}`", method));
+  return *found;
+}
+
+SolverSettings SolverSettings::finer() const {
+  SolverSettings result = *this;
+  if (fixed_step()) {
+    result.substeps *= 2;
+  } else {
+    result.relative /= 100;
+    result.absolute /= 100;
+  }
+  return result;
+}
+
+std::string SolverSettings::finer_words() const { return fixed_step() ? "half the step" : "tolerances 100 times smaller"; }
+
+std::string SolverSettings::option() const {
+  SolverSettings const usual{.method = method};
+  if (method == SolverSettings{}.method) return fmt::format("substeps = {}", substeps);
+  Settings const values = settings(), defaults = usual.settings();
+  std::string arguments;
+  for (SettingRow const& each : row().settings) {
+    std::string const name(each.name);
+    if (values.all().at(name) != defaults.all().at(name))
+      arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, value_text(values.all().at(name)));
+  }
+  return fmt::format("solver = {}{}", method, arguments.empty() ? "" : "(" + arguments + ")");
+}
+
+Settings SolverSettings::settings() const {
+  Settings values(row().settings);
+  auto const set = [&](char const* name, SettingValue value) {
+    if (find_setting(row().settings, name) != nullptr) values.set(name, value);
+  };
+  set("substeps", static_cast<std::int64_t>(substeps));
+  set("relative", relative);
+  set("absolute", absolute);
+  set("steps", static_cast<std::int64_t>(steps));
+  return values;
+}
+
+std::string SolverSettings::text() const {
+  // In the order of the table.
+  Settings const values = settings();
+  std::string arguments;
+  for (SettingRow const& each : row().settings)
+    arguments +=
+        fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", each.name, value_text(values.all().at(std::string(each.name))));
+  return fmt::format("{}({})", method, arguments);
+}
+
+double SolverSettings::near_zero(double reached) const {
+  return absolute > 0 ? absolute : relative * std::max(reached / 1000, 1e-9);
+}
+
+SolverSettings make_solver(SolverRow const& row, Settings const& values) {
+  SolverSettings result;
+  result.method = row.name;
+  for (auto const& [name, value] : values.all()) {
+    if (name == "substeps") result.substeps = static_cast<int>(values.integer(name));
+    if (name == "relative") result.relative = values.real(name);
+    if (name == "absolute") result.absolute = values.real(name);
+    if (name == "steps") result.steps = static_cast<int>(values.integer(name));
+  }
+  return result;
+}
+
+}  // namespace sysid

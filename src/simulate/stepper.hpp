@@ -1,0 +1,52 @@
+// How the states of a block of lanes come from one sample to the next: one strategy per kind of solver.
+#pragma once
+#include <memory>
+
+#include "core/lanes.hpp"
+#include "core/ledger.hpp"
+#include "program/interpreter/executor.hpp"
+#include "program/simulation_program.hpp"
+#include "simulate/schedule.hpp"
+
+namespace sysid {
+
+/// The register file of a block, as a strategy sees it: executor.width lanes, of which those from `lanes` on are copies of a lane.
+struct LaneFile {
+  SimulationProgram const& program;
+  Schedule const& schedule;
+  Executor executor;
+  int lanes;
+  double* file;       // where code runs
+  double* row;        // uniforms of the running section, after the constants
+  double* registers;  // rows of executor.stride()
+
+  Lanes rows(int first, int count) const {
+    return {registers + first * executor.stride(), count, executor.width, executor.stride()};
+  }
+  Lanes states() const { return rows(program.registers.first_state(), program.registers.states); }
+  Lanes parameters() const { return rows(0, program.registers.parameters); }
+  void load_row(double const* values, int width) const;
+};
+
+/// Belongs to one block, so it may keep what it needs from step to step. A lane's results depend on that lane alone.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// The states are those of sample 0, the parameters in place.
+  virtual void start() {}
+  /// The parameters have changed; the states have not.
+  virtual void parameters_changed() {}
+  /// From `sample` to the next one. A lane that cannot be brought there gets states that are not finite, and its `failure` says
+  /// why.
+  virtual void step(int sample) = 0;
+  /// Why a lane's states are not finite.
+  virtual FailureClass failure(int lane) const;
+};
+
+/// The strategy of the schedule's solver.
+std::unique_ptr<Stepper> make_stepper(LaneFile const& file);
+
+/// Lane-instructions that one lane takes per sampling interval, to share the work out.
+double work_per_sample(SimulationProgram const& program, SolverSettings const& solver);
+
+}  // namespace sysid

@@ -1,0 +1,36 @@
+// Solvers as values: text, refinement, settings there and back.
+#include "core/solver.hpp"
+
+#include <doctest/doctest.h>
+
+#include "core/diagnostic.hpp"
+
+using namespace sysid;
+
+TEST_CASE("every solver of the table makes settings that read back as they were") {
+  for (SolverRow const& row : solvers()) {
+    CAPTURE(row.name);
+    SolverSettings const usual = make_solver(row, Settings(row.settings));
+    CHECK(&usual.row() == &row);
+    CHECK(usual == SolverSettings{.method = std::string(row.name)});  // the defaults stand in one place only
+    SolverSettings const finer = usual.finer();
+    CHECK(finer != usual);
+    CHECK(make_solver(row, finer.settings()) == finer);
+  }
+  CHECK(find_solver("magic") == nullptr);
+  CHECK_THROWS_AS(SolverSettings{.method = "magic"}.row(), InternalError);
+}
+
+TEST_CASE("a solver is spelt as a task states it") {
+  CHECK(SolverSettings{.substeps = 8}.text() == "rk4(substeps = 8)");
+  CHECK(SolverSettings{.substeps = 8}.option() == "substeps = 8");
+  CHECK(SolverSettings{.method = "heun", .substeps = 8}.option() == "solver = heun(substeps = 8)");
+  CHECK(SolverSettings{.method = "heun"}.option() == "solver = heun");
+}
+
+TEST_CASE("the error allowed near zero follows the size a state has reached, down to 1e-6 of its unit") {
+  SolverSettings const solver{.relative = 1e-6};
+  CHECK(solver.near_zero(2.0) == doctest::Approx(2e-9));
+  CHECK(solver.near_zero(0.0) == doctest::Approx(1e-15));
+  CHECK(SolverSettings{.relative = 1e-6, .absolute = 1e-3}.near_zero(2.0) == 1e-3);
+}
