@@ -10,7 +10,7 @@ namespace {
 
 InstructionSet best_or_refuse() {
   if (std::optional<InstructionSet> const best = supported_instruction_set()) return *best;
-  throw UserError({.code = "E5001",
+  throw UserError({.code = "E0001",
                    .message = "this processor lacks AVX2 and FMA (x86-64-v3), which sysid computes with",
                    .primary = {},
                    .secondary = {},
@@ -35,7 +35,7 @@ InstructionSet instruction_set() { return static_cast<InstructionSet>(forced().l
 
 void force_instruction_set(InstructionSet set) {
   if (set > best_or_refuse()) {
-    throw UserError({.code = "E5002",
+    throw UserError({.code = "E0002",
                      .message = "this processor has no AVX-512 instructions",
                      .primary = {},
                      .secondary = {},

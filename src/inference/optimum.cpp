@@ -65,6 +65,9 @@ FitResult run(std::string_view backend, Target const& target, Aim aim, Settings 
   else
     result.findings = std::move(found.findings);
   write_draw(target, best, context, result);
+  // One draw has no spread: the standard deviations are those of the Laplace approximation.
+  result.summaries = summarise(result);
+  for (std::size_t p = 0; p < result.summaries.size(); ++p) result.summaries[p].sd = best.sd[p];
   return result;
 }
 

@@ -60,6 +60,15 @@ TEST_CASE("map is the maximum of the density of the declared parameters, whateve
   CHECK(flat.draws.chains[0].values[0][1] == doctest::Approx(1 / variance()).epsilon(2e-3));
 }
 
+TEST_CASE("a point estimate has the standard deviations of its Laplace approximation") {
+  Bench bench;
+  FitResult const result = optimum::run_ml(normal_sample(sample, {Prior::uniform, 1e-4, 1e3}), Settings{}, bench.context);
+  REQUIRE(result.summaries.size() == 2);
+  // Fisher information of a normal sample of n: n precision for the mean, n / (2 precision^2) for the precision.
+  CHECK(result.summaries[0].sd == doctest::Approx(std::sqrt(variance() / n)).epsilon(1e-2));
+  CHECK(result.summaries[1].sd == doctest::Approx(std::sqrt(2.0 / n) / variance()).epsilon(1e-2));
+}
+
 TEST_CASE("an optimum at a bound of the prior is reported, one inside is not") {
   Bench bench, inside;
   FitResult const result =
