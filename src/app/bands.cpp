@@ -31,4 +31,8 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
   return prediction;
 }
 
+StreamKey prediction_noise(std::uint64_t seed, int experiment) {
+  return {seed, Purpose::prediction, static_cast<std::uint64_t>(experiment) << 32, 0};
+}
+
 }  // namespace sysid

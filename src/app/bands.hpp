@@ -10,4 +10,7 @@ namespace sysid {
 Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
                        Model const& model);
 
+/// The streams of measurement noise for the predictions of experiment `experiment` of a task: its draws have indices from 0 on.
+StreamKey prediction_noise(std::uint64_t seed, int experiment);
+
 }  // namespace sysid

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "report/number.hpp"
+
 namespace sysid {
 namespace {
 
@@ -103,13 +105,52 @@ Experiment cut(Record const& record, DataBlock const& block, int part, StartRule
   return make_experiment(record, name, from, range, rows.span);
 }
 
-DataInfo describe_data(Record const& record, DataBlock const& block, int part, Model const& model, Experiment const& experiment) {
+std::vector<ExperimentData> load_experiments(CheckedFile const& file, std::vector<ExperimentUse> const& uses, Model const& model,
+                                             std::filesystem::path const& folder, StartRule start) {
+  std::vector<ExperimentData> all;
+  for (ExperimentUse const& use : uses) {
+    DataBlock const& block = file.data[static_cast<std::size_t>(use.data)];
+    Record record = load_record(block, model, folder);
+    Experiment experiment = cut(record, block, use.part, start);
+    all.push_back({use, std::move(record), std::move(experiment)});
+  }
+  return all;
+}
+
+std::shared_ptr<ParameterSpace const> parameter_space(Model const& model, std::vector<ExperimentUse> const& uses) {
+  std::vector<ExperimentMember> members;
+  for (ExperimentUse const& use : uses) members.push_back({use.name, use.constants});
+  return std::make_shared<ParameterSpace const>(model, std::move(members));
+}
+
+std::string data_names(CheckedFile const& file, std::vector<ExperimentUse> const& uses) {
+  std::string text;
+  for (ExperimentUse const& use : uses)
+    text += (text.empty() ? "" : ", ") + data_name(file.data[static_cast<std::size_t>(use.data)], use.part);
+  return text;
+}
+
+std::vector<PriorInfo> priors_of(ParameterSpace const& space, std::vector<PriorInfo> const& of_model) {
+  std::vector<PriorInfo> all;
+  for (int const r : space.sampled()) {
+    FittedParameter const& row = space.rows()[static_cast<std::size_t>(r)];
+    std::string const& name = space.model().parameters[static_cast<std::size_t>(row.parameter)].name;
+    auto const prior = std::find_if(of_model.begin(), of_model.end(), [&](PriorInfo const& each) { return each.name == name; });
+    if (prior == of_model.end()) continue;
+    all.push_back(*prior);
+    all.back().name = row.name;
+  }
+  return all;
+}
+
+DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
   DataInfo info;
-  info.name = data_name(block, part);
+  info.name = data.experiment.name;
   info.file = block.path;
-  info.sha256 = record.digest;
-  info.rows = record.rows();
-  info.scored = static_cast<int>(std::count(experiment.scored.begin(), experiment.scored.end(), 1));
+  info.sha256 = data.record.digest;
+  info.rows = data.record.rows();
+  info.scored = static_cast<int>(std::count(data.experiment.scored.begin(), data.experiment.scored.end(), 1));
   for (Quantity const& input : model.inputs)
     for (DataInputUse const& use : block.inputs)
       if (use.input == input.name)
@@ -120,6 +161,12 @@ DataInfo describe_data(Record const& record, DataBlock const& block, int part, M
       if (use.channel == channel.name)
         info.notes.push_back(
             fmt::format("{} = {}{}", channel.name, use.column, use.unit ? fmt::format(" [{}]", use.unit->text) : std::string()));
+  for (std::size_t p = 0; p < model.parameters.size(); ++p)
+    if (data.use.constants[p]) {
+      Parameter const& parameter = model.parameters[p];
+      std::string const unit = parameter.unit ? fmt::format(" [{}]", parameter.unit_text()) : std::string();
+      info.notes.push_back(fmt::format("{} = {}{}", parameter.name, shortest(parameter.from_si(*data.use.constants[p])), unit));
+    }
   return info;
 }
 

@@ -1,10 +1,12 @@
 // Data blocks to experiments: a record is read once per model and block, parts are cut from it for each task.
 #pragma once
 #include <filesystem>
+#include <memory>
 
 #include "check/checked.hpp"
 #include "core/diagnostic.hpp"
 #include "data/record.hpp"
+#include "likelihood/parameter_space.hpp"
 #include "report/report.hpp"
 
 namespace sysid {
@@ -37,8 +39,28 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
 /// more rows.
 Experiment cut(Record const& record, DataBlock const& block, int part, StartRule start);
 
+/// What a task has of one of its experiments.
+struct ExperimentData {
+  ExperimentUse use;
+  Record record;
+  Experiment experiment;  // cut and started as the task says; its name is that of the data, "bench.train"
+};
+/// Reads them in order; UserError, UnusableData, UnreadableData as above.
+std::vector<ExperimentData> load_experiments(CheckedFile const& file, std::vector<ExperimentUse> const& uses, Model const& model,
+                                             std::filesystem::path const& folder, StartRule start);
+
+/// The parameters of a model over the experiments of a fit.
+std::shared_ptr<ParameterSpace const> parameter_space(Model const& model, std::vector<ExperimentUse> const& uses);
+
+/// "bench.train, hall".
+std::string data_names(CheckedFile const& file, std::vector<ExperimentUse> const& uses);
+
+/// The priors of a model's parameters, by name, as those of the sampled parameters of a fit: one for each experiment that has its
+/// own.
+std::vector<PriorInfo> priors_of(ParameterSpace const& space, std::vector<PriorInfo> const& of_model);
+
 /// Provenance for reports.
-DataInfo describe_data(Record const& record, DataBlock const& block, int part, Model const& model, Experiment const& experiment);
+DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Model const& model);
 
 /// "bench.train".
 std::string data_name(DataBlock const& block, int part);

@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/bands.hpp"
+#include "app/derived_draws.hpp"
 #include "app/experiments.hpp"
 #include "app/fit_checks.hpp"
+#include "app/preparation.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/results.hpp"
@@ -31,38 +33,6 @@ namespace {
 
 using json = nlohmann::json;
 
-// What is known before the first sample: enough to go on from a checkpoint without searching again.
-struct Preparation {
-  SolverSettings solver;
-  std::vector<Mode> modes;
-  Findings findings;
-  Ledger ledger;
-  std::vector<double> moves;
-};
-
-json store(Preparation const& preparation) {
-  json modes = json::array(), findings = json::array();
-  for (Mode const& mode : preparation.modes) modes.push_back(checkpoint::encode(mode));
-  for (Finding const& f : preparation.findings) findings.push_back({static_cast<int>(f.severity), f.code, f.message, f.help});
-  return {{"solver", write_solver(preparation.solver)},
-          {"modes", modes},
-          {"findings", findings},
-          {"ledger", checkpoint::encode(preparation.ledger)},
-          {"moves", preparation.moves}};
-}
-
-Preparation restore(json const& stored) {
-  Preparation preparation;
-  preparation.solver = read_solver(stored.at("solver"));
-  for (auto const& mode : stored.at("modes")) preparation.modes.push_back(checkpoint::decode_mode(mode));
-  for (auto const& f : stored.at("findings"))
-    preparation.findings.push_back({static_cast<Severity>(f.at(0).get<int>()), f.at(1).get<std::string>(),
-                                    f.at(2).get<std::string>(), f.at(3).get<std::string>()});
-  preparation.ledger = checkpoint::decode_ledger(stored.at("ledger"));
-  preparation.moves = stored.at("moves").get<std::vector<double>>();
-  return preparation;
-}
-
 // "8 integrator steps per sample", "cvode(relative = 1e-8)".
 std::string accuracy(SolverSettings const& solver) {
   return solver.fixed_step() ? fmt::format("{} integrator step{} per sample", solver.substeps, solver.substeps == 1 ? "" : "s")
@@ -77,30 +47,6 @@ std::vector<double> best_values(FitResult const& result) {
     for (std::size_t d = 0; d < chain.values.size(); ++d)
       if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
   return best == nullptr ? std::vector<double>{} : *best;
-}
-
-// Quantities derived from parameters alone, appended to every draw.
-void add_derived(CompiledModel const& compiled, Draws& draws) {
-  Model const& model = compiled.model;
-  int const count = static_cast<int>(compiled.derived_index.size());
-  if (count == 0) return;
-  for (int const index : compiled.derived_index) {
-    Derived const& quantity = model.derived[static_cast<std::size_t>(index)];
-    draws.names.push_back(quantity.name);
-    draws.units.push_back(quantity.unit_text());
-  }
-  for (Chain& chain : draws.chains) {
-    int const width = static_cast<int>(chain.values.size());
-    LaneArray parameters(static_cast<int>(model.parameters.size()), width), values(count, width);
-    for (std::size_t k = 0; k < compiled.sampled.size(); ++k) {
-      Parameter const& parameter = model.parameters[static_cast<std::size_t>(compiled.sampled[k])];
-      for (int w = 0; w < width; ++w)
-        parameters(compiled.sampled[k], w) = parameter.to_si(chain.values[static_cast<std::size_t>(w)][k]);
-    }
-    run(compiled.derived, parameters, values);
-    for (int w = 0; w < width; ++w)
-      for (int d = 0; d < count; ++d) chain.values[static_cast<std::size_t>(w)].push_back(values(d, w));
-  }
 }
 
 ChainValues column_of(Draws const& draws, std::size_t column) {
@@ -136,9 +82,8 @@ class Fit {
         backend_(*find_backend(what.backend)),
         compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method)),
         model_(compiled_->model),
-        block_(session.file.data[static_cast<std::size_t>(what.data)]),
-        record_(load_record(block_, model_, session.folder())),
-        experiment_(cut(record_, block_, what.part, what.start)),
+        space_(parameter_space(model_, what.experiments)),
+        data_(load_experiments(session.file, what.experiments, model_, session.folder(), what.start)),
         began_(std::chrono::steady_clock::now()) {}
 
   ExitCode run() {
@@ -152,7 +97,7 @@ class Fit {
     if (stored.is_null()) {
       if (!prepare(context)) return stop_early();
     } else {
-      preparation_ = restore(stored.at("preparation"));
+      preparation_ = restore_preparation(stored.at("preparation"));
       if (stored.contains("state")) context.resume = stored.at("state");
       session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
     }
@@ -173,7 +118,9 @@ class Fit {
     options.start_rows = what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0;
     options.execution = session_.options.execution;
     options.describe = [this](NodeId node, Graph const& graph) { return session_.describe(what_.model, graph, node); };
-    return std::make_unique<ModelTarget>(compiled_, experiment_, options);
+    std::vector<Experiment> experiments;
+    for (ExperimentData const& each : data_) experiments.push_back(each.experiment);
+    return std::make_unique<ModelTarget>(compiled_, space_, std::move(experiments), options);
   }
 
   // What cannot be sampled is refused before the first step.
@@ -192,15 +139,18 @@ class Fit {
                         fmt::format("`{}` needs priors that can be drawn from; that of `{}` is {}", backend_.name, parameter.name,
                                     parameter.prior->row->name),
                         fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
-    if (compiled_->sampled.empty())
+    if (space_->dimension() == 0)
       throw refused("E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model_.name),
                     "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`");
-    bool any = false;
-    for (auto const& channel : experiment_.measured)
-      for (std::size_t i = 0; i < channel.size(); ++i) any = any || (experiment_.scored[i] != 0 && !std::isnan(channel[i]));
-    if (!any)
-      throw refused("E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment_.name),
-                    "choose other rows or columns");
+    for (ExperimentData const& each : data_) {
+      Experiment const& experiment = each.experiment;
+      bool any = false;
+      for (auto const& channel : experiment.measured)
+        for (std::size_t i = 0; i < channel.size(); ++i) any = any || (experiment.scored[i] != 0 && !std::isnan(channel[i]));
+      if (!any)
+        throw refused("E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment.name),
+                      "choose other rows or columns");
+    }
   }
 
   // Search and, unless the user fixed it, the step. False: interrupted.
@@ -249,7 +199,9 @@ class Fit {
   // --- checkpoints
   // ----------------------------------------------------------------------------------------------------------------
   json who() const {
-    return {{"model", std::string(session_.source.text())}, {"data", record_.digest}, {"task", task_.name}, {"seed", seed_}};
+    json digests = json::array();
+    for (ExperimentData const& each : data_) digests.push_back({each.experiment.name, each.record.digest});
+    return {{"model", std::string(session_.source.text())}, {"data", digests}, {"task", task_.name}, {"seed", seed_}};
   }
 
   void save(json const& state) const {
@@ -280,9 +232,11 @@ class Fit {
   // --------------------------------------------------------------------------------------------------------------------
   ExitCode finish(FitResult result) {
     bool const interrupted = result.interrupted;
-    Report report = begin_report(session_, task_, what_.model,
-                                 fmt::format("fit {} to {} with {}", model_.name, experiment_.name, what_.backend), seed_);
-    report.data.push_back(describe_data(record_, block_, what_.part, model_, experiment_));
+    Report report = begin_report(
+        session_, task_, what_.model,
+        fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
+    for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, model_));
+    report.priors = priors_of(*space_, report.priors);
     report.findings = result.findings;
     // Chains that start from the search report its findings themselves.
     if (!(what_.settings.all().contains("start") && what_.settings.word("start") == "global"))
@@ -293,7 +247,7 @@ class Fit {
     std::vector<double> const best = best_values(result);
     if (!interrupted) {
       FitCheck check = check_residuals(*target_, best);
-      report.fit = std::move(check.scores);
+      report.fit = std::move(check.lines);
       add(check.findings);
       if (!preparation_.modes.empty()) add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
       add(tolerance_findings(step_check(result.draws, extra), preparation_.solver));
@@ -303,10 +257,11 @@ class Fit {
                                  "go on with --resume; it ends with the bytes of an unbroken run"});
     add_failures(report);
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
-    add_derived(*compiled_, result.draws);
+    add_derived(*compiled_, *space_, result.draws);
     for (std::size_t c = static_cast<std::size_t>(result.draws.parameter_count); c < result.draws.names.size(); ++c)
       report.summary.push_back(summarise(result.draws.names[c], result.draws.units[c], column_of(result.draws, c)));
-    if (!interrupted) report.predictions.push_back(fitted_rows(result.draws));
+    for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
+      report.predictions.push_back(fitted_rows(result.draws, e));
     report.modes = result.modes;
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
@@ -351,12 +306,15 @@ class Fit {
          "the posterior reaches where the model diverges: narrow the prior or look at the equation there"});
   }
 
-  // Bands over the fitted rows, for the report.
-  Prediction fitted_rows(Draws const& draws) const {
+  // Bands over the fitted rows of an experiment, for the report.
+  Prediction fitted_rows(Draws const& draws, int e) const {
+    Experiment const& experiment = data_[static_cast<std::size_t>(e)].experiment;
     LaneArray const columns = spread(draws, 100);
-    Trajectory const trajectory(compiled_, experiment_, preparation_.solver,
+    LaneArray parameters(static_cast<int>(model_.parameters.size()), columns.width());
+    space_->select(space_->values_of_declared(columns), e, parameters);
+    Trajectory const trajectory(compiled_, experiment, preparation_.solver,
                                 what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
-    return bands_along(trajectory, trajectory.run(columns, {seed_, Purpose::noise, 0, 0}), experiment_, model_);
+    return bands_along(trajectory, trajectory.run(parameters, prediction_noise(seed_, e)), experiment, model_);
   }
 
   Session& session_;
@@ -368,9 +326,8 @@ class Fit {
   BackendRow const& backend_;
   std::shared_ptr<CompiledModel const> compiled_;
   Model const& model_;
-  DataBlock const& block_;
-  Record record_;
-  Experiment experiment_;
+  std::shared_ptr<ParameterSpace const> space_;
+  std::vector<ExperimentData> data_;
   std::chrono::steady_clock::time_point began_;
   Preparation preparation_;
   Ledger ledger_;

@@ -1,25 +1,25 @@
 // What a finished fit is asked: does the model leave structure in the residuals, is the noise as stated, would another timing of
-// the input fit much better, do draws pile up at bounds.
+// the input fit much better.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "inference/backend.hpp"
 #include "likelihood/model_target.hpp"
-#include "report/prediction.hpp"
+#include "report/report.hpp"
 
 namespace sysid {
 
 struct FitCheck {
-  std::vector<Score> scores;  // over all channels, by name: nmse, rmse, chi_squared_per_sample, ...
+  std::vector<FitLine> lines;  // per experiment and channel: nmse, rmse, chi_squared_per_sample, whiteness_p, input_correlation_p
   Findings findings;
 };
 
-/// At one parameter vector (declared units): scores and residual tests per channel, against every input.
+/// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input.
 FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared);
 
-/// A much better fit with the input half a sample earlier or later (more than `0.2` nats per scored sample, and 20 in all) means
-/// that the rule between input samples is not the one of the experiment. mode: the best one.
+/// A much better fit with an input of one experiment half a sample earlier or later (more than `0.2` nats per scored sample of that
+/// experiment, and 20 in all) means that the rule between input samples is not the one of the experiment. mode: the best one.
 Findings check_input_timing(ModelTarget const& target, Mode const& mode, std::uint64_t seed, Ledger& ledger);
 
 }  // namespace sysid

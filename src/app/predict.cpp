@@ -1,4 +1,4 @@
-// `predict`: trajectories of posterior draws along a record, condensed to bands with and without noise, and scored on its rows.
+// `predict`: trajectories of posterior draws along records, condensed to bands with and without noise, and scored on their rows.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include "app/bands.hpp"
 #include "app/experiments.hpp"
 #include "app/reporting.hpp"
+#include "app/resolved.hpp"
 #include "app/solver_record.hpp"
 #include "app/stored_draws.hpp"
 #include "likelihood/trajectory.hpp"
@@ -13,53 +14,110 @@
 #include "report/terminal.hpp"
 
 namespace sysid {
-ExitCode run_predict(Session& session, Task const& task, PredictTask const& what) {
-  FittedModel const& fitted = fitted_model(session, what.fit);
-  FitTask const& fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
-  bool const free_start = what.start.kind == StartRule::Kind::estimated;
-  auto const compiled = session.compiled(fit.model, free_start, fitted.solver.method);
-  Model const& model = compiled->model;
-  DataBlock const& block = session.file.data[static_cast<std::size_t>(what.data)];
-  Record const record = load_record(block, model, session.folder());
-  Experiment const experiment = cut(record, block, what.part, what.start);
-  std::uint64_t const seed = session.seed(task, what.seed);
+namespace {
 
-  Trajectory const trajectory(compiled, experiment, fitted.solver, free_start ? what.start.rows : 0, session.options.execution);
-  StreamKey const noise_key{seed, Purpose::noise, 0, 0};
-  int const wanted = std::min<int>(what.draws, static_cast<int>(fitted.draws.total()));
-  LaneArray const columns = spread(fitted.draws, what.redraw_each_step ? static_cast<int>(fitted.draws.total()) : wanted);
-  Trajectory::Result const result = what.redraw_each_step
-                                        ? trajectory.run_redrawn(columns, wanted, {seed, Purpose::redraw, 0, 0}, noise_key)
-                                        : trajectory.run(columns, noise_key);
-
-  Report report = begin_report(session, task, fit.model,
-                               fmt::format("predict {} on {} with draws({})",
-                                           session.file.tasks[static_cast<std::size_t>(what.fit)].name, experiment.name, wanted),
-                               seed);
-  report.data.push_back(describe_data(record, block, what.part, model, experiment));
-  report.predictions.push_back(bands_along(trajectory, result, experiment, model));
-  for (PredictedQuantity const& quantity : report.predictions.front().quantities)
-    for (Score score : scores(quantity, experiment.scored)) {
-      if (model.channels.size() > 1) score.name += "(" + quantity.name + ")";
-      report.fit.push_back(std::move(score));
-    }
-  report.settings = {{"draws", static_cast<std::int64_t>(wanted)},
-                     {"redraw", std::string(what.redraw_each_step ? "step" : "trajectory")},
-                     {"start", std::string(free_start ? fmt::format("estimated(rows = {})", what.start.rows)
-                                           : what.start.kind == StartRule::Kind::rest ? "rest"
-                                                                                      : "record")}};
-  add_solver(fitted.solver, report.settings);
-  report.ledger.add_solves(static_cast<std::uint64_t>(wanted));
-  if (result.failed > 0) {
-    report.findings.push_back(
-        {result.failed == wanted ? Severity::error : Severity::warning, "failed_predictions",
-         fmt::format("{} of {} trajectories do not stay finite and are left out of the bands", result.failed, wanted),
-         "the posterior reaches where the model diverges on this input"});
-  }
-  report.verdict = result.failed == 0 ? "all trajectories stay finite" : "some trajectories do not stay finite";
-  write_result(report, session.result_folder(task), session.options.figures);
-  session.out << terminal_summary(report);
-  return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
+// The per-experiment parameters that a new experiment draws from their prior, by name.
+std::vector<std::string> drawn_parameters(Model const& model, ExperimentUse const& use) {
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < model.parameters.size(); ++p)
+    if (model.parameters[p].per_experiment && model.parameters[p].prior && !use.constants[p])
+      names.push_back("`" + model.parameters[p].name + "`");
+  return names;
 }
+
+class Predict {
+ public:
+  Predict(Session& session, Task const& task, PredictTask const& what)
+      : session_(session),
+        task_(task),
+        what_(what),
+        fitted_(fitted_model(session, what.fit)),
+        fit_task_(session.file.tasks[static_cast<std::size_t>(what.fit)]),
+        fit_(std::get<FitTask>(fit_task_.what)),
+        free_start_(what.start.kind == StartRule::Kind::estimated),
+        compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method)),
+        model_(compiled_->model),
+        space_(parameter_space(model_, fit_.experiments)),
+        data_(load_experiments(session.file, what.experiments, model_, session.folder(), what.start)),
+        seed_(session.seed(task, what.seed)),
+        wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {}
+
+  ExitCode run() {
+    Report report = begin_report(
+        session_, task_, fit_.model,
+        fmt::format("predict {} on {} with draws({})", fit_task_.name, data_names(session_.file, what_.experiments), wanted_),
+        seed_);
+    int failed = 0;
+    for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
+      report.data.push_back(describe_data(session_.file, data_[static_cast<std::size_t>(e)], model_));
+      failed += predict(e, report);
+    }
+    report.settings = {{"draws", static_cast<std::int64_t>(wanted_)},
+                       {"redraw", std::string(what_.redraw_each_step ? "step" : "trajectory")},
+                       {"start", start_text(what_.start)}};
+    add_solver(fitted_.solver, report.settings);
+    report.ledger.add_solves(static_cast<std::uint64_t>(wanted_) * data_.size());
+    report.verdict = failed == 0 ? "all trajectories stay finite" : "some trajectories do not stay finite";
+    write_result(report, session_.result_folder(task_), session_.options.figures);
+    session_.out << terminal_summary(report);
+    return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
+  }
+
+ private:
+  // Parameters of the model in experiment e for each draw, SI.
+  LaneArray parameters(int e, LaneArray const& declared, Report& report) const {
+    ExperimentUse const& use = data_[static_cast<std::size_t>(e)].use;
+    int const fitted = what_.fitted[static_cast<std::size_t>(e)];
+    if (fitted >= 0) {
+      LaneArray own(static_cast<int>(model_.parameters.size()), declared.width());
+      space_->select(space_->values_of_declared(declared), fitted, own);
+      return own;
+    }
+    if (auto const drawn = drawn_parameters(model_, use); !drawn.empty())
+      report.findings.push_back({Severity::note, "new_experiment",
+                                 fmt::format("`{}` was not fitted: {} {} drawn from the prior given the shared parameters",
+                                             use.name, fmt::join(drawn, ", "), drawn.size() == 1 ? "is" : "are"),
+                                 ""});
+    return space_->of_new_experiment(declared, use.constants, {seed_, Purpose::population, static_cast<std::uint64_t>(e) << 32, 0});
+  }
+
+  // Adds bands and findings of experiment e; how many trajectories failed.
+  int predict(int e, Report& report) const {
+    Experiment const& experiment = data_[static_cast<std::size_t>(e)].experiment;
+    Trajectory const trajectory(compiled_, experiment, fitted_.solver, free_start_ ? what_.start.rows : 0,
+                                session_.options.execution);
+    StreamKey const noise = prediction_noise(seed_, e);
+    LaneArray const draws =
+        parameters(e, spread(fitted_.draws, what_.redraw_each_step ? static_cast<int>(fitted_.draws.total()) : wanted_), report);
+    Trajectory::Result const result = what_.redraw_each_step
+                                          ? trajectory.run_redrawn(draws, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
+                                          : trajectory.run(draws, noise);
+    report.predictions.push_back(bands_along(trajectory, result, experiment, model_));
+    if (result.failed > 0)
+      report.findings.push_back({result.failed == wanted_ ? Severity::error : Severity::warning, "failed_predictions",
+                                 fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands",
+                                             result.failed, wanted_, data_.size() > 1 ? " on " + experiment.name : ""),
+                                 "the posterior reaches where the model diverges on this input"});
+    return result.failed;
+  }
+
+  Session& session_;
+  Task const& task_;
+  PredictTask const& what_;
+  FittedModel const& fitted_;
+  Task const& fit_task_;
+  FitTask const& fit_;
+  bool free_start_;
+  std::shared_ptr<CompiledModel const> compiled_;
+  Model const& model_;
+  std::shared_ptr<ParameterSpace const> space_;
+  std::vector<ExperimentData> data_;
+  std::uint64_t seed_;
+  int wanted_;
+};
+
+}  // namespace
+
+ExitCode run_predict(Session& session, Task const& task, PredictTask const& what) { return Predict(session, task, what).run(); }
 
 }  // namespace sysid

@@ -58,8 +58,8 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
       "start = {}, solver = {}, seed = {}\n",
       task.name, unparse(*tree), task.name, session.file.models[static_cast<std::size_t>(what.model)].name,
-      data_name(session.file.data[static_cast<std::size_t>(what.data)], what.part), settings_text(what.backend, settings),
-      start_text(what.start), solver.text(), seed);
+      data_names(session.file, what.experiments), settings_text(what.backend, settings), start_text(what.start), solver.text(),
+      seed);
 }
 
 }  // namespace sysid

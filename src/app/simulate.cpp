@@ -26,7 +26,7 @@ double population_sd(std::vector<double> const& values) {
 void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
   Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.options.execution);
-  Trajectory::Result const fine = finer.run_si(parameters, {});
+  Trajectory::Result const fine = finer.run(parameters, {});
   double const tolerable = what.noise_fraction > 0 ? 0.1 * what.noise_fraction : 1e-3;
   for (std::size_t q = 0; q < finer.quantities().size() && fine.failed == 0; ++q) {
     if (finer.quantities()[q].channel < 0) continue;
@@ -90,7 +90,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
     parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
   Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
   StreamKey const noise_key{seed, Purpose::noise, series, 0};
-  Trajectory::Result const result = trajectory.run_si(parameters, noise_key);
+  Trajectory::Result const result = trajectory.run(parameters, noise_key);
   if (result.failed > 0)
     throw UserError({Severity::error,
                      "E5001",

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/experiments.hpp"
 #include "app/reporting.hpp"
 #include "app/results.hpp"
 #include "app/solver_record.hpp"
@@ -17,9 +18,18 @@
 namespace sysid {
 namespace {
 
+// Cells in quotes may hold the separator: an element of a vector in an experiment is "q[1,bench]".
 std::vector<std::string_view> split(std::string_view line, char separator) {
   std::vector<std::string_view> parts;
   while (true) {
+    if (line.starts_with('"')) {
+      auto const end = std::min(line.find('"', 1), line.size());
+      parts.push_back(line.substr(1, end - 1));
+      line.remove_prefix(std::min(end + 1, line.size()));
+      if (line.empty()) return parts;
+      line.remove_prefix(1);
+      continue;
+    }
     auto const end = line.find(separator);
     parts.push_back(line.substr(0, end));
     if (end == std::string_view::npos) return parts;
@@ -102,10 +112,10 @@ FittedModel const& fitted_model(Session& session, int fit) {
     wrong->code = "E6201";
     throw UserError(*wrong);
   }
-  Model const& model = session.file.models[static_cast<std::size_t>(std::get<FitTask>(task.what).model)];
+  FitTask const& what = std::get<FitTask>(task.what);
+  auto const space = parameter_space(session.file.models[static_cast<std::size_t>(what.model)], what.experiments);
   std::vector<std::string> names;
-  for (Parameter const& parameter : model.parameters)
-    if (parameter.prior) names.push_back(parameter.name);
+  for (ParameterInfo const& parameter : space->infos()) names.push_back(parameter.name);
   return session.fitted[fit] = read_fitted(folder, names);
 }
 

@@ -40,6 +40,14 @@ struct DataPart {
   Span span;
 };
 
+/// `constant dose = 30 [mg]`: what a parameter is in this experiment.
+struct DataConstantUse {
+  std::string parameter;
+  double value = 0;          // SI where the number carries a unit, else as written: then in the unit of the parameter
+  std::optional<Unit> unit;  // absent: a bare number
+  Span span, value_span;
+};
+
 struct DataBlock {
   std::string name;
   Span span;
@@ -49,7 +57,16 @@ struct DataBlock {
   double step = 0;  // [s], when there is no time column
   std::vector<DataInputUse> inputs;
   std::vector<DataMeasureUse> measured;
+  std::vector<DataConstantUse> constants;
   std::vector<DataPart> parts;
+};
+
+/// A data reference of a task: one experiment of its model.
+struct ExperimentUse {
+  int data = 0;
+  int part = -1;     // -1: all rows
+  std::string name;  // its index in tables: the block's name, with the part where the block is used twice
+  std::vector<std::optional<double>> constants;  // per model parameter, SI: what the data block fixes
 };
 
 /// Where a simulation begins and in which state (design: a split says which rows are scored).
@@ -85,8 +102,7 @@ struct SimulateTask {
 
 struct FitTask {
   int model = 0;
-  int data = 0;
-  int part = -1;  // -1: all rows
+  std::vector<ExperimentUse> experiments;
   std::string backend;
   Settings settings;  // of the back end
   StartRule start;
@@ -97,8 +113,8 @@ struct FitTask {
 
 struct PredictTask {
   int fit = 0;  // index into CheckedFile::tasks
-  int data = 0;
-  int part = -1;
+  std::vector<ExperimentUse> experiments;
+  std::vector<int> fitted;  // per experiment the one of the fit whose parameters it has; -1: a new one
   int draws = 200;
   bool redraw_each_step = false;  // the tutorial's Fig. 8.4; the default is one draw per trajectory
   StartRule start;

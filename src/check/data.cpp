@@ -105,7 +105,19 @@ class DataChecker {
     use.channel_span = tree.channel.span;
     block_.measured.push_back(std::move(use));
   }
-  void take(ast::DataConstant const& tree) { fresh(constants_, tree.parameter, "constant"); }
+  void take(ast::DataConstant const& tree) {
+    if (!fresh(constants_, tree.parameter, "constant")) return;
+    auto const value = scope_.expression(tree.value);
+    if (!value) return;
+    auto const constant = graph_.constant_value(value->node);
+    if (!constant) {
+      diagnostics_.add(errors::constant_needed(tree.value.span, "a constant of an experiment"));
+      return;
+    }
+    block_.constants.push_back({tree.parameter.text, *constant,
+                                value->kind == Typed::Kind::known ? std::optional(value->unit) : std::nullopt, tree.parameter.span,
+                                tree.value.span});
+  }
   void take(ast::DataSplit const& tree) {
     for (ast::SplitPart const& part : tree.parts) {
       if (!fresh(parts_, part.name, "part")) continue;
@@ -126,7 +138,7 @@ class DataChecker {
   Scope scope_;
   DataBlock block_;
   std::optional<Span> file_, times_;
-  std::map<std::string, Span> inputs_, channels_, parts_, constants_;
+  std::map<std::string, Span> inputs_, channels_, constants_, parts_;
 };
 
 }  // namespace
@@ -179,6 +191,45 @@ void check_binding(DataBlock const& block, Model const& model, Span use, Diagnos
     for (DataMeasureUse const& measured : block.measured)
       diagnostics.add(errors::unknown_channel(measured.channel_span, measured.channel, model.name, channels));
   }
+}
+
+std::vector<std::optional<double>> check_constants(DataBlock const& block, Model const& model, std::span<Model const> all_models,
+                                                   Span use, Diagnostics& diagnostics) {
+  std::vector<std::optional<double>> values(model.parameters.size());
+  auto const place_in = [](Model const& any, std::string const& name) {
+    return std::find_if(any.parameters.begin(), any.parameters.end(), [&](Parameter const& each) { return each.name == name; });
+  };
+  bool good = true;
+  for (DataConstantUse const& constant : block.constants) {
+    auto const place = place_in(model, constant.parameter);
+    if (place == model.parameters.end()) {
+      // A block may serve several models.
+      if (std::any_of(all_models.begin(), all_models.end(),
+                      [&](Model const& other) { return place_in(other, constant.parameter) != other.parameters.end(); }))
+        continue;
+      std::vector<std::string> known;
+      for (Parameter const& parameter : model.parameters)
+        if (parameter.per_experiment) known.push_back(parameter.name);
+      diagnostics.add(errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
+      good = false;
+    } else if (!place->per_experiment) {
+      diagnostics.add(errors::constant_of_shared(constant.span, place->span, place->name));
+      good = false;
+    } else if (constant.unit && place->unit && constant.unit->dimension != place->unit->dimension) {
+      diagnostics.add(
+          errors::number_of_other_kind(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit));
+      good = false;
+    } else {
+      values[static_cast<std::size_t>(place - model.parameters.begin())] =
+          constant.unit ? constant.value : place->to_si(constant.value);
+    }
+  }
+  for (std::size_t p = 0; p < values.size() && good; ++p) {
+    Parameter const& parameter = model.parameters[p];
+    if (parameter.per_experiment && !parameter.prior && !parameter.value && !values[p])
+      diagnostics.add(errors::constant_missing(use, parameter.span, parameter.name, block.name));
+  }
+  return values;
 }
 
 }  // namespace sysid

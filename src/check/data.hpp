@@ -2,6 +2,8 @@
 // splits.
 #pragma once
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "check/checked.hpp"
 #include "core/diagnostic.hpp"
@@ -14,5 +16,11 @@ std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnost
 /// Whether the block serves a model: every input bound, some channel measured, no unknown channel, units of one kind, input
 /// derivatives only where they exist. use: the place of the task that brings the two together.
 void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics);
+
+/// The constants of a block as values of a model's parameters, SI, [parameters]; absent where it fixes none. A constant fixes a
+/// per-experiment parameter; one that no model of the file has is an error, and so is a per-experiment parameter that has neither
+/// prior nor value nor constant.
+std::vector<std::optional<double>> check_constants(DataBlock const& block, Model const& model, std::span<Model const> all_models,
+                                                   Span use, Diagnostics& diagnostics);
 
 }  // namespace sysid

@@ -425,4 +425,36 @@ Diagnostic task_too_late(ast::Name const& name) {
   return error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text), "tasks run in order: move it up");
 }
 
+Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {
+  return error("E6301", span, fmt::format("model `{}` has no parameter `{}`", model, name),
+               guess_or(name, known,
+                        known.empty() ? fmt::format("declare it in the model: `parameter {} per experiment`", name)
+                                      : fmt::format("what a data block may fix: {}", quoted(known))));
+}
+Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter) {
+  return conflict("E6302", span, "fixed for one experiment", declaration, "shared by all",
+                  fmt::format("parameter `{}` is shared by all experiments, a data block cannot fix it", parameter),
+                  fmt::format("declare it as `parameter {} per experiment`, or give it this value in the model", parameter));
+}
+Diagnostic constant_missing(Span use, Span declaration, std::string const& parameter, std::string const& data) {
+  return conflict("E6303", use, "used here", declaration, "neither prior nor value",
+                  fmt::format("data `{}` does not say what `{}` is", data, parameter),
+                  fmt::format("add `constant {} = ...` to data `{}`, or give the parameter a prior or a value", parameter, data));
+}
+Diagnostic experiment_twice(Span second, Span first, std::string const& experiment) {
+  return conflict("E6304", second, "again", first, "first here",
+                  fmt::format("`{}` is used twice: its samples would count twice", experiment), "name every experiment once");
+}
+Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other) {
+  return conflict("E6304", second, "these rows", first, "were here already",
+                  fmt::format("`{}` and `{}` share rows, which would count twice", one, other), "give them rows of their own");
+}
+Diagnostic shared_prior_reads_own(Span prior, std::string const& parameter, std::string const& own) {
+  return error("E6305", prior,
+               fmt::format("the prior of `{}`, which all experiments share, reads `{}`, which each has for itself", parameter, own),
+               fmt::format("declare `{}` as `per experiment` too, or let `{}` refer to `{}`: `parameter {} per experiment ~ "
+                           "normal({}, sd = ...)`",
+                           parameter, own, parameter, own, parameter));
+}
+
 }  // namespace sysid::errors

@@ -98,4 +98,12 @@ Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rat
 Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution);
 Diagnostic task_too_late(ast::Name const& name);
 
+// several experiments (E63)
+Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known);
+Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter);
+Diagnostic constant_missing(Span use, Span declaration, std::string const& parameter, std::string const& data);
+Diagnostic experiment_twice(Span second, Span first, std::string const& experiment);
+Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other);
+Diagnostic shared_prior_reads_own(Span prior, std::string const& parameter, std::string const& own);
+
 }  // namespace sysid::errors

@@ -127,6 +127,7 @@ class ModelChecker {
           declared.name = parameter->name.name.text;
           declared.unit = unit;
           declared.span = parameter->name.name.span;
+          declared.per_experiment = parameter->name.per_experiment;
           model_.parameters.push_back(std::move(declared));
           parameter_trees_.push_back(parameter);
         }
@@ -391,8 +392,16 @@ class ModelChecker {
             diagnostics_.add(errors::prior_reads(tree.prior->span, parameter.name, what));
             good = false;
           }
+        for (NodeId const part : parts)
+          for (NodeId const node : model_.graph.reachable({&part, 1}))
+            if (good && !parameter.per_experiment && is_leaf(model_.graph[node], LeafKind::parameter) &&
+                model_.parameters[static_cast<std::size_t>(model_.graph[node].index)].per_experiment) {
+              diagnostics_.add(errors::shared_prior_reads_own(
+                  tree.prior->span, parameter.name, model_.parameters[static_cast<std::size_t>(model_.graph[node].index)].name));
+              good = false;
+            }
         if (good) parameter.prior = std::move(use);
-      } else {
+      } else if (!parameter.per_experiment) {  // else every data block says what it is
         diagnostics_.add(errors::no_prior_or_value(tree));
       }
     }

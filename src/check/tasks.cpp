@@ -53,27 +53,64 @@ class TaskChecker {
     return place->second;
   }
 
-  void data(int& index, int& part, Model const* model, std::string const& preposition) {
-    if (tree_.data.empty()) {
-      diagnostics_.add(errors::data_missing(tree_, preposition));
-      return;
-    }
-    auto const found = item(tree_.data.front().data, names_.data, "data block");
-    if (!found) return;
-    index = *found;
-    DataBlock const& block = file_.data[static_cast<std::size_t>(index)];
-    if (tree_.data.front().part) {
+  // One experiment of the task, without its name; nothing when a diagnostic was added.
+  std::optional<ExperimentUse> experiment(ast::DataReference const& reference, Model const* model) {
+    auto const found = item(reference.data, names_.data, "data block");
+    if (!found) return std::nullopt;
+    ExperimentUse use;
+    use.data = *found;
+    DataBlock const& block = file_.data[static_cast<std::size_t>(use.data)];
+    if (reference.part) {
       auto const place = std::find_if(block.parts.begin(), block.parts.end(),
-                                      [&](DataPart const& each) { return each.name == tree_.data.front().part->text; });
+                                      [&](DataPart const& each) { return each.name == reference.part->text; });
       if (place == block.parts.end()) {
         std::vector<std::string> known;
         for (DataPart const& each : block.parts) known.push_back(each.name);
-        diagnostics_.add(errors::unknown_member(*tree_.data.front().part, "data `" + block.name + "`", "part", known));
-        return;
+        diagnostics_.add(errors::unknown_member(*reference.part, "data `" + block.name + "`", "part", known));
+        return std::nullopt;
       }
-      part = static_cast<int>(place - block.parts.begin());
+      use.part = static_cast<int>(place - block.parts.begin());
     }
-    if (model != nullptr) check_binding(block, *model, tree_.data.front().span, diagnostics_);
+    if (model == nullptr) return std::nullopt;
+    check_binding(block, *model, reference.span, diagnostics_);
+    use.constants = check_constants(block, *model, file_.models, reference.span, diagnostics_);
+    return use;
+  }
+
+  std::vector<ExperimentUse> experiments(Model const* model, std::string const& preposition) {
+    std::vector<ExperimentUse> uses;
+    if (tree_.data.empty()) diagnostics_.add(errors::data_missing(tree_, preposition));
+    std::vector<Span> places;
+    for (ast::DataReference const& reference : tree_.data)
+      if (auto use = experiment(reference, model)) {
+        uses.push_back(std::move(*use));
+        places.push_back(reference.span);
+      }
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      DataBlock const& block = file_.data[static_cast<std::size_t>(uses[i].data)];
+      auto const same = [&](ExperimentUse const& other) { return other.data == uses[i].data; };
+      bool const alone = std::count_if(uses.begin(), uses.end(), same) == 1;
+      uses[i].name = alone ? block.name : part_name(block, uses[i].part);
+      for (std::size_t before = 0; before < i && preposition == "to"; ++before)
+        if (same(uses[before]) && share_rows(block, uses[before].part, uses[i].part)) {
+          diagnostics_.add(uses[before].part == uses[i].part
+                               ? errors::experiment_twice(places[i], places[before], part_name(block, uses[i].part))
+                               : errors::experiments_overlap(places[i], places[before], part_name(block, uses[i].part),
+                                                             part_name(block, uses[before].part)));
+          break;
+        }
+    }
+    return uses;
+  }
+
+  static std::string part_name(DataBlock const& block, int part) {
+    return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
+  }
+  static bool share_rows(DataBlock const& block, int one, int other) {
+    if (one < 0 || other < 0) return true;
+    DataPart const& a = block.parts[static_cast<std::size_t>(one)];
+    DataPart const& b = block.parts[static_cast<std::size_t>(other)];
+    return (a.last == 0 || b.first <= a.last) && (b.last == 0 || a.first <= b.last);
   }
 
   FitTask fit() {
@@ -82,7 +119,7 @@ class TaskChecker {
     for (BackendSettings const& backend : backends_) names.emplace_back(backend.name);
     auto const model = item(tree_.subject, names_.models, "model");
     if (model) task.model = *model;
-    data(task.data, task.part, model ? &file_.models[static_cast<std::size_t>(*model)] : nullptr, "to");
+    task.experiments = experiments(model ? &file_.models[static_cast<std::size_t>(*model)] : nullptr, "to");
     for (ast::Option const& option : tree_.options) {
       std::string const key = key_of(option);
       auto const backend = std::find_if(backends_.begin(), backends_.end(), [&](auto const& each) { return each.name == key; });
@@ -135,7 +172,15 @@ class TaskChecker {
     } else {
       diagnostics_.add(errors::not_a_fit(tree_.subject));
     }
-    data(task.data, task.part, model, "on");
+    task.experiments = experiments(model, "on");
+    for (ExperimentUse const& use : task.experiments) {
+      task.fitted.push_back(-1);
+      if (model == nullptr) continue;
+      std::vector<ExperimentUse> const& fitted = std::get<FitTask>(fit->what).experiments;
+      bool const split = std::count_if(fitted.begin(), fitted.end(), [&](auto const& each) { return each.data == use.data; }) > 1;
+      for (std::size_t e = 0; e < fitted.size(); ++e)
+        if (fitted[e].data == use.data && (!split || fitted[e].part == use.part)) task.fitted.back() = static_cast<int>(e);
+    }
     for (ast::Option const& option : tree_.options) {
       std::string const key = key_of(option);
       if (option.input || !options_.fresh(option, key)) {
@@ -198,7 +243,9 @@ class TaskChecker {
     if (!found) return task;
     task.model = *found;
     Model const& model = file_.models[static_cast<std::size_t>(*found)];
-    task.values.resize(model.parameters.size());
+    for (Parameter const& parameter : model.parameters)
+      task.values.push_back(parameter.per_experiment && parameter.value ? model.graph.constant_value(*parameter.value)
+                                                                        : std::nullopt);
     task.inputs.resize(model.inputs.size());
     std::vector<bool> given(model.inputs.size(), false);
     std::vector<Span> places(model.inputs.size());
@@ -285,7 +332,7 @@ class TaskChecker {
         continue;
       }
       auto const index = static_cast<std::size_t>(place - known.begin());
-      if (model.parameters[index].value) {
+      if (model.parameters[index].value && !model.parameters[index].per_experiment) {
         diagnostics_.add(errors::fixed_parameter(*argument.name, model.parameters[index].span));
         continue;
       }

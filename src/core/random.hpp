@@ -11,11 +11,13 @@ enum class Purpose : std::uint32_t {
   start = 2,        // global search and starts of chains
   proposal = 3,     // moves of a chain
   accept = 4,       // acceptance of a move
-  noise = 5,        // measurement noise in simulate and predict
+  noise = 5,        // measurement noise of made data
   input = 6,        // generated input records
   selection = 7,    // which posterior draws are used
   redraw = 8,       // parameters redrawn at each step
   test = 9,
+  prediction = 10,  // measurement noise of predictions
+  population = 11,  // parameters of an experiment that was not fitted, from their prior
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

@@ -1,4 +1,4 @@
-// Exact storing of doubles, ledgers and modes.
+// Exact storing of doubles, ledgers, modes and findings.
 #include "inference/checkpoint.hpp"
 
 #include <fmt/format.h>
@@ -119,6 +119,20 @@ Mode decode_mode(nlohmann::json const& stored) {
           numbers.at(2),
           stored.at("hits").get<int>(),
           stored.at("well_defined").get<bool>()};
+}
+
+nlohmann::json encode(Findings const& findings) {
+  nlohmann::json stored = nlohmann::json::array();
+  for (Finding const& f : findings) stored.push_back({static_cast<int>(f.severity), f.code, f.message, f.help});
+  return stored;
+}
+
+Findings decode_findings(nlohmann::json const& stored) {
+  Findings findings;
+  for (auto const& f : stored)
+    findings.push_back({static_cast<Severity>(f.at(0).get<int>()), f.at(1).get<std::string>(), f.at(2).get<std::string>(),
+                        f.at(3).get<std::string>()});
+  return findings;
 }
 
 nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, Target const& target) {

@@ -31,6 +31,8 @@ nlohmann::json encode(Ledger const& ledger);
 Ledger decode_ledger(nlohmann::json const& stored);
 nlohmann::json encode(Mode const& mode);
 Mode decode_mode(nlohmann::json const& stored);
+nlohmann::json encode(Findings const& findings);
+Findings decode_findings(nlohmann::json const& stored);
 
 /// Who made a checkpoint: back end, its settings, seed, and the target's parameters.
 nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, Target const& target);

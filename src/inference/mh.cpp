@@ -72,10 +72,9 @@ Plan plan_of(Target const& target, Settings const& s) {
 
 nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json const& identity) {
   auto const block = [](std::vector<double> const& v) { return checkpoint::encode(std::span<double const>(v)); };
-  nlohmann::json groups = nlohmann::json::array(), modes = nlohmann::json::array(), findings = nlohmann::json::array();
+  nlohmann::json groups = nlohmann::json::array(), modes = nlohmann::json::array();
   for (auto const& group : state.groups) groups.push_back(group.store());
   for (Mode const& mode : state.modes) modes.push_back(checkpoint::encode(mode));
-  for (Finding const& f : state.findings) findings.push_back({static_cast<int>(f.severity), f.code, f.message, f.help});
   return {{"identity", identity},
           {"next", state.next},
           {"theta", checkpoint::encode(state.chains.theta)},
@@ -83,7 +82,7 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
           {"log_likelihood", block(state.chains.log_likelihood)},
           {"groups", groups},
           {"modes", modes},
-          {"findings", findings},
+          {"findings", checkpoint::encode(state.findings)},
           {"record", state.record.store()},
           {"ledger", checkpoint::encode(ledger)}};
 }
@@ -98,9 +97,7 @@ State restore(nlohmann::json const& stored, Target const& target, Plan const& pl
     throw checkpoint::Mismatch("its chains have another number or dimension");
   for (auto const& group : stored.at("groups")) state.groups.push_back(metropolis::Adaptation::restore(group));
   for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
-  for (auto const& f : stored.at("findings"))
-    state.findings.push_back({static_cast<Severity>(f.at(0).get<int>()), f.at(1).get<std::string>(), f.at(2).get<std::string>(),
-                              f.at(3).get<std::string>()});
+  state.findings = checkpoint::decode_findings(stored.at("findings"));
   state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
   ledger = checkpoint::decode_ledger(stored.at("ledger"));
   return state;

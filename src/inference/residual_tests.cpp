@@ -111,6 +111,16 @@ double nmse(std::span<double const> observed, std::span<double const> predicted)
   return variance > 0 ? 100 * misfit / variance : nan;
 }
 
+double rmse(std::span<double const> observed, std::span<double const> predicted) {
+  double square = 0, samples = 0;
+  for (std::size_t t = 0; t < std::min(observed.size(), predicted.size()); ++t) {
+    if (std::isnan(observed[t])) continue;
+    square += (observed[t] - predicted[t]) * (observed[t] - predicted[t]);
+    ++samples;
+  }
+  return std::sqrt(square / samples);
+}
+
 ChiSquaredTest chi_squared(std::span<double const> standardised) {
   auto const [sum, samples] = products(standardised, 0, standardised, 0, 0);
   if (samples == 0) return {};

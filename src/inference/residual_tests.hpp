@@ -36,6 +36,9 @@ CorrelationTest input_correlation(std::span<double const> residuals, std::span<d
 /// excellent; the true model reaches 100 r^2 for noise of a fraction r. NaN when the observed record is constant or empty.
 double nmse(std::span<double const> observed, std::span<double const> predicted);
 
+/// sqrt(1/N sum (y - y*)^2), in the unit of y; missing samples are left out. NaN when there are none.
+double rmse(std::span<double const> observed, std::span<double const> predicted);
+
 /// Mean square of standardised residuals, 1 for noise of the stated size.
 struct ChiSquaredTest {
   double per_sample = 0;

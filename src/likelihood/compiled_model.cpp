@@ -1,16 +1,18 @@
-// From expressions to kernels and programs: coordinates of the sampler, prior, densities of channels, residuals, trajectories.
+// From expressions to kernels and programs: densities of channels, residuals, trajectories.
 #include "likelihood/compiled_model.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "likelihood/parameter_space.hpp"
+
 namespace sysid {
 namespace {
 
 NodeId parameter_leaf(Graph& graph, int index) { return graph.leaf(LeafKind::parameter, index); }
 
-// The graph of a model with fixed parameters replaced by their values; the replaced roots share it.
+// The graph of a model with parameters that are fixed for all experiments replaced by their values; the replaced roots share it.
 class Folded {
  public:
   explicit Folded(Model const& model) : model_(model), graph(model.graph) {}
@@ -20,7 +22,8 @@ class Folded {
       Node const& node = graph[leaf];
       if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())
         return std::nullopt;
-      return model_.parameters[static_cast<std::size_t>(node.index)].value;
+      Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];
+      return parameter.per_experiment ? std::nullopt : parameter.value;
     });
     return result;
   }
@@ -112,59 +115,12 @@ SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
   return source;
 }
 
-void compile_coordinates(CompiledModel& compiled) {
+void compile_kernels(CompiledModel& compiled) {
   Model const& model = compiled.model;
   Folded folded(model);
   Graph& graph = folded.graph;
-  std::size_t const all = model.parameters.size();
-  std::vector<int> coordinate(all, -1);
-  for (std::size_t i = 0; i < all; ++i)
-    if (model.parameters[i].prior) {
-      coordinate[i] = static_cast<int>(compiled.sampled.size());
-      compiled.sampled.push_back(static_cast<int>(i));
-    }
-  std::vector<NodeId> value(all), leaves, unconstrained_leaves, backward;
-  for (std::size_t i = 0; i < all; ++i) {
-    leaves.push_back(parameter_leaf(graph, static_cast<int>(i)));
-    value[i] = model.parameters[i].value.value_or(leaves.back());
-  }
-  for (std::size_t k = 0; k < compiled.sampled.size(); ++k)
-    unconstrained_leaves.push_back(graph.leaf(LeafKind::unconstrained, static_cast<int>(k)));
-
-  auto const known = [&](NodeId leaf) -> std::optional<NodeId> {
-    Node const& node = graph[leaf];
-    if (node.leaf_kind != LeafKind::parameter) return std::nullopt;
-    return value[static_cast<std::size_t>(node.index)];
-  };
-  NodeId with_jacobian = graph.constant(0), without = graph.constant(0);
-  for (int const index : model.sampling_order) {
-    auto const i = static_cast<std::size_t>(index);
-    Distribution use = *model.parameters[i].prior;
-    for (NodeId& argument : use.arguments) argument = graph.substitute(argument, known);
-    if (use.lower) use.lower = graph.substitute(*use.lower, known);
-    if (use.upper) use.upper = graph.substitute(*use.upper, known);
-    Coordinate const moved = constrain(graph, support(graph, use), unconstrained_leaves[static_cast<std::size_t>(coordinate[i])]);
-    value[i] = moved.value;
-    // The declared density is per declared unit.
-    NodeId const density =
-        graph.add(log_density(graph, use, moved.value), graph.constant(elementary::log(scale_of(model.parameters[i]))));
-    without = graph.add(without, density);
-    // d(declared)/du = d(SI)/du / scale.
-    with_jacobian = graph.add(
-        with_jacobian,
-        graph.add(density, graph.subtract(moved.log_jacobian, graph.constant(elementary::log(scale_of(model.parameters[i]))))));
-  }
-  for (int const index : compiled.sampled) {
-    auto const i = static_cast<std::size_t>(index);
-    Distribution const use = folded(*model.parameters[i].prior);
-    backward.push_back(unconstrain(graph, support(graph, use), leaves[i]));
-  }
-  compiled.constrain = compile_kernel(graph, unconstrained_leaves, value);
-  NodeId const densities[] = {with_jacobian, without};
-  compiled.prior = compile_kernel(graph, unconstrained_leaves, densities);
-  compiled.unconstrain = compile_kernel(graph, leaves, backward);
-
-  std::vector<NodeId> quantities, initial;
+  std::vector<NodeId> leaves, quantities, initial;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) leaves.push_back(parameter_leaf(graph, static_cast<int>(i)));
   for (std::size_t i = 0; i < model.derived.size(); ++i) {
     if (model.derived[i].per_sample) continue;
     compiled.derived_index.push_back(static_cast<int>(i));
@@ -237,18 +193,14 @@ std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::
   compiled->model = std::move(model);
   compiled->free_start = free_start;
   compiled->method = method;
-  compile_coordinates(*compiled);
+  compile_kernels(*compiled);
   compile_programs(*compiled);
   return compiled;
 }
 
 std::string dump_program(CompiledModel const& compiled) {
-  auto const coordinate = [&](int row) {
-    return "u(" + compiled.model.parameters[static_cast<std::size_t>(compiled.sampled[static_cast<std::size_t>(row)])].name + ")";
-  };
-  return fmt::format(
-      "# coordinates to parameters\n{}\n# log prior: on the coordinates, of the declared parameters\n{}\n# likelihood\n{}",
-      dump(compiled.constrain, coordinate), dump(compiled.prior, coordinate), dump(*compiled.likelihood, names_of(compiled)));
+  return fmt::format("{}\n# likelihood\n{}", ParameterSpace(compiled.model, {{}}).dump(),
+                     dump(*compiled.likelihood, names_of(compiled)));
 }
 
 std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {

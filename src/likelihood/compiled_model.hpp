@@ -1,5 +1,5 @@
-// A model as compiled functions: parameters and priors as kernels, simulations as programs for each use. Compiled once, used by
-// every view.
+// A model as compiled functions: initial state and derived quantities as kernels, simulations as programs for each use. Compiled
+// once, used by every view and every experiment.
 #pragma once
 #include <memory>
 #include <string>
@@ -12,17 +12,13 @@
 
 namespace sysid {
 
-/// Rows of a simulation's parameters: all parameters of the model in the user's order (fixed ones are folded in, their rows
-/// unread), then, with a free start, one row per state: its value at the first sample.
+/// Rows of a simulation's parameters: all parameters of the model in the user's order (those fixed for all experiments are folded
+/// in, their rows unread), then, with a free start, one row per state: its value at the first sample.
 struct CompiledModel {
   Model model;
-  std::vector<int> sampled;  // model parameter of each coordinate, in the user's order; size D
   bool free_start = false;
   std::string method;  // of the solver that the simulations are compiled for
 
-  Kernel constrain;                // u [D] -> parameters, SI [all parameters]
-  Kernel unconstrain;              // parameters, SI [all parameters] -> u [D]
-  Kernel prior;                    // u [D] -> log prior on R^D, log prior of the declared parameters
   Kernel derived;                  // parameters, SI -> quantities derived from parameters alone, declared units
   Kernel initial;                  // parameters, SI -> the model's own initial state, SI
   std::vector<int> derived_index;  // into model.derived

@@ -1,11 +1,14 @@
 // Batches of parameter vectors through the compiled kernels and programs; failures go to the ledger, never into a number.
 #include "likelihood/model_target.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/diagnostic.hpp"
+#include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
@@ -19,83 +22,64 @@ double scale_offset(int count) { return 100.0 * count + 1000.0; }
 
 }  // namespace
 
+struct ModelTarget::Part {
+  Simulator likelihood, residuals;
+  std::unique_ptr<StartState> start;
+};
+
+ModelTarget::~ModelTarget() = default;
+
 ModelTarget::ModelTarget(std::shared_ptr<CompiledModel const> compiled, Experiment experiment, TargetOptions options)
+    : ModelTarget(compiled,
+                  std::make_shared<ParameterSpace const>(compiled->model, std::vector<ExperimentMember>{{experiment.name, {}}}),
+                  std::vector<Experiment>{experiment}, std::move(options)) {}
+
+ModelTarget::ModelTarget(std::shared_ptr<CompiledModel const> compiled, std::shared_ptr<ParameterSpace const> space,
+                         std::vector<Experiment> experiments, TargetOptions options)
     : compiled_(std::move(compiled)),
-      experiment_(std::move(experiment)),
+      space_(std::move(space)),
+      experiments_(std::move(experiments)),
       options_(std::move(options)),
-      likelihood_(compiled_->likelihood, Schedule(*compiled_->likelihood, experiment_, options_.solver), options_.execution),
-      residuals_(compiled_->residuals, Schedule(*compiled_->residuals, experiment_, options_.solver), options_.execution) {
+      pool_(make_pool(options_.execution)) {
   if (compiled_->free_start != (options_.start_rows > 0)) throw InternalError("free start without rows to estimate it from");
-  if (options_.start_rows > 0)
-    start_ = std::make_unique<StartState>(compiled_, experiment_, options_.start_rows, options_.solver, options_.execution);
-  Model const& model = compiled_->model;
-  Graph graph = model.graph;
-  for (int const index : compiled_->sampled) {
-    Parameter const& parameter = model.parameters[static_cast<std::size_t>(index)];
-    Support const bounds = support(graph, *parameter.prior);
-    auto const number = [&](std::optional<NodeId> const& bound, double fallback) {
-      auto const value = bound ? graph.constant_value(*bound) : std::nullopt;
-      return value ? parameter.from_si(*value) : fallback;
+  if (experiments_.size() != space_->experiments().size()) throw InternalError("parameters of other experiments");
+  int const channels = static_cast<int>(compiled_->model.channels.size());
+  for (int e = 0; e < static_cast<int>(experiments_.size()); ++e) {
+    Experiment const& experiment = experiments_[static_cast<std::size_t>(e)];
+    auto const simulator = [&](std::shared_ptr<SimulationProgram const> const& program) {
+      return Simulator(program, Schedule(*program, experiment, options_.solver), options_.execution, pool_);
     };
-    infos_.push_back({parameter.name, parameter.unit_text(), number(bounds.lower, -infinity), number(bounds.upper, infinity)});
-  }
-  Schedule const& schedule = residuals_.schedule();
-  for (int c = 0; c < static_cast<int>(model.channels.size()); ++c)
-    for (int i = 0; i < schedule.samples(); ++i)
-      if (schedule.summed(c, i)) places_.push_back({c, i});
-  for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) places_.push_back({c, -1});
-}
-
-void ModelTarget::sample_prior(StreamKey key, Lanes theta) const {
-  Model const& model = compiled_->model;
-  LaneArray values(static_cast<int>(model.parameters.size()), theta.width());
-  for (int w = 0; w < theta.width(); ++w) {
-    Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
-    auto const number = [&](NodeId node) {
-      if (auto const constant = model.graph.constant_value(node)) return *constant;
-      return model.graph.evaluate(node, [&](NodeId leaf) { return values(model.graph[leaf].index, w); });
-    };
-    for (std::size_t i = 0; i < model.parameters.size(); ++i)
-      if (model.parameters[i].value) values(static_cast<int>(i), w) = number(*model.parameters[i].value);
-    // A drawn hyperparameter may make what depends on it impossible (a negative sd): the density is zero there, so the vector is
-    // drawn again, which is the joint prior.
-    for (int attempt = 0;; ++attempt) {
-      try {
-        for (int const index : model.sampling_order) {
-          Distribution const& prior = *model.parameters[static_cast<std::size_t>(index)].prior;
-          std::vector<double> arguments;
-          for (NodeId const argument : prior.arguments) arguments.push_back(number(argument));
-          values(index, w) = draw(*prior.row, arguments, prior.lower ? number(*prior.lower) : -infinity,
-                                  prior.upper ? number(*prior.upper) : infinity, stream);
-        }
-        break;
-      } catch (UserError const&) {
-        if (attempt == 1000) throw;
-      }
-    }
-  }
-  run(compiled_->unconstrain, values, theta);
-}
-
-void ModelTarget::log_prior(ConstLanes theta, std::span<double> out, bool jacobian) const {
-  LaneArray densities(2, theta.width());
-  run(compiled_->prior, theta, densities);
-  for (int w = 0; w < theta.width(); ++w) {
-    double const value = densities(jacobian ? 0 : 1, w);
-    out[static_cast<std::size_t>(w)] = std::isnan(value) ? -infinity : value;
+    parts_.push_back({simulator(compiled_->likelihood), simulator(compiled_->residuals), nullptr});
+    if (options_.start_rows > 0)
+      parts_.back().start =
+          std::make_unique<StartState>(compiled_, experiment, options_.start_rows, options_.solver, options_.execution, pool_);
+    Schedule const& schedule = parts_.back().residuals.schedule();
+    for (int c = 0; c < channels; ++c)
+      for (int i = 0; i < schedule.samples(); ++i)
+        if (schedule.summed(c, i)) places_.push_back({e, c, i});
+    for (int c = 0; c < channels; ++c) places_.push_back({e, c, -1});
   }
 }
 
-LaneArray ModelTarget::simulation_parameters(ConstLanes theta) const {
-  LaneArray parameters(compiled_->parameter_rows(), theta.width());
-  Lanes const own(parameters.view().data(), static_cast<int>(compiled_->model.parameters.size()), theta.width());
-  run(compiled_->constrain, theta, own);
-  if (start_) start_->estimate(parameters);
-  return parameters;
+std::vector<LaneArray> ModelTarget::simulation_parameters(ConstLanes theta) const {
+  LaneArray const values = space_->values(theta);
+  std::vector<LaneArray> all;
+  for (int e = 0; e < static_cast<int>(parts_.size()); ++e) {
+    all.emplace_back(compiled_->parameter_rows(), theta.width());
+    space_->select(values, e, all.back());
+  }
+  auto const estimate = [&](int e) { parts_[static_cast<std::size_t>(e)].start->estimate(all[static_cast<std::size_t>(e)]); };
+  if (options_.start_rows == 0) return all;
+  // A single one leaves the threads to its simulations.
+  if (pool_ && parts_.size() > 1)
+    pool_->run(static_cast<int>(parts_.size()), estimate);
+  else
+    for (int e = 0; e < static_cast<int>(parts_.size()); ++e) estimate(e);
+  return all;
 }
 
-void ModelTarget::record_failures(Simulator const& simulator, LaneArray const& parameters, std::span<Outcome const> outcome,
-                                  ConstLanes theta, Ledger& ledger) const {
+void ModelTarget::record_failures(Simulator const& simulator, std::size_t experiment, LaneArray const& parameters,
+                                  std::span<Outcome const> outcome, ConstLanes theta, Ledger& ledger) const {
   ledger.add_solves(outcome.size());
   LaneArray declared;
   for (std::size_t w = 0; w < outcome.size(); ++w) {
@@ -114,81 +98,80 @@ void ModelTarget::record_failures(Simulator const& simulator, LaneArray const& p
     std::vector<double> column;
     for (int p = 0; p < parameters.rows(); ++p) column.push_back(parameters(p, static_cast<int>(w)));
     auto const found = simulator.diagnose(column);
-    std::string const where = !found              ? std::string("a sum over the samples")
-                              : options_.describe ? options_.describe(found->node, simulator.program().source.graph)
-                                                  : std::string("the model");
+    std::string where = !found              ? std::string("a sum over the samples")
+                        : options_.describe ? options_.describe(found->node, simulator.program().source.graph)
+                                            : std::string("the model");
+    if (parts_.size() > 1) where += fmt::format(" on `{}`", experiments_[experiment].name);
     ledger.add_failure(FailureClass::non_finite, where,
                        found ? found->time : simulator.schedule().time(std::max(outcome[w].sample, 0)), std::move(example));
   }
 }
 
 void ModelTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const {
-  LaneArray const parameters = simulation_parameters(theta);
-  SimulationProgram const& program = likelihood_.program();
-  LaneArray sums(program.sum_count(), theta.width());
-  std::vector<Outcome> outcome(static_cast<std::size_t>(theta.width()));
-  likelihood_.sums(parameters, sums, outcome);
-  record_failures(likelihood_, parameters, outcome, theta, ledger);
-  for (int w = 0; w < theta.width(); ++w) {
+  std::vector<LaneArray> const parameters = simulation_parameters(theta);
+  auto const width = static_cast<std::size_t>(theta.width());
+  std::vector<LaneArray> sums;
+  std::vector<std::vector<Outcome>> outcome(parts_.size(), std::vector<Outcome>(width));
+  for (Part const& part : parts_) sums.emplace_back(part.likelihood.program().sum_count(), theta.width());
+  std::vector<Work> work;
+  for (std::size_t e = 0; e < parts_.size(); ++e)
+    work.push_back(parts_[e].likelihood.sums_work(parameters[e], sums[e], outcome[e]));
+  do_work(work, pool_.get());
+  for (std::size_t e = 0; e < parts_.size(); ++e)
+    record_failures(parts_[e].likelihood, e, parameters[e], outcome[e], theta, ledger);
+  for (std::size_t w = 0; w < width; ++w) {
     double total = 0;
-    for (int row = 0; row < program.sum_count(); ++row) total += sums(row, w);
-    out[static_cast<std::size_t>(w)] = outcome[static_cast<std::size_t>(w)].ok && !std::isnan(total) ? total : -infinity;
+    bool good = true;
+    for (std::size_t e = 0; e < parts_.size(); ++e) {
+      good = good && outcome[e][w].ok;
+      for (int row = 0; row < sums[e].rows(); ++row) total += sums[e](row, static_cast<int>(w));
+    }
+    out[w] = good && !std::isnan(total) ? total : -infinity;
   }
 }
 
 int ModelTarget::residual_count() const { return static_cast<int>(places_.size()); }
 
 void ModelTarget::residuals(ConstLanes theta, Lanes out, Ledger& ledger) const {
-  LaneArray const parameters = simulation_parameters(theta);
-  SimulationProgram const& program = residuals_.program();
-  Schedule const& schedule = residuals_.schedule();
-  int const channels = static_cast<int>(compiled_->model.channels.size()), samples = schedule.last_summed(), width = theta.width();
-  LaneArray records(samples * channels, width), sums(program.sum_count(), width);
-  std::vector<Outcome> outcome(static_cast<std::size_t>(width)), summed(static_cast<std::size_t>(width));
-  residuals_.records(parameters, 0, samples, records, outcome);
-  residuals_.sums(parameters, sums, summed);
-  for (std::size_t w = 0; w < outcome.size(); ++w)
-    if (!summed[w].ok) outcome[w] = summed[w];
-  record_failures(residuals_, parameters, outcome, theta, ledger);
+  std::vector<LaneArray> const parameters = simulation_parameters(theta);
+  int const channels = static_cast<int>(compiled_->model.channels.size()), width = theta.width();
+  std::vector<LaneArray> records, sums;
+  std::vector<std::vector<Outcome>> outcome(parts_.size(), std::vector<Outcome>(static_cast<std::size_t>(width))), summed = outcome;
+  for (Part const& part : parts_) {
+    records.emplace_back(part.residuals.schedule().last_summed() * channels, width);
+    sums.emplace_back(part.residuals.program().sum_count(), width);
+  }
+  std::vector<Work> work;
+  for (std::size_t e = 0; e < parts_.size(); ++e) {
+    Simulator const& simulator = parts_[e].residuals;
+    work.push_back(simulator.records_work(parameters[e], 0, simulator.schedule().last_summed(), records[e], outcome[e]));
+    work.push_back(simulator.sums_work(parameters[e], sums[e], summed[e]));
+  }
+  do_work(work, pool_.get());
+  std::vector<bool> good(static_cast<std::size_t>(width), true);
+  for (std::size_t e = 0; e < parts_.size(); ++e) {
+    for (std::size_t w = 0; w < good.size(); ++w) {
+      if (!summed[e][w].ok) outcome[e][w] = summed[e][w];
+      good[w] = good[w] && outcome[e][w].ok;
+    }
+    record_failures(parts_[e].residuals, e, parameters[e], outcome[e], theta, ledger);
+  }
   for (std::size_t r = 0; r < places_.size(); ++r) {
-    auto const [channel, sample] = places_[r];
+    auto const [experiment, channel, sample] = places_[r];
+    auto const e = static_cast<std::size_t>(experiment);
+    SimulationProgram const& program = parts_[e].residuals.program();
+    double const offset = scale_offset(parts_[e].residuals.schedule().count(channel));
     for (int w = 0; w < width; ++w) {
       double value = 0;
-      if (!outcome[static_cast<std::size_t>(w)].ok)
+      if (!good[static_cast<std::size_t>(w)])
         value = infinity;
       else if (sample >= 0)
-        value = records(sample * channels + channel, w);
+        value = records[e](sample * channels + channel, w);
       else
-        value = std::sqrt(2 * std::max(scale_offset(schedule.count(channel)) - sums(program.sum_row(channel, 0), w), 0.0));
+        value = std::sqrt(2 * std::max(offset - sums[e](program.sum_row(channel, 0), w), 0.0));
       out(static_cast<int>(r), w) = std::isnan(value) ? infinity : value;
     }
   }
-}
-
-void ModelTarget::constrain(ConstLanes theta, Lanes declared) const {
-  Model const& model = compiled_->model;
-  LaneArray all(static_cast<int>(model.parameters.size()), theta.width());
-  run(compiled_->constrain, theta, all);
-  for (int k = 0; k < dimension(); ++k) {
-    int const index = compiled_->sampled[static_cast<std::size_t>(k)];
-    for (int w = 0; w < theta.width(); ++w)
-      declared(k, w) = model.parameters[static_cast<std::size_t>(index)].from_si(all(index, w));
-  }
-}
-
-void ModelTarget::unconstrain(ConstLanes declared, Lanes theta) const {
-  Model const& model = compiled_->model;
-  LaneArray all(static_cast<int>(model.parameters.size()), declared.width());
-  for (std::size_t i = 0; i < model.parameters.size(); ++i)
-    if (model.parameters[i].value)
-      for (int w = 0; w < declared.width(); ++w)
-        all(static_cast<int>(i), w) = *model.graph.constant_value(*model.parameters[i].value);
-  for (int k = 0; k < dimension(); ++k) {
-    int const index = compiled_->sampled[static_cast<std::size_t>(k)];
-    for (int w = 0; w < declared.width(); ++w)
-      all(index, w) = model.parameters[static_cast<std::size_t>(index)].to_si(declared(k, w));
-  }
-  run(compiled_->unconstrain, all, theta);
 }
 
 }  // namespace sysid

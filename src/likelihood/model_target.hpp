@@ -1,9 +1,11 @@
-// The Target of one model on one experiment: what samplers and optimisers see. Nothing of the language passes beyond this file.
+// The Target of one model on its experiments: what samplers and optimisers see. Nothing of the language passes beyond this file.
 #pragma once
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "likelihood/compiled_model.hpp"
+#include "likelihood/parameter_space.hpp"
 #include "likelihood/start_state.hpp"
 #include "likelihood/target.hpp"
 #include "simulate/simulator.hpp"
@@ -12,47 +14,59 @@ namespace sysid {
 
 struct TargetOptions {
   SolverSettings solver;  // of the method that the model was compiled for
-  int start_rows = 0;     // > 0: the start state is estimated from so many rows
+  int start_rows = 0;     // > 0: the start state of each experiment is estimated from so many rows
   ExecutionOptions execution;
   std::function<std::string(NodeId, Graph const&)> describe;  // a sub-expression in the user's words, for the ledger
 };
 
+/// The log likelihood is the sum over the experiments, in their order, of that of each; residual rows follow one another in the
+/// same order. Experiments differ in times, inputs, rows, start and in the parameters that are theirs; a channel that one does not
+/// measure takes no part there. Threads share (block of lanes, experiment).
 class ModelTarget : public Target {
  public:
-  /// compiled: with a free start exactly when options.start_rows > 0.
+  /// compiled: with a free start exactly when options.start_rows > 0. experiments: those of the space, in its order.
+  ModelTarget(std::shared_ptr<CompiledModel const> compiled, std::shared_ptr<ParameterSpace const> space,
+              std::vector<Experiment> experiments, TargetOptions options);
+  /// One experiment that has nothing of its own.
   ModelTarget(std::shared_ptr<CompiledModel const> compiled, Experiment experiment, TargetOptions options);
+  ~ModelTarget() override;
 
-  int dimension() const override { return static_cast<int>(compiled_->sampled.size()); }
-  std::span<ParameterInfo const> parameters() const override { return infos_; }
-  void sample_prior(StreamKey key, Lanes theta) const override;
-  void log_prior(ConstLanes theta, std::span<double> out, bool jacobian = true) const override;
+  int dimension() const override { return space_->dimension(); }
+  std::span<ParameterInfo const> parameters() const override { return space_->infos(); }
+  void sample_prior(StreamKey key, Lanes theta) const override { space_->sample_prior(key, theta); }
+  void log_prior(ConstLanes theta, std::span<double> out, bool jacobian = true) const override {
+    space_->log_prior(theta, out, jacobian);
+  }
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override;
   int residual_count() const override;
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
-  void constrain(ConstLanes theta, Lanes declared) const override;
-  void unconstrain(ConstLanes declared, Lanes theta) const override;
+  void constrain(ConstLanes theta, Lanes declared) const override { space_->constrain(theta, declared); }
+  void unconstrain(ConstLanes declared, Lanes theta) const override { space_->unconstrain(declared, theta); }
 
-  CompiledModel const& compiled() const { return *compiled_; }
-  Experiment const& experiment() const { return experiment_; }
+  std::shared_ptr<CompiledModel const> const& compiled() const { return compiled_; }
+  std::shared_ptr<ParameterSpace const> const& space() const { return space_; }
+  std::vector<Experiment> const& experiments() const { return experiments_; }
   TargetOptions const& options() const { return options_; }
-  /// The channel and sample each residual row belongs to; the last rows, one per channel, carry the scale: sample -1.
+  /// The experiment, channel and sample each residual row belongs to; per experiment the last rows, one per channel, carry the
+  /// scale: sample -1.
   struct ResidualPlace {
-    int channel, sample;
+    int experiment, channel, sample;
   };
   std::vector<ResidualPlace> const& residual_places() const { return places_; }
 
  private:
-  /// theta [D x W] -> all parameter rows, SI, the start state included.
-  LaneArray simulation_parameters(ConstLanes theta) const;
-  void record_failures(Simulator const& simulator, LaneArray const& parameters, std::span<Outcome const> outcome, ConstLanes theta,
-                       Ledger& ledger) const;
+  struct Part;  // what simulates one experiment
+  /// theta [D x W] -> per experiment all parameter rows of its simulations, SI, the start state included.
+  std::vector<LaneArray> simulation_parameters(ConstLanes theta) const;
+  void record_failures(Simulator const& simulator, std::size_t experiment, LaneArray const& parameters,
+                       std::span<Outcome const> outcome, ConstLanes theta, Ledger& ledger) const;
 
   std::shared_ptr<CompiledModel const> compiled_;
-  Experiment experiment_;
+  std::shared_ptr<ParameterSpace const> space_;
+  std::vector<Experiment> experiments_;
   TargetOptions options_;
-  std::vector<ParameterInfo> infos_;
-  Simulator likelihood_, residuals_;
-  std::unique_ptr<StartState> start_;
+  std::shared_ptr<ThreadPool> pool_;  // absent for one thread
+  std::vector<Part> parts_;
   std::vector<ResidualPlace> places_;
 };
 

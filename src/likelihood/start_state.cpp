@@ -26,11 +26,12 @@ int clamp_rows(Experiment const& experiment, int rows) { return std::min(rows, s
 }  // namespace
 
 StartState::StartState(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int rows,
-                       SolverSettings const& solver, ExecutionOptions options)
+                       SolverSettings const& solver, ExecutionOptions options, std::shared_ptr<ThreadPool> pool)
     : compiled_(std::move(compiled)),
       rows_(clamp_rows(experiment, rows)),
       simulator_(compiled_->trajectory,
-                 Schedule(*compiled_->trajectory, window_of(experiment, clamp_rows(experiment, rows)), solver), options) {
+                 Schedule(*compiled_->trajectory, window_of(experiment, clamp_rows(experiment, rows)), solver), options,
+                 std::move(pool)) {
   for (std::size_t r = 0; r < compiled_->records.size(); ++r) {
     auto const& record = compiled_->records[r];
     if (record.kind != CompiledModel::Record::Kind::centre) continue;

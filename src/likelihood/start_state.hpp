@@ -15,7 +15,7 @@ class StartState {
  public:
   /// compiled: with a free start. experiment: begins at the row whose state is wanted; its first `rows` rows are the window.
   StartState(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, int rows, SolverSettings const& solver,
-             ExecutionOptions options);
+             ExecutionOptions options, std::shared_ptr<ThreadPool> pool = nullptr);
 
   /// parameters: [parameter_rows x W], SI; reads the model's parameters, writes the rows of the start state.
   void estimate(Lanes parameters) const;

@@ -37,17 +37,6 @@ Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment
   }
 }
 
-LaneArray Trajectory::simulation_parameters(ConstLanes sampled) const {
-  Model const& model = compiled_->model;
-  LaneArray parameters(static_cast<int>(model.parameters.size()), sampled.width());
-  for (std::size_t k = 0; k < compiled_->sampled.size(); ++k) {
-    int const row = compiled_->sampled[k];
-    for (int w = 0; w < sampled.width(); ++w)
-      parameters(row, w) = model.parameters[static_cast<std::size_t>(row)].to_si(sampled(static_cast<int>(k), w));
-  }
-  return parameters;
-}
-
 void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key,
                          Result& result) const {
   Model const& model = compiled_->model;
@@ -84,7 +73,7 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   }
 }
 
-Trajectory::Result Trajectory::run_si(ConstLanes parameters, StreamKey noise_key) const {
+Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) const {
   Result result;
   int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
   for (int first = 0; first < parameters.width(); first += vectors_at_once) {
@@ -101,27 +90,24 @@ Trajectory::Result Trajectory::run_si(ConstLanes parameters, StreamKey noise_key
   return result;
 }
 
-Trajectory::Result Trajectory::run(ConstLanes sampled, StreamKey noise_key) const {
-  return run_si(simulation_parameters(sampled), noise_key);
-}
-
-Trajectory::Result Trajectory::run_redrawn(ConstLanes sampled, int trajectories, StreamKey redraw_key, StreamKey noise_key) const {
-  LaneArray own = simulation_parameters(sampled);
+Trajectory::Result Trajectory::run_redrawn(ConstLanes parameters, int trajectories, StreamKey redraw_key,
+                                           StreamKey noise_key) const {
   int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
-  LaneArray all(own.rows() + states, own.width());
-  for (int r = 0; r < own.rows(); ++r)
-    for (int w = 0; w < own.width(); ++w) all(r, w) = own(r, w);
+  LaneArray all(parameters.rows() + states, parameters.width());
+  for (int r = 0; r < parameters.rows(); ++r)
+    for (int w = 0; w < parameters.width(); ++w) all(r, w) = parameters(r, w);
   if (start_) start_->estimate(all);
   Result result;
   for (int first = 0; first < trajectories; first += vectors_at_once) {
     int const width = std::min(vectors_at_once, trajectories - first);
     LaneArray records(samples() * static_cast<int>(compiled_->records.size()), width);
     std::vector<Outcome> outcome(static_cast<std::size_t>(width));
-    auto const redraw = [&](int sample, int lane, Lanes parameters) {
-      for (int w = 0; w < parameters.width(); ++w) {
-        Stream stream(redraw_key.at(static_cast<std::uint64_t>(first + lane + w), static_cast<std::uint64_t>(sample)));
+    auto const redraw = [&](int sample, int lane, Lanes drawn) {
+      for (int w = 0; w < drawn.width(); ++w) {
+        Stream stream(
+            redraw_key.at(redraw_key.index + static_cast<std::uint64_t>(first + lane + w), static_cast<std::uint64_t>(sample)));
         int const pick = static_cast<int>(stream.below(static_cast<std::uint64_t>(all.width())));
-        for (int r = 0; r < all.rows(); ++r) parameters(r, w) = all(r, pick);
+        for (int r = 0; r < all.rows(); ++r) drawn(r, w) = all(r, pick);
       }
     };
     simulator_.records_redrawn(redraw, 0, samples(), records, outcome);

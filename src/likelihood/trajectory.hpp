@@ -32,16 +32,13 @@ class Trajectory {
     std::vector<std::vector<std::vector<double>>> values, noisy;
     int failed = 0;
   };
-  /// sampled: [D x W], declared units, rows as CompiledModel::sampled.
-  Result run(ConstLanes sampled, StreamKey noise_key) const;
-  /// The same with all model parameters given in SI [all x W] (NaN where irrelevant).
-  Result run_si(ConstLanes parameters, StreamKey noise_key) const;
+  /// parameters: of the model, SI [parameters x W]; NaN where irrelevant.
+  Result run(ConstLanes parameters, StreamKey noise_key) const;
   /// The tutorial's Fig. 8.4: at every sample trajectory d continues with a posterior draw picked afresh by the stream of
-  /// (redraw_key, index d, step sample). sampled: [D x draws]; trajectories: how many.
-  Result run_redrawn(ConstLanes sampled, int trajectories, StreamKey redraw_key, StreamKey noise_key) const;
+  /// (redraw_key, index d, step sample). parameters: [parameters x draws]; trajectories: how many.
+  Result run_redrawn(ConstLanes parameters, int trajectories, StreamKey redraw_key, StreamKey noise_key) const;
 
  private:
-  LaneArray simulation_parameters(ConstLanes sampled) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
 
   std::shared_ptr<CompiledModel const> compiled_;

@@ -29,8 +29,10 @@ struct State : Quantity {  // named "y", "y'", "y''", ...
   bool initial_given = false;
 };
 
-/// Leaf parameter(i). Sampled when it has a prior, else fixed at `value`.
+/// Leaf parameter(i). Sampled when it has a prior, else fixed at `value`. `per_experiment`: every experiment has its own; a data
+/// block may fix it there, must where there is neither prior nor value.
 struct Parameter : Quantity {
+  bool per_experiment = false;
   std::optional<Distribution> prior;  // arguments and bounds are SI expressions of constants and other parameters
   std::optional<NodeId> value;        // a constant expression
 };

@@ -140,7 +140,7 @@ std::string fit_section(Report const& report) {
   if (lines.empty()) return "";
   std::vector<std::string> header = {""}, names;
   for (FitLine const& line : lines) {
-    header.push_back(escape(line.what));
+    header.push_back(escape(line.what()));
     for (Score const& score : line.scores)
       if (std::find(names.begin(), names.end(), score.name) == names.end()) names.push_back(score.name);
   }

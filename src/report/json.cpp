@@ -55,14 +55,14 @@ Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
   return {{"solves", ledger.solves()}, {"failed", ledger.failed()}, {"failures", failures}};
 }
 
-/// Over all channels, then per channel of each experiment.
+/// Per channel of each experiment; of a single one at the top as well.
 Json fit(Report const& report) {
-  Json out = score_object(report.fit);
-  Json channels = Json::object();
-  for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities)
-      if (auto const found = scores(quantity, prediction.scored); !found.empty())
-        channels[prediction.experiment][quantity.name] = score_object(found);
+  std::vector<FitLine> const lines = fit_lines(report);
+  Json out = Json::object(), channels = Json::object();
+  for (FitLine const& line : lines) {
+    if (lines.size() == 1 || line.channel.empty()) out = score_object(line.scores);
+    if (!line.channel.empty()) channels[line.experiment][line.channel] = score_object(line.scores);
+  }
   if (!channels.empty()) out["channels"] = channels;
   return out;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "inference/convergence.hpp"
+#include "inference/residual_tests.hpp"
 
 namespace sysid {
 
@@ -34,21 +35,18 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
 
 std::vector<Score> scores(PredictedQuantity const& quantity, std::vector<std::uint8_t> const& scored) {
   std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i)
-    if (scored[i] != 0 && std::isfinite(quantity.measured[i])) rows.push_back(i);
-  if (rows.empty()) return {};
-  auto const n = static_cast<double>(rows.size());
-  double sum = 0, errors = 0, squares = 0;
-  for (std::size_t const i : rows) sum += quantity.measured[i];
-  for (std::size_t const i : rows) {
-    double const deviation = quantity.measured[i] - sum / n;
-    double const error = quantity.measured[i] - quantity.response.mean[i];
-    squares += deviation * deviation;
-    errors += error * error;
+  std::vector<double> observed, predicted;
+  for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i) {
+    if (scored[i] == 0 || !std::isfinite(quantity.measured[i])) continue;
+    rows.push_back(i);
+    observed.push_back(quantity.measured[i]);
+    predicted.push_back(quantity.response.mean[i]);
   }
-  std::vector<Score> out = {{"nmse", 100 * errors / squares}, {"rmse", std::sqrt(errors / n)}};
+  if (rows.empty()) return {};
+  std::vector<Score> out = {{"nmse", nmse(observed, predicted)}, {"rmse", rmse(observed, predicted)}};
   if (quantity.noisy.mean.empty()) return out;
   double inside = 0, within = 0;
+  auto const n = static_cast<double>(rows.size());
   for (std::size_t const i : rows) {
     double const y = quantity.measured[i];
     if (y >= quantity.noisy.lower[i] && y <= quantity.noisy.upper[i]) ++inside;

@@ -21,20 +21,21 @@ std::string verdict_headline(Report const& report) {
 }
 
 std::vector<FitLine> fit_lines(Report const& report) {
-  std::vector<FitLine> out;
-  if (!report.fit.empty()) out.push_back({"all channels", "", report.fit});
+  std::vector<FitLine> lines = report.fit;
   for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities)
-      if (auto found = scores(quantity, prediction.scored); !found.empty())
-        out.push_back({quantity.name + " on " + prediction.experiment, quantity.unit, std::move(found)});
-  if (out.size() != 2 || report.fit.empty()) return out;
-  // One channel is all channels: what was found of both stands in one line, the task's own scores first.
-  FitLine line{out[1].what, out[1].unit, report.fit};
-  for (Score const& score : out[1].scores) {
-    auto const same = [&](Score const& other) { return other.name == score.name; };
-    if (std::none_of(report.fit.begin(), report.fit.end(), same)) line.scores.push_back(score);
-  }
-  return {line};
+    for (PredictedQuantity const& quantity : prediction.quantities) {
+      std::vector<Score> const found = scores(quantity, prediction.scored);
+      if (found.empty()) continue;
+      auto line = std::find_if(lines.begin(), lines.end(), [&](FitLine const& each) {
+        return each.experiment == prediction.experiment && each.channel == quantity.name;
+      });
+      if (line == lines.end()) line = lines.insert(line, {prediction.experiment, quantity.name, "", {}});
+      line->unit = quantity.unit;
+      for (Score const& score : found)
+        if (std::none_of(line->scores.begin(), line->scores.end(), [&](Score const& other) { return other.name == score.name; }))
+          line->scores.push_back(score);
+    }
+  return lines;
 }
 
 std::string_view severity_word(Severity severity) {

@@ -33,6 +33,15 @@ struct DataInfo {
   std::vector<std::string> notes;  // "input x = force [N], held (zero_order)"
 };
 
+/// The scores of a channel on an experiment.
+struct FitLine {
+  std::string experiment, channel;  // "bench.train", "displacement"; empty: over all channels of all experiments
+  std::string unit;                 // of its rmse
+  std::vector<Score> scores;
+
+  std::string what() const { return channel.empty() ? "all channels" : channel + " on " + experiment; }
+};
+
 /// A table of what this kind of task adds: candidate models, inclusion probabilities, populations.
 struct ReportTable {
   std::string title, caption;
@@ -54,7 +63,7 @@ struct Report {
   std::vector<Summary> summary;  // of the draws, parameters first
   std::string verdict;           // in plain words, its first line is shown; empty: as `judge` words the findings
   Findings findings;
-  std::vector<Score> fit;               // over all channels
+  std::vector<FitLine> fit;             // what the task itself has scored
   std::vector<Prediction> predictions;  // of each experiment: over the fitted rows, or of the predicted ones
   std::vector<Mode> modes;              // by falling share
   std::vector<ReportTable> tables;
@@ -73,13 +82,7 @@ bool has_verdict(Report const& report);
 /// The verdict's first line, without the findings.
 std::string verdict_headline(Report const& report);
 
-/// The scores of a channel of an experiment, or of all channels.
-struct FitLine {
-  std::string what;  // "displacement on bench.train"
-  std::string unit;  // of its rmse; empty for all channels
-  std::vector<Score> scores;
-};
-/// All channels first, when they have scores of their own, then each channel; one line in all when there is but one channel.
+/// One line per channel and experiment: the task's own scores, then those of the predicted bands that it has not taken itself.
 std::vector<FitLine> fit_lines(Report const& report);
 
 /// "error", "warning", "note".

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <vector>
 
 #include "core/files.hpp"
@@ -59,8 +60,10 @@ void write_result(Report const& report, fs::path const& folder, bool pictures) {
   make_folder(folder);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
     write_file(folder / fmt::format("draws_{}.csv", c + 1), draws_csv(report, static_cast<int>(c)));
+  std::set<std::string> taken;
   for (Prediction const& prediction : report.predictions) {
-    std::string const suffix = report.predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);
+    std::string suffix = report.predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);
+    while (!taken.insert(suffix).second) suffix += "_";  // two names may differ only in letters that file names do not have
     write_file(folder / fmt::format("predict{}.csv", suffix), predict_csv(report, prediction));
   }
   std::vector<DrawnFigure> drawn;

@@ -59,7 +59,7 @@ std::string terminal_summary(Report const& report) {
     out += fmt::format("\n{}\n{}", table.title, align_columns(rows, 1));
   }
   std::string facts;
-  for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what, scores_line(line));
+  for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what(), scores_line(line));
   facts += ledger_text(report.ledger);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report)) {

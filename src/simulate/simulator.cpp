@@ -25,39 +25,55 @@ constexpr double small_job = 1e5;
 
 }  // namespace
 
-Simulator::Simulator(std::shared_ptr<SimulationProgram const> program, Schedule schedule, ExecutionOptions options)
-    : program_(std::move(program)), schedule_(std::move(schedule)), options_(options) {
-  if (options_.threads == 0) options_.threads = std::max(1u, std::thread::hardware_concurrency());
-  if (options_.threads > 1) pool_ = std::make_shared<ThreadPool>(options_.threads);
+void do_work(std::span<Work const> work, ThreadPool* pool) {
+  std::vector<std::function<void()> const*> blocks;
+  double instructions = 0;
+  for (Work const& each : work) {
+    for (auto const& block : each.blocks) blocks.push_back(&block);
+    instructions += each.instructions;
+  }
+  if (pool != nullptr && instructions > small_job)
+    pool->run(static_cast<int>(blocks.size()), [&](int b) { (*blocks[static_cast<std::size_t>(b)])(); });
+  else
+    for (auto const* block : blocks) (*block)();
 }
 
-void Simulator::for_each_block(int width, int samples, Work const& work) const {
-  if (width == 0) return;
-  double const instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
-  bool const threaded = pool_ && instructions > small_job;
+std::shared_ptr<ThreadPool> make_pool(ExecutionOptions const& options) {
+  int const threads = options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return threads > 1 ? std::make_shared<ThreadPool>(threads) : nullptr;
+}
+
+Simulator::Simulator(std::shared_ptr<SimulationProgram const> program, Schedule schedule, ExecutionOptions options,
+                     std::shared_ptr<ThreadPool> pool)
+    : program_(std::move(program)),
+      schedule_(std::move(schedule)),
+      options_(options),
+      pool_(pool ? std::move(pool) : make_pool(options)) {}
+
+Work Simulator::blocks(int width, int samples, BlockWork const& work) const {
+  Work result;
+  if (width == 0) return result;
+  result.instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
   int widest = options_.lanes;
   if (widest == 0) {
     widest = std::max(16, cache_bytes / 8 / std::max(1, program_->hot_registers));
     // Narrower blocks rather than idle threads, but not so narrow that the time goes into dispatch.
-    if (threaded) widest = std::min(widest, std::max(16, (width + pool_->threads() - 1) / pool_->threads()));
+    if (pool_ && result.instructions > small_job)
+      widest = std::min(widest, std::max(16, (width + pool_->threads() - 1) / pool_->threads()));
   }
   Executor const executor =
       choose_executor(std::min(width, widest), options_.lanes == 0 ? widest : std::numeric_limits<int>::max());
-  int const blocks = (width + executor.width - 1) / executor.width;
-  auto const task = [&](int b) {
-    int const lane = b * executor.width, lanes = std::min(executor.width, width - lane);
-    Block block(*program_, schedule_, choose_executor(lanes, executor.width), lanes);  // the last one may be narrower
-    work(block, lane, lanes);
-  };
-  if (threaded)
-    pool_->run(blocks, task);
-  else
-    for (int b = 0; b < blocks; ++b) task(b);
+  for (int lane = 0; lane < width; lane += executor.width)
+    result.blocks.push_back([this, work, executor, lane, lanes = std::min(executor.width, width - lane)] {
+      Block block(*program_, schedule_, choose_executor(lanes, executor.width), lanes);  // the last one may be narrower
+      work(block, lane, lanes);
+    });
+  return result;
 }
 
-void Simulator::sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
+Work Simulator::sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
   int const end = schedule_.last_summed();
-  for_each_block(parameters.width(), end, [&](Block& block, int lane, int lanes) {
+  return blocks(parameters.width(), end, [=](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     block.start();
     bool alive = true;
@@ -78,6 +94,11 @@ void Simulator::sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcom
       for (int r = 0; r < sums.rows(); ++r) out(r, lane + w) = result.ok ? sums(r, w) : not_a_number;
     }
   });
+}
+
+void Simulator::sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
+  Work const work = sums_work(parameters, out, outcome);
+  do_work({&work, 1}, pool_.get());
 }
 
 void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int lanes, int first, int last, Lanes out,
@@ -110,16 +131,23 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
   }
 }
 
-void Simulator::records(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const {
-  for_each_block(parameters.width(), last, [&](Block& block, int lane, int lanes) {
+Work Simulator::records_work(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const {
+  return blocks(parameters.width(), last, [=, this](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     record_block(block, nullptr, lane, lanes, first, last, out, outcome);
   });
 }
 
+void Simulator::records(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const {
+  Work const work = records_work(parameters, first, last, out, outcome);
+  do_work({&work, 1}, pool_.get());
+}
+
 void Simulator::records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const {
-  for_each_block(static_cast<int>(outcome.size()), last,
-                 [&](Block& block, int lane, int lanes) { record_block(block, &redraw, lane, lanes, first, last, out, outcome); });
+  Work const work = blocks(static_cast<int>(outcome.size()), last, [=, this, &redraw](Block& block, int lane, int lanes) {
+    record_block(block, &redraw, lane, lanes, first, last, out, outcome);
+  });
+  do_work({&work, 1}, pool_.get());
 }
 
 }  // namespace sysid

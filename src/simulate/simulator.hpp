@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/lanes.hpp"
 #include "core/ledger.hpp"
@@ -36,10 +37,23 @@ struct Diagnosis {
   int sample = 0;
 };
 
+/// Blocks of lanes that may run in any order and on any threads, each touching its own part of the results.
+struct Work {
+  std::vector<std::function<void()>> blocks;
+  double instructions = 0;  // in all: too few are not worth waking threads for
+};
+/// Does all blocks of all pieces; returns when they are done. pool: null for the calling thread alone.
+void do_work(std::span<Work const> work, ThreadPool* pool);
+
+/// The threads that the options ask for; null for one.
+std::shared_ptr<ThreadPool> make_pool(ExecutionOptions const& options);
+
 /// Immutable; all members may be called concurrently.
 class Simulator {
  public:
-  Simulator(std::shared_ptr<SimulationProgram const> program, Schedule schedule, ExecutionOptions options = {});
+  /// pool: shared with other simulators; null: threads of its own, as the options say.
+  Simulator(std::shared_ptr<SimulationProgram const> program, Schedule schedule, ExecutionOptions options = {},
+            std::shared_ptr<ThreadPool> pool = nullptr);
 
   SimulationProgram const& program() const { return *program_; }
   Schedule const& schedule() const { return schedule_; }
@@ -49,9 +63,13 @@ class Simulator {
   /// A lane fails when a state or a sum is not finite. Lane w depends on column w alone.
   void sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
 
+  /// The same as work to do, so that several simulators share the threads; what the arguments view must outlive it.
+  Work sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
+
   /// Records of samples [first, last): record r of sample i is row (i - first) * records + r of out; a failed lane is NaN in every
   /// row.
   void records(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const;
+  Work records_work(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const;
 
   /// Writes the parameters in force from sample `sample` on, for lanes [lane, lane + parameters.width()) of the batch.
   using Redraw = std::function<void(int sample, int lane, Lanes parameters)>;
@@ -63,8 +81,8 @@ class Simulator {
   std::optional<Diagnosis> diagnose(std::span<double const> parameters) const;
 
  private:
-  using Work = std::function<void(Block&, int lane, int lanes)>;
-  void for_each_block(int width, int samples, Work const& work) const;
+  using BlockWork = std::function<void(Block&, int lane, int lanes)>;
+  Work blocks(int width, int samples, BlockWork const& work) const;
   void record_block(Block& block, Redraw const* redraw, int lane, int lanes, int first, int last, Lanes out,
                     std::span<Outcome> outcome) const;
 

@@ -86,11 +86,8 @@ inline Answer answer(std::string const& name, std::string const& text, Depth dep
     if (!file) answer.exit = ExitCode::user_error;
     if (file && depth == Depth::data)
       for (Task const& task : file->tasks)
-        if (auto const* fit = std::get_if<FitTask>(&task.what)) {
-          DataBlock const& block = file->data[static_cast<std::size_t>(fit->data)];
-          Record const record = load_record(block, file->models[static_cast<std::size_t>(fit->model)], {});
-          cut(record, block, fit->part, fit->start);
-        }
+        if (auto const* fit = std::get_if<FitTask>(&task.what))
+          load_experiments(*file, fit->experiments, file->models[static_cast<std::size_t>(fit->model)], {}, fit->start);
     if (file && depth == Depth::run) {
       SilentProgress progress;
       std::ostringstream summaries, notices;

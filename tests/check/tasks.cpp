@@ -58,7 +58,7 @@ TEST_CASE("settings of a back end are its defaults where they are not given") {
   CHECK(task.seed.value() == 7);
   CHECK(task.solver == SolverSettings{.substeps = 3});
   CHECK_FALSE(task.settle);
-  CHECK(task.part == 1);
+  CHECK(task.experiments.at(0).part == 1);
   CHECK(fit("mh").settings.integer("samples") == 25000);
   CHECK(fit("mh, substeps = automatic").settle);
   CHECK(fit("mh, solver = heun").solver.method == "heun");

@@ -26,6 +26,7 @@ TEST_CASE("the summary holds each parameter with unit and diagnostics, exactly")
   CHECK(json["data"][0]["rows"] == 1500);
   CHECK(json["fit"]["nmse"] == 0.0104);
   CHECK(json["fit"]["channels"]["bench.train"]["displacement"].contains("coverage_95"));
+  CHECK(json["fit"]["channels"]["bench.train"]["displacement"]["chi_squared_per_sample"] == 1.01);
   CHECK(json["modes"][0]["values"]["k"] == 1e4);
   CHECK(json["ledger"]["failed"] == 3);
   CHECK(json["ledger"]["failures"][0]["example"]["m"] == 1);
@@ -43,7 +44,7 @@ TEST_CASE("a failed diagnostic fails the verdict") {
 TEST_CASE("what is not finite is null: the file is strict JSON") {
   Report report = example::duffing(20);
   report.summary[0].rhat = std::nan("");
-  report.fit[0].value = INFINITY;
+  report.fit[0].scores[0].value = INFINITY;
   std::string const text = summary_json(report);
   auto const json = nlohmann::json::parse(text);
   CHECK(json["parameters"]["m"]["rhat"].is_null());

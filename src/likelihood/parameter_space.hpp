@@ -1,0 +1,94 @@
+// The parameters of a fit to one or several experiments: shared ones once, those declared `per experiment` once for each, with the
+// joint prior over all of them; and which of them each experiment's simulations read.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/random.hpp"
+#include "likelihood/target.hpp"
+#include "model/model.hpp"
+#include "program/kernel.hpp"
+
+namespace sysid {
+
+/// An experiment as parameters see it.
+struct ExperimentMember {
+  std::string name;                              // the index of its own parameters; empty: they go by their plain names
+  std::vector<std::optional<double>> constants;  // per model parameter, SI: what the data block fixes; empty: nothing
+};
+
+/// A row of the space. Sampled unless it has a value.
+struct FittedParameter : Quantity {
+  int parameter = 0;            // of the model
+  int experiment = -1;          // -1: shared
+  std::optional<double> value;  // SI, fixed
+};
+
+/// The name of one experiment's own: "k" in "bench" is "k[bench]", an element "k[2]" is "k[2,bench]".
+std::string member_name(std::string const& name, std::string const& experiment);
+
+/// Whether an expression of the model reads a parameter that every experiment has for itself.
+bool reads_own_parameters(Model const& model, NodeId root);
+
+/// Immutable. Rows are in the user's order, a per-experiment parameter taking one row per experiment in its place, in the order of
+/// the experiments. Coordinates u [D] are those of the sampled rows; `declared` [D] their values in declared units; `values` [rows]
+/// all of them in SI.
+class ParameterSpace {
+ public:
+  /// A per-experiment parameter without prior and value must be among the constants of every experiment (the checker has seen to
+  /// it); where it is not, as when a model is only looked at, it is NaN.
+  ParameterSpace(Model model, std::vector<ExperimentMember> experiments);
+
+  Model const& model() const { return model_; }
+  std::vector<ExperimentMember> const& experiments() const { return experiments_; }
+  std::vector<FittedParameter> const& rows() const { return rows_; }
+  /// The rows of the coordinates; size D.
+  std::vector<int> const& sampled() const { return sampled_; }
+  int dimension() const { return static_cast<int>(sampled_.size()); }
+  std::span<ParameterInfo const> infos() const { return infos_; }
+  /// The row that an experiment reads for a parameter of the model.
+  int row(int experiment, int parameter) const {
+    return row_of_[static_cast<std::size_t>(experiment)][static_cast<std::size_t>(parameter)];
+  }
+
+  // As Target describes them; theta [D x W].
+  void sample_prior(StreamKey key, Lanes theta) const;
+  void log_prior(ConstLanes theta, std::span<double> out, bool jacobian) const;
+  void constrain(ConstLanes theta, Lanes declared) const;
+  void unconstrain(ConstLanes declared, Lanes theta) const;
+
+  /// values [rows x W], SI, of theta [D x W] or of declared values [D x W].
+  LaneArray values(ConstLanes theta) const;
+  LaneArray values_of_declared(ConstLanes declared) const;
+  /// From values [rows x W] the parameters of the model [parameters x W], SI, as one experiment has them.
+  void select(ConstLanes values, int experiment, Lanes parameters) const;
+
+  /// Parameters of the model [parameters x W], SI, for an experiment that is none of these: shared ones as declared [D x W], its
+  /// own as its constants say or drawn from their prior given the shared ones, lane w by stream key.with_index(key.index + w).
+  /// UserError where the prior is impossible.
+  LaneArray of_new_experiment(ConstLanes declared, std::span<std::optional<double> const> constants, StreamKey key) const;
+
+  /// What `--dump program` prints.
+  std::string dump() const;
+
+ private:
+  void lay_out();
+  void compile();
+  /// Draws the model parameters `order` of one lane, reading and writing parameter p at values(place(p), lane).
+  template <class Place>
+  void draw(std::span<int const> order, Place const& place, Lanes values, int lane, Stream& stream) const;
+
+  Model model_;
+  std::vector<ExperimentMember> experiments_;
+  std::vector<FittedParameter> rows_;
+  std::vector<std::vector<int>> row_of_;  // [experiments][model parameters]
+  std::vector<int> sampled_;
+  std::vector<ParameterInfo> infos_;
+  Kernel constrain_;    // u [D] -> values
+  Kernel unconstrain_;  // values -> u [D]
+  Kernel prior_;        // u [D] -> log prior on R^D, log prior of the declared parameters
+};
+
+}  // namespace sysid

@@ -1,0 +1,102 @@
+// Several experiments in one task: their names, the values that data blocks fix, which fitted one a prediction is of.
+#include "checking.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+std::string const model =
+    "model m {\ninput x\nstate y [m]\ninitial y = 0\nparameter dose per experiment [g]\nparameter mass per experiment [kg] = 2\n"
+    "parameter k per experiment [N/mm] ~ log_uniform(1, 10)\nparameter c ~ log_uniform(1, 10)\n"
+    "y' = x - k*y/mass*c*dose\nobserve displacement ~ normal(y, sd = 1)\n}\n";
+
+std::string block(std::string const& name, std::string const& more) {
+  return "data " + name + " {\nfile \"d.csv\"\ntime t\ninput x = x hold linear\nmeasure displacement = y\n" +
+         "split early = rows 1..10, late = rows 11..20\n" + more + "\n}\n";
+}
+std::string const blocks = block("bench", "constant dose = 30 [mg]") + block("hall", "constant dose = 5; constant mass = 700 [g]") +
+                           block("field", "constant dose = 1; constant k = 3");
+
+std::vector<ExperimentUse> fitted(std::string const& data) {
+  return std::get<FitTask>(checked(model + blocks + "f = fit m to " + data + " with mh\n").tasks.at(0).what).experiments;
+}
+std::string refused(std::string const& text) { return messages(model + blocks + text + "\n"); }
+
+}  // namespace
+
+TEST_CASE("experiments are named by their blocks, and by their parts too where a block is used twice") {
+  auto const plain = fitted("bench.late, hall");
+  REQUIRE(plain.size() == 2);
+  CHECK(plain[0].name == "bench");
+  CHECK(plain[0].part == 1);
+  CHECK(plain[1].name == "hall");
+  CHECK(plain[1].part == -1);
+  auto const twice = fitted("bench.late, hall, bench.early");
+  CHECK(twice[0].name == "bench.late");
+  CHECK(twice[1].name == "hall");
+  CHECK(twice[2].name == "bench.early");
+}
+
+TEST_CASE("constants are in SI, bare ones in the unit of the parameter, and take the place of a value or a prior") {
+  auto const uses = fitted("bench, hall, field");
+  CHECK(uses[0].constants[0].value() == near(30e-6));
+  CHECK_FALSE(uses[0].constants[1]);
+  CHECK_FALSE(uses[0].constants[2]);
+  CHECK(uses[1].constants[0].value() == near(5e-3));
+  CHECK(uses[1].constants[1].value() == near(0.7));
+  CHECK(uses[2].constants[2].value() == near(3e3));
+}
+
+TEST_CASE("a prediction has the parameters of the fitted experiment of its block, else of a new one") {
+  auto const of = [](std::string const& tasks) {
+    return std::get<PredictTask>(checked(model + blocks + tasks).tasks.at(1).what).fitted;
+  };
+  CHECK(of("f = fit m to bench.early, hall with mh\np = predict f on hall.late, field, bench.late\n") ==
+        std::vector<int>{1, -1, 0});
+  CHECK(of("f = fit m to bench.early, bench.late with mh\np = predict f on bench.late, bench\n") == std::vector<int>{1, -1});
+}
+
+TEST_CASE("what a data block fixes must be a parameter that experiments have for themselves") {
+  std::string const other = messages(model + block("b", "constant dose = 1; constant dosis = 2") + "f = fit m to b with mh\n");
+  CHECK(other.find("error[E6301]") != std::string::npos);
+  CHECK(other.find("did you mean") != std::string::npos);
+  CHECK(messages(model + block("b", "constant dose = 1; constant c = 2") + "f = fit m to b with mh\n").find("error[E6302]") !=
+        std::string::npos);
+  CHECK(messages(model + block("b", "") + "f = fit m to b with mh\n").find("error[E6303]") != std::string::npos);
+  CHECK(messages(model + block("b", "constant dose = 1 [s]") + "f = fit m to b with mh\n").find("error[E2014]") !=
+        std::string::npos);
+  CHECK(messages(model + block("b", "constant dose = 1; constant dose = 2")).find("error[E4104]") != std::string::npos);
+  // A block may serve several models.
+  std::string const second =
+      "model n {\ninput x\nstate y [m]\ninitial y = 0\nparameter c ~ log_uniform(1, 10)\ny' = x - c*y\n"
+      "observe displacement ~ normal(y, sd = 1)\n}\n";
+  CHECK(messages(model + second + blocks + "f = fit n to bench with mh\n").empty());
+}
+
+TEST_CASE("rows are used once") {
+  CHECK(refused("f = fit m to bench, hall, bench with mh").find("error[E6304]: `bench` is used twice") != std::string::npos);
+  CHECK(refused("f = fit m to bench.late, bench with mh").find("error[E6304]: `bench` and `bench.late` share rows") !=
+        std::string::npos);
+  CHECK(errors_in(refused("f = fit m to bench.early, bench.late with mh")) == 0);
+}
+
+TEST_CASE("a shared parameter's prior cannot read what experiments have for themselves") {
+  std::string const shown = messages(
+      "model m {\ninput x\nstate y\ninitial y = 0\nparameter k per experiment ~ normal(0, sd = 1)\nparameter c ~ normal(k, sd = "
+      "1)\ny' = x - c*k*y\nobserve d ~ normal(y, sd = 1)\n}\n");
+  CHECK(shown.find("error[E6305]") != std::string::npos);
+  CHECK(errors_in(shown) == 1);
+}
+
+TEST_CASE("a simulation takes values of per-experiment parameters, or their value in the model") {
+  auto const task = [](std::string const& values) {
+    return std::get<SimulateTask>(checked(model + "s = simulate m with values(" + values +
+                                          "), input x = gaussian(sd = 1), noise = model, samples = 9, step = 1\n")
+                                      .tasks.at(0)
+                                      .what)
+        .values;
+  };
+  CHECK(task("dose = 1, k = 2, c = 3")[1].value() == near(2));
+  CHECK(task("dose = 1, k = 2, c = 3, mass = 5")[1].value() == near(5));
+}

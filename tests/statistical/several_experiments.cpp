@@ -1,0 +1,182 @@
+// Linear-Gaussian models on several experiments: shared, own and hierarchical parameters against closed forms and quadrature.
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "core/random.hpp"
+#include "fits.hpp"
+#include "report/number.hpp"
+
+using namespace sysid;
+
+namespace {
+
+// Means within 3 MCSE, sds within 5 %, at an effective sample size of 2000.
+void check(Fitted const& fitted, std::string const& name, double mean, double sd) {
+  INFO(name);
+  auto const& found = fitted.of("posterior", name);
+  CHECK(found.at("ess_bulk").get<double>() >= 2000);
+  CHECK(std::abs(found.at("mean").get<double>() - mean) <= 3 * found.at("mcse_mean").get<double>());
+  CHECK(found.at("sd").get<double>() == doctest::Approx(sd).epsilon(0.05));
+}
+
+// A posterior of linear regression: precision and information, prior first.
+struct Gaussian {
+  Eigen::MatrixXd precision;
+  Eigen::VectorXd information;
+  void add(Eigen::VectorXd const& regressor, double y, double sd) {
+    precision += regressor * regressor.transpose() / (sd * sd);
+    information += regressor * (y / (sd * sd));
+  }
+  Eigen::VectorXd mean() const { return precision.ldlt().solve(information); }
+  double sd(int i) const { return std::sqrt(precision.inverse()(i, i)); }
+};
+
+}  // namespace
+
+TEST_CASE("two experiments with shared slope and own intercepts have the closed-form posterior") {
+  // y' = b x with x held, level = y + a: rows of regressors (b, a of the first, a of the second).
+  Gaussian exact{Eigen::MatrixXd::Identity(3, 3) / 4, Eigen::VectorXd::Zero(3)};
+  std::map<std::string, std::string> files;
+  Stream stream({21, Purpose::test, 0, 0});
+  double const truth[] = {0.8, -1.0, 2.5}, noise[] = {0.3, 0.6}, step[] = {0.1, 0.25};
+  int const rows[] = {50, 30};
+  for (int e = 0; e < 2; ++e) {
+    std::string csv = "t,x,y\n";
+    double slope = 0;
+    for (int i = 0; i < rows[e]; ++i) {
+      double const x = stream.normal(), y = truth[0] * slope + truth[1 + e] + noise[e] * stream.normal();
+      csv += shortest(i * step[e]) + "," + shortest(x) + "," + shortest(y) + "\n";
+      Eigen::VectorXd regressor = Eigen::VectorXd::Zero(3);
+      regressor(0) = slope;
+      regressor(1 + e) = 1;
+      exact.add(regressor, y, noise[e]);
+      slope += step[e] * x;
+    }
+    files[e == 0 ? "one.csv" : "two.csv"] = csv;
+  }
+  std::string const text = R"(
+model line {
+  input x
+  state y
+  initial y = 0
+  parameter b ~ normal(0, sd = 2)
+  parameter a per experiment ~ normal(0, sd = 2)
+  parameter noise per experiment
+  y' = b*x
+  observe level ~ normal(y + a, sd = noise)
+  derive total = a + b
+}
+data one { file "one.csv"; time t [s]; input x = x hold zero_order; measure level = y; constant noise = 0.3 }
+data two { file "two.csv"; time t [s]; input x = x hold zero_order; measure level = y; constant noise = 0.6 }
+posterior = fit line to one, two with mh(samples = 30000, burn_in = 5000, thin = 5), seed = 1
+)";
+  Fitted const fitted = run_file(text, {}, files);
+  CHECK(fitted.exit == 0);
+  Eigen::VectorXd const mean = exact.mean();
+  check(fitted, "b", mean(0), exact.sd(0));
+  check(fitted, "a[one]", mean(1), exact.sd(1));
+  check(fitted, "a[two]", mean(2), exact.sd(2));
+  // The sum of b and the first intercept: variance of a linear form.
+  Eigen::Vector3d const form(1, 1, 0);
+  check(fitted, "total[one]", form.dot(mean), std::sqrt(form.dot(exact.precision.inverse() * form)));
+  CHECK(!fitted.summary.at("posterior").at("parameters").contains("noise[one]"));
+}
+
+namespace {
+
+// Four groups of a few samples around their own level, which is the initial value of a state that stays.
+struct Groups {
+  std::map<std::string, std::string> files;
+  std::vector<double> mean;  // of each group
+  std::vector<int> rows = {3, 5, 8, 4};
+  double noise = 0.5;
+
+  Groups() {
+    Stream stream({22, Purpose::test, 0, 0});
+    double const level[] = {1.2, 2.9, 2.0, 3.4};
+    for (std::size_t g = 0; g < rows.size(); ++g) {
+      std::string csv = "t,x,y\n";
+      mean.push_back(0);
+      for (int i = 0; i < rows[g]; ++i) {
+        double const y = level[g] + noise * stream.normal();
+        csv += shortest(i) + ",0," + shortest(y) + "\n";
+        mean.back() += y / rows[g];
+      }
+      files["group" + std::to_string(g + 1) + ".csv"] = csv;
+    }
+  }
+  double variance(std::size_t g) const { return noise * noise / rows[g]; }
+
+  std::string text(std::string const& spread, std::string const& settings) const {
+    std::string out = "model groups {\n  input x\n  state y\n  initial y = level\n  parameter mu ~ normal(0, sd = 3)\n";
+    out += "  parameter tau " + spread + "\n  parameter level per experiment ~ normal(mu, sd = tau)\n  y' = x\n";
+    out += "  observe value ~ normal(y, sd = 0.5)\n}\n";
+    std::string names;
+    for (std::size_t g = 1; g <= rows.size(); ++g) {
+      std::string const name = "group" + std::to_string(g);
+      out += "data " + name + " { file \"" + name + ".csv\"; time t [s]; input x = x hold zero_order; measure value = y }\n";
+      names += (g == 1 ? "" : ", ") + name;
+    }
+    return out + "posterior = fit groups to " + names + " with mh(" + settings + "), seed = 3\n";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a hierarchy with known spread has the normal-normal posterior, shrunken towards the population's mean") {
+  Groups const groups;
+  double const tau = 0.8;
+  // Unknowns: mu, then the levels.
+  Gaussian exact{Eigen::MatrixXd::Zero(5, 5), Eigen::VectorXd::Zero(5)};
+  exact.precision(0, 0) = 1 / 9.0;
+  for (int g = 0; g < 4; ++g) {
+    Eigen::VectorXd link = Eigen::VectorXd::Zero(5);
+    link(0) = -1;
+    link(1 + g) = 1;
+    exact.add(link, 0, tau);
+    Eigen::VectorXd own = Eigen::VectorXd::Zero(5);
+    own(1 + g) = 1;
+    exact.add(own, groups.mean[static_cast<std::size_t>(g)], std::sqrt(groups.variance(static_cast<std::size_t>(g))));
+  }
+  Fitted const fitted = run_file(groups.text("= 0.8", "samples = 40000, burn_in = 5000, thin = 5"), {}, groups.files);
+  CHECK(fitted.exit == 0);
+  Eigen::VectorXd const mean = exact.mean();
+  check(fitted, "mu", mean(0), exact.sd(0));
+  for (int g = 0; g < 4; ++g) check(fitted, "level[group" + std::to_string(g + 1) + "]", mean(1 + g), exact.sd(1 + g));
+}
+
+TEST_CASE("mean and spread of a population agree with quadrature over the spread") {
+  Groups const groups;
+  // Given tau the groups' means are normal around mu with variance tau^2 + s_g^2: mu integrates out in closed form.
+  double mass = 0, mu_mean = 0, mu_square = 0, tau_mean = 0, tau_square = 0;
+  double const h = 1e-3;
+  for (double tau = 0.5 * h; tau < 12; tau += h) {
+    double precision = 1 / 9.0, information = 0, log_density = -0.5 * tau * tau / 4;  // half-normal of sd 2
+    double square = 0;
+    for (std::size_t g = 0; g < groups.rows.size(); ++g) {
+      double const v = tau * tau + groups.variance(g);
+      precision += 1 / v;
+      information += groups.mean[g] / v;
+      square += groups.mean[g] * groups.mean[g] / v;
+      log_density -= 0.5 * std::log(v);
+    }
+    double const centre = information / precision;
+    log_density += -0.5 * std::log(precision) - 0.5 * (square - information * centre);
+    double const weight = std::exp(log_density) * h;
+    mass += weight;
+    mu_mean += weight * centre;
+    mu_square += weight * (centre * centre + 1 / precision);
+    tau_mean += weight * tau;
+    tau_square += weight * tau * tau;
+  }
+  mu_mean /= mass;
+  tau_mean /= mass;
+  Fitted const fitted = run_file(groups.text("~ half_normal(2)", "samples = 120000, burn_in = 20000, thin = 10"), {}, groups.files);
+  CHECK(fitted.exit == 0);
+  check(fitted, "mu", mu_mean, std::sqrt(mu_square / mass - mu_mean * mu_mean));
+  check(fitted, "tau", tau_mean, std::sqrt(tau_square / mass - tau_mean * tau_mean));
+  CHECK(fitted.of("posterior", "tau").at("rhat").get<double>() < 1.01);
+}
