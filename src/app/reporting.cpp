@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/experiments.hpp"
 #include "core/files.hpp"
 #include "data/digest.hpp"
 #include "syntax/parse.hpp"
@@ -36,6 +37,11 @@ std::function<double(double)> prior_density(Parameter const& parameter, Model co
     if ((lower && si <= *lower) || (upper && si >= *upper)) return 0.0;
     return scale * elementary::exp(graph->evaluate(root, [&](NodeId) { return si; }));
   };
+}
+
+std::vector<ExperimentUse> const& experiments_of(Task const& task) {
+  if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->experiments;
+  return std::get<FitTask>(task.what).experiments;
 }
 
 }  // namespace
@@ -89,6 +95,16 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   std::string const& name = session.file.models[static_cast<std::size_t>(model)].name;
   if (summary["versions"].value("model_sha256", "") != model_digest(session.source, name))
     return refuse("text of model `" + name + "`");
+  std::vector<ExperimentUse> const& experiments = experiments_of(task);
+  auto const stored = summary.value("data", nlohmann::json::array());
+  if (stored.size() != experiments.size()) return refuse("set of experiments");
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    DataBlock const& block = session.file.data[static_cast<std::size_t>(experiments[e].data)];
+    if (stored[e].value("name", "") != data_name(block, experiments[e].part)) return refuse("set of experiments");
+    auto const path = session.folder() / block.path;
+    if (std::filesystem::exists(path) && stored[e].value("sha256", "") != sha256(read_file(path)))
+      return refuse("content of `" + block.path + "`");
+  }
   if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");
   return std::nullopt;
 }

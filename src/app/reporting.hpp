@@ -14,8 +14,8 @@ Report begin_report(Session const& session, Task const& task, int model, std::st
 /// SHA-256 of a model's text: what stored results are compared by.
 std::string model_digest(Source const& source, std::string const& model);
 
-/// What is wrong with taking up stored results of a task: they are of another text of the model, or of another seed (when one is
-/// stated); nothing when they fit.
+/// What is wrong with taking up stored results of a task: they are of another text of the model, of other experiments, of other
+/// contents of their files, or of another seed (when one is stated); nothing when they fit.
 std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, int model, std::optional<std::uint64_t> seed);
 
 }  // namespace sysid

@@ -199,6 +199,13 @@ std::vector<std::optional<double>> check_constants(DataBlock const& block, Model
   auto const place_in = [](Model const& any, std::string const& name) {
     return std::find_if(any.parameters.begin(), any.parameters.end(), [&](Parameter const& each) { return each.name == name; });
   };
+  // A block stands in several tasks; what is wrong with it is said once.
+  auto const add = [&](Diagnostic diagnostic) {
+    auto const same = [&](Diagnostic const& other) {
+      return other.code == diagnostic.code && other.primary && other.primary->span == diagnostic.primary->span;
+    };
+    if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(std::move(diagnostic));
+  };
   bool good = true;
   for (DataConstantUse const& constant : block.constants) {
     auto const place = place_in(model, constant.parameter);
@@ -210,14 +217,13 @@ std::vector<std::optional<double>> check_constants(DataBlock const& block, Model
       std::vector<std::string> known;
       for (Parameter const& parameter : model.parameters)
         if (parameter.per_experiment) known.push_back(parameter.name);
-      diagnostics.add(errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
+      add(errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
       good = false;
     } else if (!place->per_experiment) {
-      diagnostics.add(errors::constant_of_shared(constant.span, place->span, place->name));
+      add(errors::constant_of_shared(constant.span, place->span, place->name));
       good = false;
     } else if (constant.unit && place->unit && constant.unit->dimension != place->unit->dimension) {
-      diagnostics.add(
-          errors::number_of_other_kind(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit));
+      add(errors::number_of_other_kind(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit));
       good = false;
     } else {
       values[static_cast<std::size_t>(place - model.parameters.begin())] =

@@ -55,8 +55,10 @@ std::string dump(Model const& model) {
   std::string out = fmt::format("model {}{}\n", model.name, model.title.empty() ? "" : fmt::format(" \"{}\"", model.title));
   for (Quantity const& input : model.inputs) out += fmt::format("  input {}\n", declared(input));
   for (Parameter const& parameter : model.parameters)
-    out += fmt::format("  parameter {} {}\n", declared(parameter),
-                       parameter.prior ? "~ " + call(*parameter.prior) : "= " + text(*parameter.value));
+    out += fmt::format("  parameter {}{}{}\n", declared(parameter), parameter.per_experiment ? " per experiment" : "",
+                       parameter.prior   ? " ~ " + call(*parameter.prior)
+                       : parameter.value ? " = " + text(*parameter.value)
+                                         : "");
   for (State const& state : model.states) {
     out += fmt::format("  state {}, initially {}\n", declared(state), text(state.initial));
     out += fmt::format("    d/dt = {}\n", text(state.derivative));

@@ -2,6 +2,22 @@
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
+namespace {
+
+/// Sets a flag for as long as it lives, unless somebody else has.
+struct Claim {
+  explicit Claim(std::atomic_flag& flag) : flag(flag), won(!flag.test_and_set(std::memory_order_acquire)) {}
+  ~Claim() {
+    if (won) flag.clear(std::memory_order_release);
+  }
+  Claim(Claim const&) = delete;
+  Claim& operator=(Claim const&) = delete;
+
+  std::atomic_flag& flag;
+  bool won;
+};
+
+}  // namespace
 
 ThreadPool::ThreadPool(int threads) {
   for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
@@ -17,8 +33,8 @@ ThreadPool::~ThreadPool() {
 }
 
 void ThreadPool::run(int tasks, std::function<void(int)> const& task) {
-  std::unique_lock const caller(caller_, std::try_to_lock);
-  if (!caller.owns_lock() || workers_.empty() || tasks < 2) {
+  Claim const claim(busy_);
+  if (!claim.won || workers_.empty() || tasks < 2) {
     for (int i = 0; i < tasks; ++i) task(i);
     return;
   }

@@ -19,8 +19,8 @@ class ThreadPool {
   ThreadPool& operator=(ThreadPool const&) = delete;
 
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
-  /// task(0), ..., task(tasks - 1), each once; returns when all are done. A second caller meanwhile runs its tasks itself.
-  /// The first exception of a task is thrown here.
+  /// task(0), ..., task(tasks - 1), each once; returns when all are done. A second caller meanwhile, or a task that calls, runs its
+  /// tasks itself. The first exception of a task is thrown here.
   void run(int tasks, std::function<void(int)> const& task);
 
  private:
@@ -28,7 +28,7 @@ class ThreadPool {
   void take_tasks();
 
   std::vector<std::thread> workers_;
-  std::mutex caller_;  // held by the caller that has the workers
+  std::atomic_flag busy_;  // set while a caller has the workers; no mutex, as one of its tasks may ask again
   std::mutex mutex_;
   std::condition_variable wake_, done_;
   std::function<void(int)> const* task_ = nullptr;

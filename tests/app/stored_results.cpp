@@ -87,6 +87,29 @@ TEST_CASE("complete results of another text are not kept by --resume") {
   CHECK(shown.messages.find("error[E6208]: the results in `OUT/posterior` are of another text of model") != std::string::npos);
 }
 
+TEST_CASE("stored draws of other data, or of other experiments, are not taken up") {
+  TemporaryFolder const output, folder;
+  WorkingFolder const here(folder.path);
+  std::string const csv = content(error_examples / "data/growth.csv");
+  std::filesystem::create_directory("data");
+  write("data/growth.csv", csv);
+  auto const run_here = [&](std::string const& file, std::vector<std::string> const& verbs) {
+    return answer("example.sysid", file, Depth::run, output.path, {}, verbs);
+  };
+  CHECK(run_here(text("k"), {"fit"}).exit <= ExitCode::doubtful);
+  CHECK(run_here(text("k"), {"predict"}).exit == ExitCode::success);
+  std::filesystem::remove_all(output.path / "forecast");
+  std::string parted = text("k");
+  parted.replace(parted.find("  measure"), 0, "  split all = rows 1..4\n");
+  parted.replace(parted.find("to dish"), 7, "to dish.all");
+  CHECK(run_here(parted, {"predict"})
+            .messages.find("error[E6201]: the results in `OUT/posterior` are of another set of experiments") != std::string::npos);
+  write("data/growth.csv", csv + "99,1\n");
+  CHECK(run_here(text("k"), {"predict"})
+            .messages.find("error[E6201]: the results in `OUT/posterior` are of another content of `data/growth.csv`") !=
+        std::string::npos);
+}
+
 TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   TemporaryFolder const output;
   std::string const checkpoint = checkpoint_of_an_interrupted_run(output.path);

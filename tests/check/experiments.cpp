@@ -67,6 +67,9 @@ TEST_CASE("what a data block fixes must be a parameter that experiments have for
   CHECK(messages(model + block("b", "constant dose = 1 [s]") + "f = fit m to b with mh\n").find("error[E2014]") !=
         std::string::npos);
   CHECK(messages(model + block("b", "constant dose = 1; constant dose = 2")).find("error[E4104]") != std::string::npos);
+  // Said once, however many tasks use the block.
+  CHECK(errors_in(messages(model + block("b", "constant dose = 1; constant c = 2") +
+                           "f = fit m to b with mh\ng = fit m to b.late with mh\n")) == 1);
   // A block may serve several models.
   std::string const second =
       "model n {\ninput x\nstate y [m]\ninitial y = 0\nparameter c ~ log_uniform(1, 10)\ny' = x - c*y\n"

@@ -32,6 +32,13 @@ TEST_CASE("two callers at once both get their tasks done") {
   CHECK(total == 2 * 50 * 9);
 }
 
+TEST_CASE("a task may give the pool tasks of its own") {
+  ThreadPool pool(3);
+  std::atomic<int> total = 0;
+  for (int round = 0; round < 50; ++round) pool.run(4, [&](int) { pool.run(5, [&](int) { ++total; }); });
+  CHECK(total == 50 * 4 * 5);
+}
+
 TEST_CASE("an exception of a task reaches the caller, and the pool goes on") {
   ThreadPool pool(2);
   CHECK_THROWS_AS(pool.run(5,
