@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check/errors.hpp"
+#include "check/unit_words.hpp"
 
 namespace sysid {
 namespace {
@@ -34,8 +35,9 @@ ast::Expression const* location_argument(ast::Call const& call) {
   return nullptr;
 }
 
-std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& call, std::optional<Unit> const& unit) {
+std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& call, Quantity const& variate) {
   Diagnostics& diagnostics = scope.diagnostics();
+  std::optional<Unit> const& unit = variate.unit;
   DistributionRow const* row = find_distribution(call.function.text);
   if (row == nullptr) {
     std::vector<std::string> known;
@@ -105,6 +107,10 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
   Distribution use;
   use.row = row;
   Graph& graph = scope.graph();
+  std::string const declared = unit ? "[" + unit_words(*unit) + "]" : "";
+  auto const argument_in = [&](std::optional<Unit> const& wanted, ast::Expression const& tree, std::string const& spelt) {
+    return scope.expression_in(wanted, variate.span, tree, {Occasion::Kind::distribution, spelt, variate.name, declared});
+  };
   bool all_given = good;
   for (std::size_t i = 0; i < given.size(); ++i) {
     ArgumentRow const& argument = row->arguments[i];
@@ -119,7 +125,8 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
       }
       continue;
     }
-    auto const value = scope.expression(*given[i].value);
+    std::optional<Unit> argument_unit = unit_of_argument(unit, given[i].spelling->unit_power);
+    auto const value = argument_in(argument_unit, *given[i].value, std::string(given[i].spelling->name));
     if (!value) {
       good = false;
       continue;
@@ -128,7 +135,6 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
     std::string_view const spelt = given[i].spelling->name;
     bool const place = spelt == "mean" || spelt == "median" || spelt == "location" || spelt == "lower" || spelt == "upper";
     Typed argument_value = *value;
-    std::optional<Unit> argument_unit = unit_of_argument(unit, given[i].spelling->unit_power);
     if (!place) {
       argument_value.unit.offset = 0;
       if (argument_unit) argument_unit->offset = 0;
@@ -137,9 +143,9 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
     if (given[i].spelling->to_canonical != nullptr) node = given[i].spelling->to_canonical(graph, node, use.arguments);
     use.arguments.push_back(node);
   }
-  auto const bound = [&](Given const& place) -> std::optional<NodeId> {
+  auto const bound = [&](Given const& place, char const* spelt) -> std::optional<NodeId> {
     if (place.value == nullptr) return std::nullopt;
-    auto const value = scope.expression(*place.value);
+    auto const value = argument_in(unit, *place.value, spelt);
     if (!value) {
       good = false;
       return std::nullopt;
@@ -148,8 +154,8 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
     auto const number = graph.constant_value(node);
     return number && std::isinf(*number) ? std::nullopt : std::optional(node);
   };
-  use.lower = bound(lower);
-  use.upper = bound(upper);
+  use.lower = bound(lower, "lower");
+  use.upper = bound(upper, "upper");
   if (!good || use.arguments.size() != row->arguments.size()) return std::nullopt;
 
   if (row->dimensionless && unit && !unit->dimensionless()) {

@@ -4,11 +4,13 @@
 
 #include "check/scope.hpp"
 #include "distribution/distribution.hpp"
+#include "model/model.hpp"
 
 namespace sysid {
 
-/// unit: of the variate; literals among the arguments take it, to the power their role asks. Nothing when a diagnostic was added.
-std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& call, std::optional<Unit> const& unit);
+/// variate: what is distributed. Its unit, to the power that the role of each argument asks, is that of the arguments: literals
+/// take it, others must have it. Nothing when a diagnostic was added that leaves no distribution.
+std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& call, Quantity const& variate);
 
 /// The argument that decides the unit of an observed channel: the first one (mean, median, location), if the call has any.
 ast::Expression const* location_argument(ast::Call const& call);

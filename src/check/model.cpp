@@ -106,21 +106,21 @@ class ModelChecker {
           continue;
         }
         first_time = time;
-        auto const unit = check_unit(time->time.unit, diagnostics_);
+        auto const unit = scope_.unit(time->time.unit);
         check_time_unit(unit, time->time.span, diagnostics_);
         scope_.declare(time->time.name, {TimeSymbol{}, unit, time->time.name.span});
       } else if (auto const* inputs = std::get_if<ast::InputDeclaration>(&statement)) {
         for (ast::Declared const& input : inputs->names) {
-          auto const unit = check_unit(input.unit, diagnostics_);
+          auto const unit = scope_.unit(input.unit);
           if (scope_.declare(input.name, {InputSymbol{static_cast<int>(model_.inputs.size())}, unit, input.name.span}))
             model_.inputs.push_back({input.name.text, unit, input.name.span});
         }
       } else if (auto const* states = std::get_if<ast::StateDeclaration>(&statement)) {
         for (ast::Declared const& state : states->names)
-          if (scope_.declare(state.name, {StateSymbol{}, check_unit(state.unit, diagnostics_), state.name.span}))
+          if (scope_.declare(state.name, {StateSymbol{}, scope_.unit(state.unit), state.name.span}))
             states_.push_back({state.name.text, StateInfo{&state}});
       } else if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) {
-        auto const unit = check_unit(parameter->name.unit, diagnostics_);
+        auto const unit = scope_.unit(parameter->name.unit);
         int const index = static_cast<int>(model_.parameters.size());
         if (scope_.declare(parameter->name.name, {ParameterSymbol{index}, unit, parameter->name.name.span})) {
           Parameter declared;
@@ -133,7 +133,7 @@ class ModelChecker {
         }
       } else if (auto const* definition = std::get_if<ast::Definition>(&statement)) {
         scope_.declare(definition->name.name,
-                       {DefinitionSymbol{definition}, check_unit(definition->name.unit, diagnostics_), definition->name.name.span});
+                       {DefinitionSymbol{definition}, scope_.unit(definition->name.unit), definition->name.name.span});
       } else if (auto const* function = std::get_if<ast::FunctionDefinition>(&statement)) {
         scope_.define_function(*function);
       }
@@ -207,15 +207,13 @@ class ModelChecker {
     bool good = true;
     Graph& graph = model_.graph;
     each<ast::Equation>([&](ast::Equation const& equation) {
-      auto left = scope_.expression(equation.left), right = scope_.expression(equation.right);
-      if (!left || !right) {
+      auto const sides = scope_.equation(equation);
+      if (!sides) {
         good = false;
         return;
       }
-      Typed sides[] = {*left, *right};
-      unify(graph, sides);
       trees.push_back(&equation);
-      residuals.push_back(graph.subtract(sides[1].node, sides[0].node));
+      residuals.push_back(graph.subtract(sides->second.node, sides->first.node));
       graph.set_span(residuals.back(), equation.span);
     });
     if (!good) {
@@ -352,7 +350,7 @@ class ModelChecker {
           diagnostics_.add(errors::initial_twice(initial.span, place->second, state.name));
           continue;
         }
-        auto const value = scope_.expression(initial.value);
+        auto const value = scope_.expression_in(state.unit, state.span, initial.value, {Occasion::Kind::declared, state.name});
         if (!value) continue;
         if (!moving_part(model_.graph, value->node).empty()) {
           diagnostics_.add(errors::initial_moves(initial.value.span));
@@ -372,7 +370,8 @@ class ModelChecker {
       ast::ParameterDeclaration const& tree = *parameter_trees_[i];
       Parameter& parameter = model_.parameters[i];
       if (tree.value) {
-        auto const value = scope_.expression(*tree.value);
+        auto const value =
+            scope_.expression_in(parameter.unit, parameter.span, *tree.value, {Occasion::Kind::declared, parameter.name});
         if (!value) continue;
         NodeId const node = adapt(model_.graph, *value, parameter.unit);
         if (!model_.graph.constant_value(node)) {
@@ -381,7 +380,7 @@ class ModelChecker {
         }
         parameter.value = node;
       } else if (tree.prior) {
-        auto use = check_distribution(scope_, *tree.prior, parameter.unit);
+        auto use = check_distribution(scope_, *tree.prior, parameter);
         if (!use) continue;
         std::vector<NodeId> parts = use->arguments;
         if (use->lower) parts.push_back(*use->lower);
@@ -449,9 +448,13 @@ class ModelChecker {
       Channel channel;
       channel.name = name.text;
       channel.span = name.span;
-      channel.unit = check_unit(observation.channel.unit, diagnostics_);
-      if (!channel.unit) channel.unit = location_unit(observation.noise);
-      auto use = check_distribution(scope_, observation.noise, channel.unit);
+      channel.unit = scope_.unit(observation.channel.unit);
+      Quantity variate = channel;
+      if (!channel.unit) {
+        channel.unit = variate.unit = location_unit(observation.noise);
+        if (channel.unit) variate.span = location_argument(observation.noise)->span;
+      }
+      auto use = check_distribution(scope_, observation.noise, variate);
       if (!use) return;
       if (!use->row->noise) {
         std::vector<std::string> known;

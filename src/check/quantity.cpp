@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace sysid {
 namespace {
@@ -50,6 +51,55 @@ std::optional<Unit> unify(Graph& graph, std::span<Typed> operands) {
 }
 
 namespace {
+
+// How many times pi is a factor of a bare number: 1 in 2*pi, -1 in 1/(2*pi), 2 in 4*pi^2; 0 without any.
+int powers_of_pi(Graph const& graph, Typed const& factor) {
+  auto const value = graph.constant_value(factor.node);
+  if (!value || *value == 0) return 0;
+  double rest = *value;
+  for (int const power : {1, 2}) {
+    rest /= std::numbers::pi;
+    if (auto const fraction = to_rational(rest); fraction && fraction->numerator != 0) return power;
+  }
+  rest = *value;
+  for (int const power : {-1, -2}) {
+    rest *= std::numbers::pi;
+    if (auto const fraction = to_rational(rest); fraction && fraction->numerator != 0) return power;
+  }
+  return 0;
+}
+
+bool is_rate(Unit const& unit) {
+  Dimension rate{};
+  rate[2] = {-1, 1};
+  return unit.dimension == rate;
+}
+
+// 2*pi makes radians of cycles, 1/(2*pi) cycles of radians. A rate in neither becomes what such a factor is meant to make of it.
+Unit turned(Unit unit, int powers) {
+  for (; powers > 0; --powers) {
+    bool const plain = is_rate(unit) && unit.hertz.numerator == 0 && unit.radian.numerator == 0;
+    if (unit.hertz.numerator <= 0 && !plain) break;
+    if (!plain) unit.hertz = unit.hertz - Rational{1, 1};
+    unit.radian = unit.radian + Rational{1, 1};
+    unit.text.clear();
+  }
+  for (; powers < 0; ++powers) {
+    bool const plain = is_rate(unit) && unit.hertz.numerator == 0 && unit.radian.numerator == 0;
+    if (unit.radian.numerator <= 0 && !plain) break;
+    if (!plain) unit.radian = unit.radian - Rational{1, 1};
+    unit.hertz = unit.hertz + Rational{1, 1};
+    unit.text.clear();
+  }
+  return unit;
+}
+
+// The root of 1/s^2, as in sqrt(k/m), is an angular frequency.
+Unit root(Unit const& unit) {
+  Unit result = power(unit, {1, 2});
+  if (is_rate(result) && result.hertz.numerator == 0 && result.radian.numerator == 0) result.radian = {1, 1};
+  return result;
+}
 
 // A ratio of like quantities is a pure number, whatever the scales they were declared in.
 Unit pure(Unit unit) {
@@ -100,7 +150,9 @@ Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
-    result.unit = a.kind == Kind::literal ? b.unit : b.kind == Kind::literal ? a.unit : pure(sysid::multiply(a.unit, b.unit));
+    result.unit = a.kind == Kind::literal   ? turned(b.unit, powers_of_pi(graph, a))
+                  : b.kind == Kind::literal ? turned(a.unit, powers_of_pi(graph, b))
+                                            : pure(sysid::multiply(a.unit, b.unit));
   }
   return result;
 }
@@ -111,8 +163,9 @@ Typed divide(Graph& graph, Typed const& a, Typed const& b) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
-    Unit const one;
-    result.unit = pure(sysid::divide(a.kind == Kind::literal ? one : a.unit, b.kind == Kind::literal ? one : b.unit));
+    result.unit = a.kind == Kind::literal   ? turned(pure(sysid::divide(Unit{}, b.unit)), powers_of_pi(graph, a))
+                  : b.kind == Kind::literal ? turned(a.unit, -powers_of_pi(graph, b))
+                                            : pure(sysid::divide(a.unit, b.unit));
   }
   return result;
 }
@@ -121,6 +174,8 @@ Typed power(Graph& graph, Typed const& a, Typed const& b) {
   Typed result{graph.power(a.node, b.node), Kind::unknown, {}, cover(a.span, b.span)};
   if (a.kind == Kind::literal && b.kind == Kind::literal) {
     result.kind = Kind::literal;
+  } else if (a.kind == Kind::literal && b.kind == Kind::known) {
+    result.kind = Kind::known;
   } else if (a.kind == Kind::known) {
     auto const exponent = graph.constant_value(b.node);
     auto const rational = exponent ? to_rational(*exponent) : std::nullopt;
@@ -128,7 +183,7 @@ Typed power(Graph& graph, Typed const& a, Typed const& b) {
       result.kind = Kind::known;
     } else if (rational) {
       result.kind = Kind::known;
-      result.unit = pure(sysid::power(a.unit, *rational));
+      result.unit = *rational == Rational{1, 2} ? root(a.unit) : pure(sysid::power(a.unit, *rational));
     }
   }
   return result;
@@ -167,10 +222,11 @@ Typed call(Graph& graph, FunctionRow const& row, std::vector<Typed> arguments) {
     case UnitRule::root:
       if (arguments[0].kind == Kind::known) {
         result.kind = Kind::known;
-        result.unit = sysid::power(arguments[0].unit, {1, 2});
+        result.unit = root(arguments[0].unit);
       }
       break;
     case UnitRule::dimensionless:
+    case UnitRule::angle:
     case UnitRule::none:
     case UnitRule::ratio:
       if (result.kind != Kind::literal) {

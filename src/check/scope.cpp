@@ -24,12 +24,18 @@ std::optional<Unit> rate_unit(std::optional<Unit> const& unit, int primes) {
 }
 
 Scope::Scope(Graph& graph, Diagnostics& diagnostics, std::vector<ast::FunctionDefinition const*> shared_functions)
-    : graph_(graph), diagnostics_(diagnostics) {
+    : graph_(graph), diagnostics_(diagnostics), units_(diagnostics) {
   for (auto const* function : shared_functions) functions_.emplace(function->name.text, function);
 }
 
 bool Scope::declare(ast::Name const& name, Symbol symbol) {
   auto const [place, fresh] = symbols_.emplace(name.text, std::move(symbol));
+  Symbol const& declared = place->second;
+  if (fresh && declared.unit) {
+    bool const fixed =
+        std::holds_alternative<ParameterSymbol>(declared.what) || std::holds_alternative<DefinitionSymbol>(declared.what);
+    units_.declare({name.text, *declared.unit, !fixed});
+  }
   if (!fresh) diagnostics_.add(errors::duplicate_name(name, place->second.span));
   return fresh;
 }
@@ -67,7 +73,7 @@ std::optional<Unit> Scope::unit_of(ast::Definition const& definition) const {
   auto const* known = symbol == nullptr ? nullptr : std::get_if<DefinitionSymbol>(&symbol->what);
   if (known != nullptr && known->definition == &definition) return symbol->unit;
   Diagnostics said_when_declared;
-  return check_unit(definition.name.unit, said_when_declared);
+  return check_unit(definition.name.unit, said_when_declared, whole_numbers_);
 }
 
 std::optional<Typed> Scope::definition(ast::Definition const& definition) {
@@ -81,8 +87,10 @@ std::optional<Typed> Scope::definition(ast::Definition const& definition) {
   }
   resolving_.push_back(name);
   auto const* outer = std::exchange(arguments_, nullptr);
+  auto calls = units_.suspend();
   std::optional<Unit> const unit = unit_of(definition);
-  std::optional<Typed> value = expression(definition.value);
+  std::optional<Typed> value = expression_in(unit, definition.name.name.span, definition.value, {Occasion::Kind::declared, name});
+  units_.resume(std::move(calls));
   arguments_ = outer;
   resolving_.pop_back();
   if (auto const known = resolved_.find(&definition); known != resolved_.end()) return known->second;  // a loop through itself
@@ -113,6 +121,8 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
   Symbol const* symbol = find(name);
   if (symbol == nullptr) {
     if (reference.primes == 0) {
+      if (auto const number = whole_numbers_.find(name); number != whole_numbers_.end())
+        return with_unit(graph_.constant(number->second), Unit{}, span);
       if (name == "pi") return literal(graph_, std::numbers::pi, span);
       if (name == "inf") return literal(graph_, std::numeric_limits<double>::infinity(), span);
     }
@@ -157,33 +167,98 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
   return value;
 }
 
+std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<Operand>& terms, int side) {
+  std::optional<Typed> value;
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node);
+  if (binary != nullptr && ((*binary)->symbol == "+" || (*binary)->symbol == "-")) {
+    auto left = sum(*(*binary)->left, terms, side), right = sum(*(*binary)->right, terms, side);
+    if (left && right) value = add(graph_, *left, *right, (*binary)->symbol == "-");
+  } else if (unary != nullptr && (*unary)->symbol == "-") {
+    auto operand = sum(*(*unary)->operand, terms, side);
+    if (operand) value = negate(graph_, *operand);
+  } else {
+    value = other_than_sum(tree);
+    if (value) value->span = tree.span;
+    if (value) terms.push_back({*value, &tree, side});
+  }
+  if (value) {
+    value->span = tree.span;
+    graph_.set_span(value->node, tree.span);
+  }
+  return value;
+}
+
+std::optional<Typed> Scope::expression(ast::Expression const& tree) {
+  std::vector<Operand> terms;
+  std::optional<Typed> value = sum(tree, terms);
+  if (terms.size() > 1 && !units_.agree(Occasion{}, terms) && value) value->kind = Typed::Kind::unknown;
+  return value;
+}
+
+std::optional<Typed> Scope::expression_in(std::optional<Unit> const& unit, Span place, ast::Expression const& tree,
+                                          Occasion const& occasion) {
+  if (!unit) return expression(tree);
+  std::vector<Operand> terms;
+  std::optional<Typed> value = sum(tree, terms);
+  terms.push_back({with_unit(0, unit, place)});
+  if (!units_.agree(occasion, terms) && value) value->kind = Typed::Kind::unknown;
+  return value;
+}
+
+std::optional<std::pair<Typed, Typed>> Scope::equation(ast::Equation const& equation) {
+  std::vector<Operand> terms;
+  auto left = sum(equation.left, terms, 0), right = sum(equation.right, terms, 1);
+  units_.agree(Occasion{}, terms);
+  if (!left || !right) return std::nullopt;
+  Typed sides[] = {*left, *right};
+  unify(graph_, sides);
+  return std::pair(sides[0], sides[1]);
+}
+
+Typed Scope::compared(Operation operation, Operand left, Operand right) {
+  Operand const operands[] = {std::move(left), std::move(right)};
+  if (operation == Operation::conjunction || operation == Operation::disjunction) {
+    units_.condition(operands[0]);
+    units_.condition(operands[1]);
+  } else {
+    units_.agree({Occasion::Kind::comparison}, operands);
+  }
+  return compare(graph_, operation, operands[0].value, operands[1].value);
+}
+
 std::optional<Typed> Scope::binary(ast::Binary const& binary) {
   auto left = expression(*binary.left), right = expression(*binary.right);
   if (!left || !right) return std::nullopt;
+  Operand const a{*left, &*binary.left}, b{*right, &*binary.right};
   std::string const& symbol = binary.symbol;
-  if (symbol == "+" || symbol == "-") return add(graph_, *left, *right, symbol == "-");
   if (symbol == "*") return multiply(graph_, *left, *right);
   if (symbol == "/") return divide(graph_, *left, *right);
-  if (symbol == "^") return power(graph_, *left, *right);
-  if (symbol == "<") return compare(graph_, Operation::less, *left, *right);
-  if (symbol == "<=") return compare(graph_, Operation::less_equal, *left, *right);
-  if (symbol == ">") return compare(graph_, Operation::less, *right, *left);
-  if (symbol == ">=") return compare(graph_, Operation::less_equal, *right, *left);
-  if (symbol == "==") return compare(graph_, Operation::equal, *left, *right);
+  if (symbol == "^") {
+    bool const good = units_.power(a, b, graph_.constant_value(right->node));
+    Typed result = power(graph_, *left, *right);
+    if (!good) result.kind = Typed::Kind::unknown;
+    return result;
+  }
+  if (symbol == "<") return compared(Operation::less, a, b);
+  if (symbol == "<=") return compared(Operation::less_equal, a, b);
+  if (symbol == ">") return compared(Operation::less, b, a);
+  if (symbol == ">=") return compared(Operation::less_equal, b, a);
+  if (symbol == "==") return compared(Operation::equal, a, b);
   if (symbol == "!=") {
-    Typed result = compare(graph_, Operation::equal, *left, *right);
+    Typed result = compared(Operation::equal, a, b);
     result.node = graph_.unary(Operation::negation, result.node);
     return result;
   }
-  if (symbol == "and") return compare(graph_, Operation::conjunction, *left, *right);
-  if (symbol == "or") return compare(graph_, Operation::disjunction, *left, *right);
+  if (symbol == "and") return compared(Operation::conjunction, a, b);
+  if (symbol == "or") return compared(Operation::disjunction, a, b);
   throw InternalError("operator " + symbol + " in an expression");
 }
 
 std::optional<Typed> Scope::function_call(ast::Call const& call) {
   std::string const& name = call.function.text;
   bool good = true;
-  std::vector<Typed> arguments;
+  std::vector<Operand> arguments;
   for (ast::Argument const& argument : call.arguments) {
     if (argument.name) {
       diagnostics_.add(errors::named_argument_of_function(*argument.name, name));
@@ -191,7 +266,7 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     }
     auto value = expression(argument.value);
     good = good && value;
-    if (value) arguments.push_back(*value);
+    if (value) arguments.push_back({*value, &argument.value});
   }
   auto const user = functions_.find(name);
   if (user != functions_.end()) {
@@ -210,10 +285,12 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
       return std::nullopt;
     }
     Arguments local;
-    for (std::size_t i = 0; i < arguments.size(); ++i) local.emplace(function.parameters[i].text, arguments[i]);
+    for (std::size_t i = 0; i < arguments.size(); ++i) local.emplace(function.parameters[i].text, arguments[i].value);
     resolving_.push_back(key);
     auto const* outer = std::exchange(arguments_, &local);
+    units_.enter_call(call.span, name);
     auto value = expression(function.value);
+    units_.leave_call();
     arguments_ = outer;
     resolving_.pop_back();
     if (value) value->span = call.span;
@@ -234,15 +311,38 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     return std::nullopt;
   }
   if (!good) return std::nullopt;
-  return sysid::call(graph_, *row, std::move(arguments));
+  return built_in(*row, arguments);
 }
 
-std::optional<Typed> Scope::expression(ast::Expression const& tree) {
+Typed Scope::built_in(FunctionRow const& row, std::span<Operand const> arguments) {
+  std::string const name(row.name);
+  bool agreed = true;
+  switch (row.unit_rule) {
+    case UnitRule::same:
+    case UnitRule::ratio:
+      agreed = units_.agree({Occasion::Kind::arguments, name}, arguments);
+      break;
+    case UnitRule::dimensionless:
+    case UnitRule::angle:
+      for (Operand const& argument : arguments) units_.pure(name, argument, row.unit_rule == UnitRule::angle);
+      break;
+    case UnitRule::root:
+    case UnitRule::none:
+      break;
+  }
+  std::vector<Typed> values;
+  for (Operand const& argument : arguments) values.push_back(argument.value);
+  Typed result = call(graph_, row, std::move(values));
+  if (!agreed && row.unit_rule == UnitRule::same) result.kind = Typed::Kind::unknown;
+  return result;
+}
+
+std::optional<Typed> Scope::other_than_sum(ast::Expression const& tree) {
   std::optional<Typed> value;
   if (auto const* number = std::get_if<ast::Number>(&tree.node)) {
     if (!number->unit) {
       value = literal(graph_, number->value, tree.span);
-    } else if (auto const unit = check_unit(number->unit, diagnostics_)) {
+    } else if (auto const unit = this->unit(number->unit)) {
       value = tagged(graph_, number->value, *unit, tree.span);
     }
   } else if (auto const* text = std::get_if<ast::Text>(&tree.node)) {
@@ -251,9 +351,8 @@ std::optional<Typed> Scope::expression(ast::Expression const& tree) {
     value = reference(*name);
   } else if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) {
     auto operand = expression(*(*unary)->operand);
-    if (operand && (*unary)->symbol == "-") {
-      value = negate(graph_, *operand);
-    } else if (operand) {
+    if (operand) {
+      units_.condition({*operand, &*(*unary)->operand});
       value = *operand;
       value->node = graph_.unary(Operation::negation, operand->node);
     }
@@ -262,17 +361,23 @@ std::optional<Typed> Scope::expression(ast::Expression const& tree) {
   } else if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
     value = function_call(**call);
   } else if (auto const* conditional = std::get_if<ast::Box<ast::Conditional>>(&tree.node)) {
-    auto condition = expression(*(*conditional)->condition);
-    auto then = expression(*(*conditional)->then), otherwise = expression(*(*conditional)->otherwise);
-    if (condition && then && otherwise) value = select(graph_, *condition, *then, *otherwise);
+    value = choice(**conditional);
   } else {
     diagnostics_.add(errors::list_here(tree.span));
   }
-  if (value) {
-    value->span = tree.span;
-    graph_.set_span(value->node, tree.span);
-  }
   return value;
+}
+
+std::optional<Typed> Scope::choice(ast::Conditional const& conditional) {
+  auto const condition = expression(*conditional.condition);
+  auto const then = expression(*conditional.then), otherwise = expression(*conditional.otherwise);
+  if (condition) units_.condition({*condition, &*conditional.condition});
+  if (!condition || !then || !otherwise) return std::nullopt;
+  Operand const branches[] = {{*then, &*conditional.then}, {*otherwise, &*conditional.otherwise}};
+  bool const agreed = units_.agree({Occasion::Kind::branches}, branches);
+  Typed result = select(graph_, *condition, *then, *otherwise);
+  if (!agreed) result.kind = Typed::Kind::unknown;
+  return result;
 }
 
 }  // namespace sysid

@@ -5,10 +5,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "check/quantity.hpp"
+#include "check/unit_check.hpp"
+#include "check/units.hpp"
 #include "core/diagnostic.hpp"
 #include "syntax/ast.hpp"
 
@@ -53,8 +56,20 @@ class Scope {
   /// A function of the user's; null for built-in ones.
   ast::FunctionDefinition const* find_function_definition(std::string const& name) const;
 
-  /// Nothing when a diagnostic was added.
+  /// Names that stand for whole numbers here, in expressions and in the exponents of units.
+  void set_whole_numbers(WholeNumbers numbers) { whole_numbers_ = std::move(numbers); }
+  /// What stands between brackets.
+  std::optional<Unit> unit(std::optional<ast::UnitExpression> const& expression) {
+    return check_unit(expression, diagnostics_, whole_numbers_);
+  }
+
+  /// Nothing when a diagnostic was added that leaves no value; of unknown unit after one that does.
   std::optional<Typed> expression(ast::Expression const& expression);
+  /// An expression that must have the unit declared at `place`; absent: any.
+  std::optional<Typed> expression_in(std::optional<Unit> const& unit, Span place, ast::Expression const& expression,
+                                     Occasion const& occasion);
+  /// Both sides of an equation, with literals adapted: their addends all have one unit.
+  std::optional<std::pair<Typed, Typed>> equation(ast::Equation const& equation);
   /// A definition's value in its declared unit.
   std::optional<Typed> definition(ast::Definition const& definition);
 
@@ -64,11 +79,22 @@ class Scope {
 
  private:
   Scope(Scope const& other, Diagnostics& diagnostics)
-      : graph_(other.graph_), diagnostics_(diagnostics), symbols_(other.symbols_), functions_(other.functions_) {}
+      : graph_(other.graph_),
+        diagnostics_(diagnostics),
+        symbols_(other.symbols_),
+        functions_(other.functions_),
+        whole_numbers_(other.whole_numbers_),
+        units_(other.units_, diagnostics) {}
   std::optional<Unit> unit_of(ast::Definition const& definition) const;
   std::optional<Typed> reference(ast::Reference const& reference);
+  /// The value of a sum; its addends are appended to `terms`. Anything else is a sum of one.
+  std::optional<Typed> sum(ast::Expression const& tree, std::vector<Operand>& terms, int side = 0);
+  std::optional<Typed> other_than_sum(ast::Expression const& tree);
   std::optional<Typed> binary(ast::Binary const& binary);
+  Typed compared(Operation operation, Operand left, Operand right);
   std::optional<Typed> function_call(ast::Call const& call);
+  Typed built_in(FunctionRow const& row, std::span<Operand const> arguments);
+  std::optional<Typed> choice(ast::Conditional const& conditional);
 
   using Arguments = std::map<std::string, Typed>;  // names that hide the others while a function is expanded
   Graph& graph_;
@@ -78,6 +104,8 @@ class Scope {
   std::map<ast::Definition const*, std::optional<Typed>> resolved_;
   std::vector<std::string> resolving_;
   Arguments const* arguments_ = nullptr;
+  WholeNumbers whole_numbers_;
+  UnitCheck units_;
 };
 
 /// y, y', y'', ... as text.

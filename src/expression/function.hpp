@@ -26,7 +26,8 @@ extern Function const log_function;
 
 /// How the units of arguments and result relate.
 enum class UnitRule {
-  dimensionless,  // arguments and result have no dimension (exp, sin)
+  dimensionless,  // arguments and result have no dimension (exp)
+  angle,          // the same, and the argument is in radians (sin)
   same,           // all arguments and the result share one unit (abs, min)
   root,           // result is the square root of the unit (sqrt)
   none,           // any argument, dimensionless result (sign)

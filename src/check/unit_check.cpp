@@ -1,0 +1,283 @@
+// Operands are grouped by dimension; the largest group is taken to be right, and the others are shown against it.
+#include "check/unit_check.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "check/unit_errors.hpp"
+#include "check/unit_words.hpp"
+#include "check/walk.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+bool is_known(Operand const& operand) { return operand.value.kind == Typed::Kind::known; }
+Dimension const& dimension_of(Operand const& operand) { return operand.value.unit.dimension; }
+
+// A factor of a product that is a number without a unit; null when there is none.
+ast::Expression const* bare_factor(ast::Expression const& tree) {
+  if (auto const* number = std::get_if<ast::Number>(&tree.node)) return number->unit ? nullptr : &tree;
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return bare_factor(*(*unary)->operand);
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return nullptr;
+  ast::Expression const* left = bare_factor(*(*binary)->left);
+  return left != nullptr || (*binary)->symbol == "/" ? left : bare_factor(*(*binary)->right);
+}
+
+// A factor of a product that is a name with primes or without; null when there is none.
+ast::Reference const* named_factor(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
+  if (auto const* reference = std::get_if<ast::Reference>(&tree.node)) {
+    bool const moves = std::any_of(declared.begin(), declared.end(),
+                                   [&](DeclaredUnit const& each) { return each.moves && each.name == reference->name.text; });
+    return moves ? reference : nullptr;
+  }
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return named_factor(*(*unary)->operand, declared);
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return nullptr;
+  ast::Reference const* left = named_factor(*(*binary)->left, declared);
+  return left != nullptr || (*binary)->symbol == "/" ? left : named_factor(*(*binary)->right, declared);
+}
+
+std::vector<std::string> names_in(ast::Expression const& tree) {
+  std::vector<std::string> names;
+  each_reference(tree, [&](ast::Reference const& reference) { names.push_back(reference.name.text); });
+  return names;
+}
+
+std::size_t size_of(Operand const& operand) {
+  std::size_t size = 0;  // a declaration: what the user says plainly
+  if (operand.tree != nullptr) each_expression(*operand.tree, [&](ast::Expression const&) { ++size; });
+  return size;
+}
+
+// The indices of known operands, those of one dimension together.
+using Groups = std::vector<std::vector<std::size_t>>;
+
+Groups group(std::span<Operand const> operands) {
+  Groups groups;
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    if (!is_known(operands[i])) continue;
+    auto const place = std::find_if(groups.begin(), groups.end(), [&](std::vector<std::size_t> const& each) {
+      return dimension_of(operands[each.front()]) == dimension_of(operands[i]);
+    });
+    if (place == groups.end())
+      groups.push_back({i});
+    else
+      place->push_back(i);
+  }
+  return groups;
+}
+
+// The most numerous; of equals the one with the plainest member: `x` is more surely what it should be than `k*y^2`.
+std::vector<std::size_t> majority(Groups const& groups, std::span<Operand const> operands) {
+  auto const rank = [&](std::vector<std::size_t> const& members) {
+    std::size_t plainest = SIZE_MAX;
+    for (std::size_t const i : members) plainest = std::min(plainest, size_of(operands[i]));
+    return std::pair(members.size(), SIZE_MAX - plainest);
+  };
+  return *std::max_element(groups.begin(), groups.end(), [&](auto const& a, auto const& b) { return rank(a) < rank(b); });
+}
+
+// Where the operands of a row agree: those next to `odd`, before it if there are any, as one stretch of text.
+struct Stretch {
+  Span span;
+  bool before = false;
+  bool several = false;
+};
+Stretch agreeing(std::span<Operand const> operands, std::vector<std::size_t> const& right, std::size_t odd) {
+  auto const agrees = [&](std::size_t i) { return std::find(right.begin(), right.end(), i) != right.end(); };
+  auto const joins = [&](std::size_t i, std::size_t j) {
+    return operands[i].side == operands[j].side && operands[i].tree != nullptr && operands[j].tree != nullptr;
+  };
+  std::optional<std::size_t> nearest;
+  for (std::size_t const i : right) {
+    bool const same_side = joins(i, odd);
+    if (!nearest || (same_side && (i < odd || !joins(*nearest, odd)))) nearest = i;
+  }
+  std::size_t first = *nearest, last = *nearest;
+  while (first > 0 && agrees(first - 1) && joins(first - 1, first)) --first;
+  while (last + 1 < operands.size() && agrees(last + 1) && joins(last + 1, last)) ++last;
+  return {cover(operands[first].value.span, operands[last].value.span), last<odd, last> first};
+}
+
+}  // namespace
+
+std::string UnitCheck::words(Unit const& unit) const {
+  if (unit.text.empty() && !unit.dimensionless())
+    for (DeclaredUnit const& each : declared_)
+      if (each.unit.dimension == unit.dimension && each.unit.scale == 1 && each.unit.radian == unit.radian &&
+          each.unit.hertz == unit.hertz)
+        return each.unit.text;
+  return unit_words(unit);
+}
+
+// "`y`", "`y` or `l`": declared names of this dimension.
+std::string UnitCheck::named(Dimension const& dimension, std::vector<std::string> const& but) const {
+  Unit second;
+  second.dimension[2] = {1, 1};
+  std::string text;
+  int count = 0;
+  for (DeclaredUnit const& each : declared_) {
+    if (std::find(but.begin(), but.end(), each.name) != but.end()) continue;
+    std::string name;
+    if (each.unit.dimension == dimension)
+      name = each.name;
+    else if (each.moves && divide(each.unit, second).dimension == dimension)
+      name = each.name + "'";
+    if (name.empty() || ++count > 2) continue;
+    text += (text.empty() ? "`" : " or `") + name + "`";
+  }
+  return text;
+}
+
+std::string UnitCheck::cure(Operand const& odd, Dimension const& missing, bool pure) const {
+  std::vector<std::string> but;
+  if (pure && odd.tree != nullptr) but = names_in(*odd.tree);
+  if (odd.tree != nullptr && !pure) {
+    // A number in the place of a coefficient: nothing else in the product could carry its unit.
+    ast::Expression const* number = bare_factor(*odd.tree);
+    std::vector<std::string> const used = names_in(*odd.tree);
+    bool const coefficient = std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
+      return !each.moves && std::find(used.begin(), used.end(), each.name) != used.end();
+    });
+    Unit unit;
+    unit.dimension = missing;
+    if (number != nullptr && !coefficient && !used.empty()) return errors::tag_the_number(unparse(*number), words(unit));
+  }
+  if (std::string const names = named(missing, but); !names.empty()) return errors::multiply_by(kind_words(missing), names);
+  if (std::string const names = named(inverse(missing), but); !names.empty())
+    return errors::divide_by(kind_words(inverse(missing)), names);
+  ast::Reference const* moving = odd.tree == nullptr || pure ? nullptr : named_factor(*odd.tree, declared_);
+  for (int const primes : {1, 2}) {
+    Dimension time{};
+    time[2] = {primes, 1};
+    if (moving != nullptr && (missing == inverse(time) || (missing == time && moving->primes >= primes)))
+      return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes));
+  }
+  return !has_kind(missing) && has_kind(inverse(missing)) ? errors::divide_by(kind_words(inverse(missing)), "")
+                                                          : errors::multiply_by(kind_words(missing), "");
+}
+
+void UnitCheck::remember(Operand const& operand, std::string why) {
+  if (operand.tree != nullptr && calls_.empty()) not_compared_.push_back({operand.tree, std::move(why)});
+}
+
+void UnitCheck::report(Diagnostic diagnostic) {
+  if (!calls_.empty()) {
+    // A mistake that does not depend on the arguments would be found again at each call.
+    std::pair const place(diagnostic.primary->span, diagnostic.message + diagnostic.primary->text);
+    auto const same = [&](auto const& each) { return each.first == place.first && each.second == place.second; };
+    if (std::any_of(said_in_functions_.begin(), said_in_functions_.end(), same)) return;
+    said_in_functions_.push_back(place);
+    errors::move_to_call(diagnostic, calls_.front().span, calls_.back().function);
+  }
+  diagnostics_->add(std::move(diagnostic));
+}
+
+void UnitCheck::hint_cycles(std::span<Operand const> operands) {
+  for (std::size_t i = 0; i < operands.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Unit const &a = operands[j].value.unit, &b = operands[i].value.unit;
+      if (!is_known(operands[i]) || !is_known(operands[j]) || !cycles_against_radians(a, b)) continue;
+      bool const shows_second = operands[i].tree != nullptr;  // the expression rather than a declaration
+      Operand const &shown = operands[shows_second ? i : j], &other = operands[shows_second ? j : i];
+      bool const counts_cycles = shown.value.unit.hertz.numerator > other.value.unit.hertz.numerator;
+      report(errors::cycles_meet_radians({shown.value.span, "[" + words(shown.value.unit) + "]"},
+                                         {other.value.span, "[" + words(other.value.unit) + "]"}, counts_cycles));
+      return;
+    }
+}
+
+bool UnitCheck::agree(Occasion const& occasion, std::span<Operand const> operands) {
+  Groups const groups = group(operands);
+  for (Operand const& each : operands)
+    if (each.value.kind == Typed::Kind::unknown) remember(each);
+  if (groups.size() < 2) {
+    hint_cycles(operands);
+    return true;
+  }
+  std::vector<std::size_t> const right = majority(groups, operands);
+  std::vector<std::size_t> odd;
+  for (std::size_t i = 0; i < operands.size(); ++i)
+    if (is_known(operands[i]) && std::find(right.begin(), right.end(), i) == right.end()) odd.push_back(i);
+  auto const label = [&](Span span, std::size_t i) {
+    bool const noted = operands[i].tree == nullptr && !occasion.note.empty();
+    return Label{span, noted ? occasion.note : "[" + words(operands[i].value.unit) + "]"};
+  };
+
+  // A declaration that its whole value contradicts, or one side of an equation the other: shown as wholes.
+  bool const declaration_alone = odd.size() == 1 && operands[odd.front()].tree == nullptr;
+  bool whole_side = occasion.kind == Occasion::Kind::terms && groups.size() == 2;
+  for (std::size_t i = 0; i < operands.size(); ++i)
+    for (std::size_t const j : odd)
+      if (is_known(operands[i]) && (operands[i].side == operands[j].side) != (std::find(odd.begin(), odd.end(), i) != odd.end()))
+        whole_side = false;
+  UnitConflict conflict;
+  std::size_t const shown = declaration_alone ? right.front() : odd.front();
+  Unit const& wanted = operands[declaration_alone ? odd.front() : right.front()].value.unit;
+  conflict.primary = label(operands[shown].value.span, shown);
+  if (declaration_alone) {
+    conflict.primary.span = cover(operands[right.front()].value.span, operands[right.back()].value.span);
+    conflict.secondary.push_back(label(operands[odd.front()].value.span, odd.front()));
+  } else {
+    Stretch const stretch = agreeing(operands, right, shown);
+    conflict.position = stretch.before ? UnitConflict::Position::after : UnitConflict::Position::before;
+    conflict.several = stretch.several;
+    if (whole_side) {
+      conflict.position = UnitConflict::Position::other_side;
+      conflict.primary.span = cover(operands[odd.front()].value.span, operands[odd.back()].value.span);
+    }
+    conflict.secondary.push_back(label(stretch.span, right.front()));
+    for (std::size_t const i : odd)
+      if (i != shown && !whole_side) conflict.secondary.push_back(label(operands[i].value.span, i));
+  }
+  conflict.wanted = words(wanted);
+  conflict.found = words(operands[shown].value.unit);
+  conflict.help = cure(operands[shown], quotient(wanted.dimension, dimension_of(operands[shown])), false);
+  // Against other terms of its own sum a term is shown as such, whatever the sum is for.
+  bool const has_declaration =
+      std::any_of(operands.begin(), operands.end(), [](Operand const& each) { return each.tree == nullptr; });
+  bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
+  report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));
+  return false;
+}
+
+bool UnitCheck::pure(std::string const& function, Operand const& argument, bool angle) {
+  if (argument.value.kind == Typed::Kind::unknown) remember(argument);
+  if (!is_known(argument)) return true;
+  Unit const& unit = argument.value.unit;
+  if (unit.dimensionless()) {
+    if (angle && unit.hertz.numerator != 0 && unit.radian.numerator == 0)
+      report(errors::cycles_in_angle(argument.value.span, function));
+    return true;
+  }
+  report(errors::pure_argument({argument.value.span, "[" + words(unit) + "]"}, function,
+                               cure(argument, inverse(unit.dimension), true)));
+  return false;
+}
+
+bool UnitCheck::power(Operand const& base, Operand const& exponent, std::optional<double> constant) {
+  if (is_known(exponent) && !exponent.value.unit.dimensionless()) {
+    report(errors::exponent_with_unit({exponent.value.span, "[" + words(exponent.value.unit) + "]"},
+                                      cure(exponent, inverse(exponent.value.unit.dimension), true)));
+    return false;
+  }
+  if (!is_known(base) || base.value.unit.dimensionless()) return true;
+  if (constant) {
+    if (!to_rational(*constant)) remember(base, "its exponent is no fraction of small whole numbers");
+    return true;
+  }
+  std::string const unit = words(base.value.unit);
+  report(errors::base_with_unit({base.value.span, "[" + unit + "]"}, exponent.value.span, unparse(*base.tree), unit));
+  return false;
+}
+
+bool UnitCheck::condition(Operand const& operand) {
+  if (!is_known(operand) || operand.value.unit.dimensionless()) return true;
+  report(errors::condition_with_unit({operand.value.span, "[" + words(operand.value.unit) + "]"}, unparse(*operand.tree)));
+  return false;
+}
+
+}  // namespace sysid

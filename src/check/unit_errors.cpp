@@ -1,0 +1,110 @@
+// Messages about units. As everywhere: lower case, no full stop; the units stand under the places, `help` says what to do.
+#include "check/unit_errors.hpp"
+
+#include <fmt/format.h>
+
+namespace sysid::errors {
+namespace {
+
+Diagnostic at(Severity severity, std::string code, Label primary, std::vector<Label> secondary, std::string message,
+              std::string help) {
+  return {severity, std::move(code), std::move(message), std::move(primary), std::move(secondary), std::move(help)};
+}
+
+std::string term_message(UnitConflict const& conflict) {
+  switch (conflict.position) {
+    case UnitConflict::Position::other_side:
+      return "the two sides of this equation have different units";
+    case UnitConflict::Position::after:
+      return fmt::format("this term cannot be added to the {} before it", conflict.several ? "ones" : "one");
+    case UnitConflict::Position::before:
+      break;
+  }
+  return fmt::format("this term cannot be added to the {} after it", conflict.several ? "ones" : "one");
+}
+
+std::string with_names(std::string const& cure, std::string const& names) {
+  if (names.empty()) return cure;
+  return fmt::format("{}; {} is one", cure, names);
+}
+
+}  // namespace
+
+Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
+  std::string code, message, help = conflict.help;
+  switch (occasion.kind) {
+    case Occasion::Kind::terms:
+      code = "E2103";
+      message = term_message(conflict);
+      break;
+    case Occasion::Kind::comparison:
+      code = "E2201";
+      message = "quantities of different units cannot be compared";
+      break;
+    case Occasion::Kind::branches:
+      code = "E2202";
+      message = "the branches of `if` have different units";
+      break;
+    case Occasion::Kind::arguments:
+      code = "E2203";
+      message = fmt::format("the arguments of `{}` have different units", occasion.what);
+      break;
+    case Occasion::Kind::declared:
+      code = "E2204";
+      message = fmt::format("`{}` is in [{}], this is in [{}]", occasion.what, conflict.wanted, conflict.found);
+      break;
+    case Occasion::Kind::distribution:
+      code = "E2205";
+      message = fmt::format("`{}` for `{}` must be {}, this is in [{}]", occasion.what, occasion.of,
+                            conflict.wanted == "-" ? "a pure number" : fmt::format("in [{}]", conflict.wanted), conflict.found);
+      break;
+  }
+  return at(Severity::error, code, conflict.primary, conflict.secondary, message, help);
+}
+
+Diagnostic pure_argument(Label argument, std::string const& function, std::string help) {
+  return at(Severity::error, "E2206", std::move(argument), {}, fmt::format("`{}` takes a pure number", function), std::move(help));
+}
+Diagnostic exponent_with_unit(Label exponent, std::string help) {
+  return at(Severity::error, "E2207", std::move(exponent), {}, "an exponent is a pure number", std::move(help));
+}
+Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, std::string const& unit) {
+  return at(Severity::error, "E2208", std::move(base), {{exponent, "not known before the run"}},
+            "the unit of this power is not known: its base has one, and its exponent is no constant",
+            fmt::format("make the base a pure number: divide `{}` by a reference in [{}]", text, unit));
+}
+Diagnostic condition_with_unit(Label condition, std::string const& text) {
+  return at(Severity::error, "E2209", std::move(condition), {}, "a condition is true or false, not a quantity with a unit",
+            fmt::format("compare it: `{} > 0`", text));
+}
+Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
+  return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
+            "a frequency in cycles meets one in radians without 2*pi",
+            counts_cycles ? "multiply this by 2*pi if it counts cycles" : "divide this by 2*pi if the other counts cycles");
+}
+Diagnostic cycles_in_angle(Span argument, std::string const& function) {
+  return at(Severity::warning, "E2210", {argument, "cycles"}, {}, fmt::format("`{}` takes radians, this counts cycles", function),
+            "multiply by 2*pi");
+}
+
+void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function) {
+  diagnostic.message = fmt::format("in the function `{}`: {}", function, diagnostic.message);
+  diagnostic.secondary.insert(diagnostic.secondary.begin(), *diagnostic.primary);
+  diagnostic.primary = Label{call, "called here"};
+}
+
+std::string multiply_by(std::string const& kind, std::string const& names) {
+  return with_names(fmt::format("multiply it by {}", kind), names);
+}
+std::string divide_by(std::string const& kind, std::string const& names) {
+  return with_names(fmt::format("divide it by {}", kind), names);
+}
+std::string tag_the_number(std::string const& number, std::string const& unit) {
+  return fmt::format("a number as a factor has no unit of its own: write `{} [{}]`", number, unit);
+}
+std::string primes_wrong(std::string const& name, int primes, int wanted) {
+  auto const primed = [&](int count) { return name + std::string(static_cast<std::size_t>(count), '\''); };
+  return fmt::format("did you mean `{}` for `{}`?", primed(wanted), primed(primes));
+}
+
+}  // namespace sysid::errors

@@ -1,0 +1,111 @@
+// Two small tables: named units that make a dimension short, and the kinds of quantities that have a name.
+#include "check/unit_words.hpp"
+
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+namespace sysid {
+namespace {
+
+struct Exponents {
+  int kg, m, s, A, K;
+  Dimension dimension() const { return {{{kg, 1}, {m, 1}, {s, 1}, {A, 1}, {K, 1}, {0, 1}, {0, 1}}}; }
+};
+
+// A unit that takes part in products (newton per metre) or stands alone only (nobody calls N/m^3 pascal per metre).
+struct Named {
+  std::string_view symbol;
+  Exponents exponents;
+  bool in_products;
+};
+constexpr Named named_units[] = {
+    {"N", {1, 1, -2, 0, 0}, true},    {"V", {1, 2, -3, -1, 0}, true},  {"Pa", {1, -1, -2, 0, 0}, false},
+    {"W", {1, 2, -3, 0, 0}, false},   {"C", {0, 0, 1, 1, 0}, false},   {"ohm", {1, 2, -3, -2, 0}, false},
+    {"F", {-1, -2, 4, 2, 0}, false},  {"H", {1, 2, -2, -2, 0}, false}, {"T", {1, 0, -2, -1, 0}, false},
+    {"Wb", {1, 2, -2, -1, 0}, false},
+};
+
+struct Kind {
+  std::string_view name;
+  Exponents exponents;
+};
+constexpr Kind kinds[] = {
+    {"a length", {0, 1, 0, 0, 0}},        {"a time", {0, 0, 1, 0, 0}},        {"a mass", {1, 0, 0, 0, 0}},
+    {"a current", {0, 0, 0, 1, 0}},       {"a temperature", {0, 0, 0, 0, 1}}, {"an area", {0, 2, 0, 0, 0}},
+    {"a volume", {0, 3, 0, 0, 0}},        {"a velocity", {0, 1, -1, 0, 0}},   {"an acceleration", {0, 1, -2, 0, 0}},
+    {"a force", {1, 1, -2, 0, 0}},        {"a stiffness", {1, 0, -2, 0, 0}},  {"a pressure", {1, -1, -2, 0, 0}},
+    {"an energy", {1, 2, -2, 0, 0}},      {"a power", {1, 2, -3, 0, 0}},      {"a voltage", {1, 2, -3, -1, 0}},
+    {"a resistance", {1, 2, -3, -2, 0}},  {"a charge", {0, 0, 1, 1, 0}},      {"a rate", {0, 0, -1, 0, 0}},
+    {"a mass density", {1, -3, 0, 0, 0}}, {"a momentum", {1, 1, -1, 0, 0}},
+};
+
+constexpr std::size_t kilogram = 0;
+
+int size_of(Dimension const& dimension) {
+  int size = 0;
+  for (Rational const& exponent : dimension)
+    if (exponent.numerator != 0) size += 1 + std::abs(exponent.numerator) + exponent.denominator - 1;
+  return size;
+}
+
+// "N s/m" from a named unit above or below the bar and what is left.
+std::string joined(std::string_view symbol, int power, Dimension const& rest) {
+  std::string const base = format_dimension(rest);
+  std::string above = base.substr(0, base.find('/')),
+              below = base.find('/') == std::string::npos ? "" : base.substr(base.find('/') + 1);
+  if (power > 0) return std::string(symbol) + (above == "1" ? "" : " " + above) + (below.empty() ? "" : "/" + below);
+  if (!below.empty() && below.front() == '(') below = below.substr(1, below.size() - 2);
+  return above + "/" + (below.empty() ? std::string(symbol) : "(" + std::string(symbol) + " " + below + ")");
+}
+
+std::string short_dimension(Dimension const& dimension) {
+  for (Named const& named : named_units)
+    if (named.exponents.dimension() == dimension) return std::string(named.symbol);
+  std::string text = format_dimension(dimension);
+  int size = size_of(dimension);
+  for (Named const& named : named_units)
+    for (int const power : {1, -1}) {
+      if (!named.in_products) continue;
+      Dimension const unit = power > 0 ? named.exponents.dimension() : inverse(named.exponents.dimension());
+      Dimension const rest = quotient(dimension, unit);
+      // A newton stands for the kilogram in it: m/s^2 is not N/kg.
+      bool const brings_mass = std::abs(rest[kilogram].numerator) > std::abs(dimension[kilogram].numerator);
+      if (brings_mass || 2 + size_of(rest) >= size) continue;
+      size = 2 + size_of(rest);
+      text = joined(named.symbol, power, rest);
+    }
+  return text;
+}
+
+}  // namespace
+
+Dimension quotient(Dimension const& a, Dimension const& b) {
+  Dimension result;
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = a[i] - b[i];
+  return result;
+}
+Dimension inverse(Dimension const& dimension) { return quotient(Dimension{}, dimension); }
+
+std::string unit_words(Unit const& unit) {
+  if (!unit.text.empty()) return unit.text;
+  Dimension const rate = Exponents{0, 0, -1, 0, 0}.dimension();
+  bool const cycles = unit.hertz == Rational{1, 1}, radians = unit.radian == Rational{1, 1};
+  if (unit.dimension == rate && (cycles || radians)) return cycles ? "Hz" : "rad/s";
+  if (unit.dimensionless()) return cycles ? "cycles" : radians ? "rad" : "-";
+  return short_dimension(unit.dimension);
+}
+
+bool has_kind(Dimension const& dimension) {
+  for (Kind const& kind : kinds)
+    if (kind.exponents.dimension() == dimension) return true;
+  return false;
+}
+
+std::string kind_words(Dimension const& dimension) {
+  for (Kind const& kind : kinds)
+    if (kind.exponents.dimension() == dimension) return std::string(kind.name);
+  return "something in [" + short_dimension(dimension) + "]";
+}
+
+}  // namespace sysid

@@ -1,0 +1,42 @@
+// Every expression inside an expression, itself first.
+#pragma once
+#include <type_traits>
+#include <variant>
+
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+template <class Visit>
+void each_expression(ast::Expression const& tree, Visit const& visit) {
+  visit(tree);
+  std::visit(
+      [&](auto const& node) {
+        using Node = std::decay_t<decltype(node)>;
+        if constexpr (std::is_same_v<Node, ast::Box<ast::Unary>>) {
+          each_expression(*node->operand, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Binary>>) {
+          each_expression(*node->left, visit);
+          each_expression(*node->right, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Call>>) {
+          for (auto const& argument : node->arguments) each_expression(argument.value, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Conditional>>) {
+          each_expression(*node->condition, visit);
+          each_expression(*node->then, visit);
+          each_expression(*node->otherwise, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::List>>) {
+          for (auto const& item : node->items) each_expression(item, visit);
+        }
+      },
+      tree.node);
+}
+
+/// The names in an expression, with their primes.
+template <class Visit>
+void each_reference(ast::Expression const& tree, Visit const& visit) {
+  each_expression(tree, [&](ast::Expression const& part) {
+    if (auto const* reference = std::get_if<ast::Reference>(&part.node)) visit(*reference);
+  });
+}
+
+}  // namespace sysid
