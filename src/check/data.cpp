@@ -33,7 +33,7 @@ class DataChecker {
     for (ast::DataStatement const& statement : tree_.statements) std::visit([&](auto const& each) { take(each); }, statement);
     if (!file_) diagnostics_.add(errors::no_file(tree_.name));
     if (!times_) diagnostics_.add(errors::no_time(tree_.name));
-    if (diagnostics_.all().size() > before_) return std::nullopt;
+    if (diagnostics_.has_errors(before_)) return std::nullopt;
     return block_;
   }
 

@@ -68,6 +68,10 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
         std::find_if(row->arguments.begin(), row->arguments.end(), [&](auto const& each) { return each.name == name; });
     if (!argument.name) {
       diagnostics.add(errors::must_be_named(argument.span, call->function.text, known));
+    } else if (place == row->arguments.end() && name != "hold") {
+      diagnostics.add(errors::unknown_argument(*argument.name, call->function.text, known));
+    } else if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
+      diagnostics.add(errors::stated_twice(argument.span, first->second, "`" + name + "`"));
     } else if (name == "hold") {
       std::vector<std::string> const rules = {"zero_order", "linear", "cubic", "band_limited"};
       auto const word = as_word(argument.value);
@@ -76,13 +80,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
         diagnostics.add(errors::option_choice(argument.value.span, name, word.value_or("this"), rules));
       else
         result.rule = static_cast<InputRule>(rule - rules.begin());
-    } else if (place == row->arguments.end()) {
-      diagnostics.add(errors::unknown_argument(*argument.name, call->function.text, known));
     } else {
-      if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
-        diagnostics.add(errors::stated_twice(argument.span, first->second, "`" + name + "`"));
-        continue;
-      }
       std::optional<Unit> const unit = place->unit == "input" ? input.unit : unit_of(place->unit);
       double const least = name == "mean" || name == "value" || name == "phase" ? -1e300 : 0;
       if (auto const value = reader.number(argument.value, name, unit, least, 1e300)) result.arguments[name] = *value;

@@ -75,6 +75,7 @@ class ModelChecker {
     derived();
     if (!failed()) order_priors();
     if (failed()) return std::nullopt;
+    model_.unchecked = scope_.unchecked();
     return std::move(model_);
   }
 
@@ -86,10 +87,7 @@ class ModelChecker {
     int equations = 0;  // in how many equations its highest derivative stands
   };
 
-  bool failed() const {
-    return std::any_of(diagnostics_.all().begin() + static_cast<std::ptrdiff_t>(before_), diagnostics_.all().end(),
-                       [](Diagnostic const& each) { return each.severity == Severity::error; });
-  }
+  bool failed() const { return diagnostics_.has_errors(before_); }
 
   template <class Statement, class Visit>
   void each(Visit const& visit) {
@@ -212,6 +210,7 @@ class ModelChecker {
         good = false;
         return;
       }
+      orders_doubtful_ = orders_doubtful_ || sides->first.kind == Typed::Kind::wrong || sides->second.kind == Typed::Kind::wrong;
       trees.push_back(&equation);
       residuals.push_back(graph.subtract(sides->second.node, sides->first.node));
       graph.set_span(residuals.back(), equation.span);
@@ -341,7 +340,7 @@ class ModelChecker {
         }
         if (info->order == 0) continue;  // reported with the equations
         if (initial.state.primes >= info->order) {
-          diagnostics_.add(errors::initial_of_highest(initial.state, initial.state.name.text, info->order));
+          if (!orders_doubtful_) diagnostics_.add(errors::initial_of_highest(initial.state, initial.state.name.text, info->order));
           continue;
         }
         int const component = info->first + initial.state.primes;
@@ -360,7 +359,7 @@ class ModelChecker {
         state.initial_given = true;
       }
     });
-    for (std::size_t i = 0; i < model_.states.size(); ++i)
+    for (std::size_t i = 0; i < model_.states.size() && !orders_doubtful_; ++i)
       if (!given.contains(static_cast<int>(i)))
         diagnostics_.add(errors::initial_missing(model_.states[i].span, model_.states[i].name));
   }
@@ -513,6 +512,7 @@ class ModelChecker {
   std::vector<std::pair<std::string, StateInfo>> states_;
   std::vector<ast::ParameterDeclaration const*> parameter_trees_;
   std::vector<NodeId> highest_;
+  bool orders_doubtful_ = false;  // after a mistake in the units of an equation: a prime may be missing there
 };
 
 }  // namespace

@@ -113,12 +113,16 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
   if (ast::Call const* call = as_call(option.value)) {
     if (call->function.text == "estimated") {
       rule = {StartRule::Kind::estimated, default_start_rows};
+      std::optional<Span> given;
       for (ast::Argument const& argument : call->arguments) {
         if (argument.name && argument.name->text != "rows") {
           diagnostics_.add(errors::unknown_argument(*argument.name, "estimated", {"rows"}));
+        } else if (given) {
+          diagnostics_.add(errors::stated_twice(argument.span, *given, "`rows`"));
         } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true)) {
           rule.rows = static_cast<int>(*rows);
         }
+        if (!given) given = argument.span;
       }
       return;
     }

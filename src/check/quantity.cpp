@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace sysid {
 namespace {
@@ -27,6 +28,21 @@ Typed tagged(Graph& graph, double value, Unit const& unit, Span span) {
 Typed with_unit(NodeId node, std::optional<Unit> const& unit, Span span) {
   return {node, unit ? Kind::known : Kind::unknown, unit.value_or(Unit{}), span};
 }
+
+namespace {
+
+// A result of wrong operands is wrong, whatever else is known of it.
+Typed unless_wrong(Typed result, std::span<Typed const> operands) {
+  if (std::any_of(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::wrong; }))
+    result.kind = Kind::wrong;
+  return result;
+}
+Typed unless_wrong(Typed result, Typed const& a, Typed const& b) {
+  Typed const operands[] = {a, b};
+  return unless_wrong(std::move(result), operands);
+}
+
+}  // namespace
 
 NodeId adapt(Graph& graph, Typed const& typed, std::optional<Unit> const& unit) {
   if (!unit) return typed.node;
@@ -116,7 +132,7 @@ Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> c
   } else if (std::all_of(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::literal; })) {
     result.kind = Kind::literal;
   }
-  return result;
+  return unless_wrong(std::move(result), operands);
 }
 
 }  // namespace
@@ -154,7 +170,7 @@ Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
                   : b.kind == Kind::literal ? turned(a.unit, powers_of_pi(graph, b))
                                             : pure(sysid::multiply(a.unit, b.unit));
   }
-  return result;
+  return unless_wrong(std::move(result), a, b);
 }
 
 Typed divide(Graph& graph, Typed const& a, Typed const& b) {
@@ -167,7 +183,7 @@ Typed divide(Graph& graph, Typed const& a, Typed const& b) {
                   : b.kind == Kind::literal ? turned(a.unit, -powers_of_pi(graph, b))
                                             : pure(sysid::divide(a.unit, b.unit));
   }
-  return result;
+  return unless_wrong(std::move(result), a, b);
 }
 
 Typed power(Graph& graph, Typed const& a, Typed const& b) {
@@ -186,7 +202,7 @@ Typed power(Graph& graph, Typed const& a, Typed const& b) {
       result.unit = *rational == Rational{1, 2} ? root(a.unit) : pure(sysid::power(a.unit, *rational));
     }
   }
-  return result;
+  return unless_wrong(std::move(result), a, b);
 }
 
 Typed negate(Graph& graph, Typed const& a) {

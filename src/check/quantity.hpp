@@ -16,6 +16,7 @@ struct Typed {
     literal,  // made of untagged numbers only: takes the unit of what it is added to, compared with or assigned to
     known,    // a unit is known
     unknown,  // something undeclared takes part: unchecked
+    wrong,    // a mistake in it has been reported: nothing that follows from it is one
   };
   NodeId node = 0;
   Kind kind = Kind::unknown;

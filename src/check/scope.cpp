@@ -167,7 +167,7 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
   return value;
 }
 
-std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<Operand>& terms, int side) {
+std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<UnitOperand>& terms, int side) {
   std::optional<Typed> value;
   auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
   auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node);
@@ -190,34 +190,35 @@ std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<Operand
 }
 
 std::optional<Typed> Scope::expression(ast::Expression const& tree) {
-  std::vector<Operand> terms;
+  std::vector<UnitOperand> terms;
   std::optional<Typed> value = sum(tree, terms);
-  if (terms.size() > 1 && !units_.agree(Occasion{}, terms) && value) value->kind = Typed::Kind::unknown;
+  if (terms.size() > 1 && !units_.agree(Occasion{}, terms) && value) value->kind = Typed::Kind::wrong;
   return value;
 }
 
 std::optional<Typed> Scope::expression_in(std::optional<Unit> const& unit, Span place, ast::Expression const& tree,
                                           Occasion const& occasion) {
   if (!unit) return expression(tree);
-  std::vector<Operand> terms;
+  std::vector<UnitOperand> terms;
   std::optional<Typed> value = sum(tree, terms);
   terms.push_back({with_unit(0, unit, place)});
-  if (!units_.agree(occasion, terms) && value) value->kind = Typed::Kind::unknown;
+  if (!units_.agree(occasion, terms) && value) value->kind = Typed::Kind::wrong;
   return value;
 }
 
 std::optional<std::pair<Typed, Typed>> Scope::equation(ast::Equation const& equation) {
-  std::vector<Operand> terms;
+  std::vector<UnitOperand> terms;
   auto left = sum(equation.left, terms, 0), right = sum(equation.right, terms, 1);
-  units_.agree(Occasion{}, terms);
+  bool const agreed = units_.agree(Occasion{}, terms);
   if (!left || !right) return std::nullopt;
   Typed sides[] = {*left, *right};
   unify(graph_, sides);
+  if (!agreed) sides[0].kind = Typed::Kind::wrong;
   return std::pair(sides[0], sides[1]);
 }
 
-Typed Scope::compared(Operation operation, Operand left, Operand right) {
-  Operand const operands[] = {std::move(left), std::move(right)};
+Typed Scope::compared(Operation operation, UnitOperand left, UnitOperand right) {
+  UnitOperand const operands[] = {std::move(left), std::move(right)};
   if (operation == Operation::conjunction || operation == Operation::disjunction) {
     units_.condition(operands[0]);
     units_.condition(operands[1]);
@@ -230,14 +231,14 @@ Typed Scope::compared(Operation operation, Operand left, Operand right) {
 std::optional<Typed> Scope::binary(ast::Binary const& binary) {
   auto left = expression(*binary.left), right = expression(*binary.right);
   if (!left || !right) return std::nullopt;
-  Operand const a{*left, &*binary.left}, b{*right, &*binary.right};
+  UnitOperand const a{*left, &*binary.left}, b{*right, &*binary.right};
   std::string const& symbol = binary.symbol;
   if (symbol == "*") return multiply(graph_, *left, *right);
   if (symbol == "/") return divide(graph_, *left, *right);
   if (symbol == "^") {
     bool const good = units_.power(a, b, graph_.constant_value(right->node));
     Typed result = power(graph_, *left, *right);
-    if (!good) result.kind = Typed::Kind::unknown;
+    if (!good) result.kind = Typed::Kind::wrong;
     return result;
   }
   if (symbol == "<") return compared(Operation::less, a, b);
@@ -258,7 +259,7 @@ std::optional<Typed> Scope::binary(ast::Binary const& binary) {
 std::optional<Typed> Scope::function_call(ast::Call const& call) {
   std::string const& name = call.function.text;
   bool good = true;
-  std::vector<Operand> arguments;
+  std::vector<UnitOperand> arguments;
   for (ast::Argument const& argument : call.arguments) {
     if (argument.name) {
       diagnostics_.add(errors::named_argument_of_function(*argument.name, name));
@@ -314,7 +315,7 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
   return built_in(*row, arguments);
 }
 
-Typed Scope::built_in(FunctionRow const& row, std::span<Operand const> arguments) {
+Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> arguments) {
   std::string const name(row.name);
   bool agreed = true;
   switch (row.unit_rule) {
@@ -324,16 +325,16 @@ Typed Scope::built_in(FunctionRow const& row, std::span<Operand const> arguments
       break;
     case UnitRule::dimensionless:
     case UnitRule::angle:
-      for (Operand const& argument : arguments) units_.pure(name, argument, row.unit_rule == UnitRule::angle);
+      for (UnitOperand const& argument : arguments) units_.pure(name, argument, row.unit_rule == UnitRule::angle);
       break;
     case UnitRule::root:
     case UnitRule::none:
       break;
   }
   std::vector<Typed> values;
-  for (Operand const& argument : arguments) values.push_back(argument.value);
+  for (UnitOperand const& argument : arguments) values.push_back(argument.value);
   Typed result = call(graph_, row, std::move(values));
-  if (!agreed && row.unit_rule == UnitRule::same) result.kind = Typed::Kind::unknown;
+  if (!agreed && row.unit_rule == UnitRule::same) result.kind = Typed::Kind::wrong;
   return result;
 }
 
@@ -353,8 +354,7 @@ std::optional<Typed> Scope::other_than_sum(ast::Expression const& tree) {
     auto operand = expression(*(*unary)->operand);
     if (operand) {
       units_.condition({*operand, &*(*unary)->operand});
-      value = *operand;
-      value->node = graph_.unary(Operation::negation, operand->node);
+      value = with_unit(graph_.unary(Operation::negation, operand->node), Unit{}, tree.span);
     }
   } else if (auto const* operation = std::get_if<ast::Box<ast::Binary>>(&tree.node)) {
     value = binary(**operation);
@@ -373,10 +373,10 @@ std::optional<Typed> Scope::choice(ast::Conditional const& conditional) {
   auto const then = expression(*conditional.then), otherwise = expression(*conditional.otherwise);
   if (condition) units_.condition({*condition, &*conditional.condition});
   if (!condition || !then || !otherwise) return std::nullopt;
-  Operand const branches[] = {{*then, &*conditional.then}, {*otherwise, &*conditional.otherwise}};
+  UnitOperand const branches[] = {{*then, &*conditional.then}, {*otherwise, &*conditional.otherwise}};
   bool const agreed = units_.agree({Occasion::Kind::branches}, branches);
   Typed result = select(graph_, *condition, *then, *otherwise);
-  if (!agreed) result.kind = Typed::Kind::unknown;
+  if (!agreed) result.kind = Typed::Kind::wrong;
   return result;
 }
 

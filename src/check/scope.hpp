@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "check/unit_check.hpp"
 #include "check/units.hpp"
 #include "core/diagnostic.hpp"
+#include "model/model.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid {
@@ -68,10 +70,13 @@ class Scope {
   /// An expression that must have the unit declared at `place`; absent: any.
   std::optional<Typed> expression_in(std::optional<Unit> const& unit, Span place, ast::Expression const& expression,
                                      Occasion const& occasion);
-  /// Both sides of an equation, with literals adapted: their addends all have one unit.
+  /// Both sides of an equation, with literals adapted: their addends all have one unit. One is `wrong` where they have not.
   std::optional<std::pair<Typed, Typed>> equation(ast::Equation const& equation);
   /// A definition's value in its declared unit.
   std::optional<Typed> definition(ast::Definition const& definition);
+
+  /// What stayed without a unit where one was needed, in the order of the text.
+  std::vector<Unchecked> unchecked() const;
 
   Graph& graph() { return graph_; }
   Diagnostics& diagnostics() { return diagnostics_; }
@@ -85,15 +90,16 @@ class Scope {
         functions_(other.functions_),
         whole_numbers_(other.whole_numbers_),
         units_(other.units_, diagnostics) {}
+  void open_names(ast::Expression const& tree, std::set<std::string>& names, std::set<std::string>& seen) const;
   std::optional<Unit> unit_of(ast::Definition const& definition) const;
   std::optional<Typed> reference(ast::Reference const& reference);
   /// The value of a sum; its addends are appended to `terms`. Anything else is a sum of one.
-  std::optional<Typed> sum(ast::Expression const& tree, std::vector<Operand>& terms, int side = 0);
+  std::optional<Typed> sum(ast::Expression const& tree, std::vector<UnitOperand>& terms, int side = 0);
   std::optional<Typed> other_than_sum(ast::Expression const& tree);
   std::optional<Typed> binary(ast::Binary const& binary);
-  Typed compared(Operation operation, Operand left, Operand right);
+  Typed compared(Operation operation, UnitOperand left, UnitOperand right);
   std::optional<Typed> function_call(ast::Call const& call);
-  Typed built_in(FunctionRow const& row, std::span<Operand const> arguments);
+  Typed built_in(FunctionRow const& row, std::span<UnitOperand const> arguments);
   std::optional<Typed> choice(ast::Conditional const& conditional);
 
   using Arguments = std::map<std::string, Typed>;  // names that hide the others while a function is expanded

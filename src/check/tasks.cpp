@@ -35,7 +35,7 @@ class TaskChecker {
     } else {
       task.what = predict();
     }
-    bool const errors = diagnostics_.all().size() > before_;
+    bool const errors = diagnostics_.has_errors(before_);
     if (errors || unresolved_) return std::nullopt;
     return task;
   }
@@ -141,7 +141,7 @@ class TaskChecker {
         options_.unknown(option, {"start", "solver", "substeps", "seed"});
       }
     }
-    if (task.backend.empty() && diagnostics_.all().size() == before_) diagnostics_.add(errors::backend_missing(tree_, names));
+    if (task.backend.empty() && !diagnostics_.has_errors(before_)) diagnostics_.add(errors::backend_missing(tree_, names));
     return task;
   }
 
@@ -298,7 +298,7 @@ class TaskChecker {
       }
     }
     if (task.file.empty()) task.file = task_name(tree_) + ".csv";
-    if (diagnostics_.all().size() > before_) return task;
+    if (diagnostics_.has_errors(before_)) return task;
     if (task.samples == 0) diagnostics_.add(errors::option_missing(tree_, "samples", "samples = 500"));
     if (task.step == 0) diagnostics_.add(errors::option_missing(tree_, "rate", "rate = 1000 [Hz]"));
     for (std::size_t i = 0; i < given.size(); ++i)

@@ -2,6 +2,7 @@
 #include "check/unit_check.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <utility>
 
@@ -13,8 +14,8 @@
 namespace sysid {
 namespace {
 
-bool is_known(Operand const& operand) { return operand.value.kind == Typed::Kind::known; }
-Dimension const& dimension_of(Operand const& operand) { return operand.value.unit.dimension; }
+bool is_known(UnitOperand const& operand) { return operand.value.kind == Typed::Kind::known; }
+Dimension const& dimension_of(UnitOperand const& operand) { return operand.value.unit.dimension; }
 
 // A factor of a product that is a number without a unit; null when there is none.
 ast::Expression const* bare_factor(ast::Expression const& tree) {
@@ -46,7 +47,7 @@ std::vector<std::string> names_in(ast::Expression const& tree) {
   return names;
 }
 
-std::size_t size_of(Operand const& operand) {
+std::size_t size_of(UnitOperand const& operand) {
   std::size_t size = 0;  // a declaration: what the user says plainly
   if (operand.tree != nullptr) each_expression(*operand.tree, [&](ast::Expression const&) { ++size; });
   return size;
@@ -55,7 +56,7 @@ std::size_t size_of(Operand const& operand) {
 // The indices of known operands, those of one dimension together.
 using Groups = std::vector<std::vector<std::size_t>>;
 
-Groups group(std::span<Operand const> operands) {
+Groups group(std::span<UnitOperand const> operands) {
   Groups groups;
   for (std::size_t i = 0; i < operands.size(); ++i) {
     if (!is_known(operands[i])) continue;
@@ -71,7 +72,7 @@ Groups group(std::span<Operand const> operands) {
 }
 
 // The most numerous; of equals the one with the plainest member: `x` is more surely what it should be than `k*y^2`.
-std::vector<std::size_t> majority(Groups const& groups, std::span<Operand const> operands) {
+std::vector<std::size_t> majority(Groups const& groups, std::span<UnitOperand const> operands) {
   auto const rank = [&](std::vector<std::size_t> const& members) {
     std::size_t plainest = SIZE_MAX;
     for (std::size_t const i : members) plainest = std::min(plainest, size_of(operands[i]));
@@ -86,10 +87,10 @@ struct Stretch {
   bool before = false;
   bool several = false;
 };
-Stretch agreeing(std::span<Operand const> operands, std::vector<std::size_t> const& right, std::size_t odd) {
+Stretch agreeing(std::span<UnitOperand const> operands, std::vector<std::size_t> const& right, std::size_t odd, bool addends) {
   auto const agrees = [&](std::size_t i) { return std::find(right.begin(), right.end(), i) != right.end(); };
   auto const joins = [&](std::size_t i, std::size_t j) {
-    return operands[i].side == operands[j].side && operands[i].tree != nullptr && operands[j].tree != nullptr;
+    return addends && operands[i].side == operands[j].side && operands[i].tree != nullptr && operands[j].tree != nullptr;
   };
   std::optional<std::size_t> nearest;
   for (std::size_t const i : right) {
@@ -110,7 +111,12 @@ std::string UnitCheck::words(Unit const& unit) const {
       if (each.unit.dimension == unit.dimension && each.unit.scale == 1 && each.unit.radian == unit.radian &&
           each.unit.hertz == unit.hertz)
         return each.unit.text;
-  return unit_words(unit);
+  bool const newtons = std::any_of(declared_.begin(), declared_.end(), [](DeclaredUnit const& each) {
+    std::string const& text = each.unit.text;
+    std::size_t const place = text.find('N');  // N, kN, MN
+    return place != std::string::npos && (place + 1 == text.size() || !std::isalpha(static_cast<unsigned char>(text[place + 1])));
+  });
+  return unit_words(unit, newtons);
 }
 
 // "`y`", "`y` or `l`": declared names of this dimension.
@@ -132,7 +138,7 @@ std::string UnitCheck::named(Dimension const& dimension, std::vector<std::string
   return text;
 }
 
-std::string UnitCheck::cure(Operand const& odd, Dimension const& missing, bool pure) const {
+std::string UnitCheck::cure(UnitOperand const& odd, std::string const& wanted, Dimension const& missing, bool pure) const {
   std::vector<std::string> but;
   if (pure && odd.tree != nullptr) but = names_in(*odd.tree);
   if (odd.tree != nullptr && !pure) {
@@ -156,11 +162,12 @@ std::string UnitCheck::cure(Operand const& odd, Dimension const& missing, bool p
     if (moving != nullptr && (missing == inverse(time) || (missing == time && moving->primes >= primes)))
       return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes));
   }
-  return !has_kind(missing) && has_kind(inverse(missing)) ? errors::divide_by(kind_words(inverse(missing)), "")
-                                                          : errors::multiply_by(kind_words(missing), "");
+  if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing), "");
+  if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing)), "");
+  return errors::should_be_in(wanted);
 }
 
-void UnitCheck::remember(Operand const& operand, std::string why) {
+void UnitCheck::remember(UnitOperand const& operand, std::string why) {
   if (operand.tree != nullptr && calls_.empty()) not_compared_.push_back({operand.tree, std::move(why)});
 }
 
@@ -176,13 +183,13 @@ void UnitCheck::report(Diagnostic diagnostic) {
   diagnostics_->add(std::move(diagnostic));
 }
 
-void UnitCheck::hint_cycles(std::span<Operand const> operands) {
+void UnitCheck::hint_cycles(std::span<UnitOperand const> operands) {
   for (std::size_t i = 0; i < operands.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       Unit const &a = operands[j].value.unit, &b = operands[i].value.unit;
       if (!is_known(operands[i]) || !is_known(operands[j]) || !cycles_against_radians(a, b)) continue;
       bool const shows_second = operands[i].tree != nullptr;  // the expression rather than a declaration
-      Operand const &shown = operands[shows_second ? i : j], &other = operands[shows_second ? j : i];
+      UnitOperand const &shown = operands[shows_second ? i : j], &other = operands[shows_second ? j : i];
       bool const counts_cycles = shown.value.unit.hertz.numerator > other.value.unit.hertz.numerator;
       report(errors::cycles_meet_radians({shown.value.span, "[" + words(shown.value.unit) + "]"},
                                          {other.value.span, "[" + words(other.value.unit) + "]"}, counts_cycles));
@@ -190,9 +197,9 @@ void UnitCheck::hint_cycles(std::span<Operand const> operands) {
     }
 }
 
-bool UnitCheck::agree(Occasion const& occasion, std::span<Operand const> operands) {
+bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> operands) {
   Groups const groups = group(operands);
-  for (Operand const& each : operands)
+  for (UnitOperand const& each : operands)
     if (each.value.kind == Typed::Kind::unknown) remember(each);
   if (groups.size() < 2) {
     hint_cycles(operands);
@@ -214,6 +221,9 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<Operand const> operand
     for (std::size_t const j : odd)
       if (is_known(operands[i]) && (operands[i].side == operands[j].side) != (std::find(odd.begin(), odd.end(), i) != odd.end()))
         whole_side = false;
+  bool const has_declaration =
+      std::any_of(operands.begin(), operands.end(), [](UnitOperand const& each) { return each.tree == nullptr; });
+  bool const sum = has_declaration || occasion.kind == Occasion::Kind::terms;
   UnitConflict conflict;
   std::size_t const shown = declaration_alone ? right.front() : odd.front();
   Unit const& wanted = operands[declaration_alone ? odd.front() : right.front()].value.unit;
@@ -222,7 +232,7 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<Operand const> operand
     conflict.primary.span = cover(operands[right.front()].value.span, operands[right.back()].value.span);
     conflict.secondary.push_back(label(operands[odd.front()].value.span, odd.front()));
   } else {
-    Stretch const stretch = agreeing(operands, right, shown);
+    Stretch const stretch = agreeing(operands, right, shown, sum);
     conflict.position = stretch.before ? UnitConflict::Position::after : UnitConflict::Position::before;
     conflict.several = stretch.several;
     if (whole_side) {
@@ -235,16 +245,14 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<Operand const> operand
   }
   conflict.wanted = words(wanted);
   conflict.found = words(operands[shown].value.unit);
-  conflict.help = cure(operands[shown], quotient(wanted.dimension, dimension_of(operands[shown])), false);
+  conflict.help = cure(operands[shown], conflict.wanted, quotient(wanted.dimension, dimension_of(operands[shown])), false);
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
-  bool const has_declaration =
-      std::any_of(operands.begin(), operands.end(), [](Operand const& each) { return each.tree == nullptr; });
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));
   return false;
 }
 
-bool UnitCheck::pure(std::string const& function, Operand const& argument, bool angle) {
+bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, bool angle) {
   if (argument.value.kind == Typed::Kind::unknown) remember(argument);
   if (!is_known(argument)) return true;
   Unit const& unit = argument.value.unit;
@@ -254,14 +262,14 @@ bool UnitCheck::pure(std::string const& function, Operand const& argument, bool 
     return true;
   }
   report(errors::pure_argument({argument.value.span, "[" + words(unit) + "]"}, function,
-                               cure(argument, inverse(unit.dimension), true)));
+                               cure(argument, "-", inverse(unit.dimension), true)));
   return false;
 }
 
-bool UnitCheck::power(Operand const& base, Operand const& exponent, std::optional<double> constant) {
+bool UnitCheck::power(UnitOperand const& base, UnitOperand const& exponent, std::optional<double> constant) {
   if (is_known(exponent) && !exponent.value.unit.dimensionless()) {
     report(errors::exponent_with_unit({exponent.value.span, "[" + words(exponent.value.unit) + "]"},
-                                      cure(exponent, inverse(exponent.value.unit.dimension), true)));
+                                      cure(exponent, "-", inverse(exponent.value.unit.dimension), true)));
     return false;
   }
   if (!is_known(base) || base.value.unit.dimensionless()) return true;
@@ -274,7 +282,7 @@ bool UnitCheck::power(Operand const& base, Operand const& exponent, std::optiona
   return false;
 }
 
-bool UnitCheck::condition(Operand const& operand) {
+bool UnitCheck::condition(UnitOperand const& operand) {
   if (!is_known(operand) || operand.value.unit.dimensionless()) return true;
   report(errors::condition_with_unit({operand.value.span, "[" + words(operand.value.unit) + "]"}, unparse(*operand.tree)));
   return false;

@@ -13,7 +13,7 @@
 namespace sysid {
 
 /// One of several things that must have one unit: an expression, or a declaration (no tree) that says which unit that is.
-struct Operand {
+struct UnitOperand {
   Typed value;
   ast::Expression const* tree = nullptr;
   int side = 0;  // of an equation: 0 left, 1 right
@@ -46,13 +46,13 @@ class UnitCheck {
   void declare(DeclaredUnit declared) { declared_.push_back(std::move(declared)); }
 
   /// False, with a diagnostic, when the known units differ. The odd ones out are those that the majority does not share.
-  bool agree(Occasion const& occasion, std::span<Operand const> operands);
+  bool agree(Occasion const& occasion, std::span<UnitOperand const> operands);
   /// An argument that must be a pure number; `angle`: of sin, cos or tan, where cycles are warned of.
-  bool pure(std::string const& function, Operand const& argument, bool angle);
+  bool pure(std::string const& function, UnitOperand const& argument, bool angle);
   /// A power: the exponent is pure, and constant where the base has a dimension.
-  bool power(Operand const& base, Operand const& exponent, std::optional<double> constant);
+  bool power(UnitOperand const& base, UnitOperand const& exponent, std::optional<double> constant);
   /// What stands for true or false.
-  bool condition(Operand const& operand);
+  bool condition(UnitOperand const& operand);
 
   /// While the body of a function is looked at for a call: mistakes in it are reported at the call.
   void enter_call(Span call, std::string const& function) { calls_.push_back({call, function}); }
@@ -73,11 +73,11 @@ class UnitCheck {
   std::vector<NotCompared> const& not_compared() const { return not_compared_; }
 
  private:
-  void hint_cycles(std::span<Operand const> operands);
+  void hint_cycles(std::span<UnitOperand const> operands);
   std::string words(Unit const& unit) const;
   std::string named(Dimension const& dimension, std::vector<std::string> const& but) const;
-  std::string cure(Operand const& odd, Dimension const& missing, bool pure) const;
-  void remember(Operand const& operand, std::string why = {});
+  std::string cure(UnitOperand const& odd, std::string const& wanted, Dimension const& missing, bool pure) const;
+  void remember(UnitOperand const& operand, std::string why = {});
   void report(Diagnostic diagnostic);
 
   Diagnostics* diagnostics_;

@@ -99,6 +99,9 @@ std::string multiply_by(std::string const& kind, std::string const& names) {
 std::string divide_by(std::string const& kind, std::string const& names) {
   return with_names(fmt::format("divide it by {}", kind), names);
 }
+std::string should_be_in(std::string const& unit) {
+  return unit == "-" ? "make it a pure number" : fmt::format("make it a quantity in [{}]", unit);
+}
 std::string tag_the_number(std::string const& number, std::string const& unit) {
   return fmt::format("a number as a factor has no unit of its own: write `{} [{}]`", number, unit);
 }

@@ -36,6 +36,7 @@ void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function
 // What to do, for `help`. names: declared quantities that would do ("`y` or `l`"), or empty.
 std::string multiply_by(std::string const& kind, std::string const& names);
 std::string divide_by(std::string const& kind, std::string const& names);
+std::string should_be_in(std::string const& unit);
 std::string tag_the_number(std::string const& number, std::string const& unit);
 std::string primes_wrong(std::string const& name, int primes, int wanted);
 

@@ -29,18 +29,32 @@ constexpr Named named_units[] = {
 struct Kind {
   std::string_view name;
   Exponents exponents;
+  bool plain = false;
 };
 constexpr Kind kinds[] = {
-    {"a length", {0, 1, 0, 0, 0}},        {"a time", {0, 0, 1, 0, 0}},        {"a mass", {1, 0, 0, 0, 0}},
-    {"a current", {0, 0, 0, 1, 0}},       {"a temperature", {0, 0, 0, 0, 1}}, {"an area", {0, 2, 0, 0, 0}},
-    {"a volume", {0, 3, 0, 0, 0}},        {"a velocity", {0, 1, -1, 0, 0}},   {"an acceleration", {0, 1, -2, 0, 0}},
-    {"a force", {1, 1, -2, 0, 0}},        {"a stiffness", {1, 0, -2, 0, 0}},  {"a pressure", {1, -1, -2, 0, 0}},
-    {"an energy", {1, 2, -2, 0, 0}},      {"a power", {1, 2, -3, 0, 0}},      {"a voltage", {1, 2, -3, -1, 0}},
-    {"a resistance", {1, 2, -3, -2, 0}},  {"a charge", {0, 0, 1, 1, 0}},      {"a rate", {0, 0, -1, 0, 0}},
-    {"a mass density", {1, -3, 0, 0, 0}}, {"a momentum", {1, 1, -1, 0, 0}},
+    {"a length", {0, 1, 0, 0, 0}, true},
+    {"a time", {0, 0, 1, 0, 0}, true},
+    {"a mass", {1, 0, 0, 0, 0}, true},
+    {"a current", {0, 0, 0, 1, 0}, true},
+    {"a temperature", {0, 0, 0, 0, 1}, true},
+    {"an area", {0, 2, 0, 0, 0}, true},
+    {"a volume", {0, 3, 0, 0, 0}, true},
+    {"a velocity", {0, 1, -1, 0, 0}, true},
+    {"an acceleration", {0, 1, -2, 0, 0}},
+    {"a force", {1, 1, -2, 0, 0}, true},
+    {"a stiffness", {1, 0, -2, 0, 0}},
+    {"a pressure", {1, -1, -2, 0, 0}},
+    {"an energy", {1, 2, -2, 0, 0}},
+    {"a power", {1, 2, -3, 0, 0}},
+    {"a voltage", {1, 2, -3, -1, 0}, true},
+    {"a resistance", {1, 2, -3, -2, 0}},
+    {"a charge", {0, 0, 1, 1, 0}},
+    {"a rate", {0, 0, -1, 0, 0}, true},
+    {"a mass density", {1, -3, 0, 0, 0}},
+    {"a momentum", {1, 1, -1, 0, 0}},
 };
 
-constexpr std::size_t kilogram = 0;
+constexpr std::size_t kilogram = 0, second = 2;
 
 int size_of(Dimension const& dimension) {
   int size = 0;
@@ -59,11 +73,11 @@ std::string joined(std::string_view symbol, int power, Dimension const& rest) {
   return above + "/" + (below.empty() ? std::string(symbol) : "(" + std::string(symbol) + " " + below + ")");
 }
 
-std::string short_dimension(Dimension const& dimension) {
+std::string short_dimension(Dimension const& dimension, bool newtons) {
   for (Named const& named : named_units)
     if (named.exponents.dimension() == dimension) return std::string(named.symbol);
   std::string text = format_dimension(dimension);
-  int size = size_of(dimension);
+  int size = size_of(dimension) + (newtons && dimension[second].numerator != 0 ? 3 : 0);
   for (Named const& named : named_units)
     for (int const power : {1, -1}) {
       if (!named.in_products) continue;
@@ -87,25 +101,25 @@ Dimension quotient(Dimension const& a, Dimension const& b) {
 }
 Dimension inverse(Dimension const& dimension) { return quotient(Dimension{}, dimension); }
 
-std::string unit_words(Unit const& unit) {
+std::string unit_words(Unit const& unit, bool newtons) {
   if (!unit.text.empty()) return unit.text;
   Dimension const rate = Exponents{0, 0, -1, 0, 0}.dimension();
   bool const cycles = unit.hertz == Rational{1, 1}, radians = unit.radian == Rational{1, 1};
   if (unit.dimension == rate && (cycles || radians)) return cycles ? "Hz" : "rad/s";
   if (unit.dimensionless()) return cycles ? "cycles" : radians ? "rad" : "-";
-  return short_dimension(unit.dimension);
+  return short_dimension(unit.dimension, newtons);
 }
 
-bool has_kind(Dimension const& dimension) {
+bool is_plain_kind(Dimension const& dimension) {
   for (Kind const& kind : kinds)
-    if (kind.exponents.dimension() == dimension) return true;
+    if (kind.plain && kind.exponents.dimension() == dimension) return true;
   return false;
 }
 
 std::string kind_words(Dimension const& dimension) {
   for (Kind const& kind : kinds)
     if (kind.exponents.dimension() == dimension) return std::string(kind.name);
-  return "something in [" + short_dimension(dimension) + "]";
+  return "something in [" + short_dimension(dimension, false) + "]";
 }
 
 }  // namespace sysid

@@ -8,12 +8,13 @@
 namespace sysid {
 
 /// The unit as the user wrote it, else in SI with the names that shorten it: "N", "N/m^3", "m/s^2", "rad/s"; "-" for a pure number.
-std::string unit_words(Unit const& unit);
+/// newtons: where they are in use, "N s/m" rather than "kg/s".
+std::string unit_words(Unit const& unit, bool newtons = false);
 
 /// "a length", "a time", "a stiffness"; "something in [kg/m]" for a dimension without a common name.
 std::string kind_words(Dimension const& dimension);
-/// Whether `kind_words` has a name for it.
-bool has_kind(Dimension const& dimension);
+/// Whether that is a plain thing to be asked for: a length, not an energy.
+bool is_plain_kind(Dimension const& dimension);
 
 /// 1/dimension.
 Dimension inverse(Dimension const& dimension);

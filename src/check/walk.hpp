@@ -13,7 +13,9 @@ void each_expression(ast::Expression const& tree, Visit const& visit) {
   std::visit(
       [&](auto const& node) {
         using Node = std::decay_t<decltype(node)>;
-        if constexpr (std::is_same_v<Node, ast::Box<ast::Unary>>) {
+        if constexpr (std::is_same_v<Node, ast::Reference>) {
+          for (auto const& index : node.index) each_expression(index, visit);
+        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Unary>>) {
           each_expression(*node->operand, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Binary>>) {
           each_expression(*node->left, visit);

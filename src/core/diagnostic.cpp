@@ -166,8 +166,9 @@ std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
 
 }  // namespace
 
-bool Diagnostics::has_errors() const {
-  return std::any_of(all_.begin(), all_.end(), [](Diagnostic const& d) { return d.severity == Severity::error; });
+bool Diagnostics::has_errors(std::size_t from) const {
+  return std::any_of(all_.begin() + static_cast<std::ptrdiff_t>(std::min(from, all_.size())), all_.end(),
+                     [](Diagnostic const& d) { return d.severity == Severity::error; });
 }
 
 std::string render(Diagnostic const& diagnostic, Source const& source, bool colour) {

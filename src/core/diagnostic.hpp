@@ -31,7 +31,8 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void add(Diagnostic diagnostic) { all_.push_back(std::move(diagnostic)); }
-  bool has_errors() const;
+  /// Among those added after the first `from`.
+  bool has_errors(std::size_t from = 0) const;
   std::vector<Diagnostic> const& all() const { return all_; }
 
  private:

@@ -48,6 +48,13 @@ struct Derived : Quantity {
   bool per_sample = false;
 };
 
+/// Something whose unit could not be compared with others: a name that declares none, or an expression.
+struct Unchecked {
+  std::string what;  // as written
+  Span span;
+  std::string why;
+};
+
 struct Model {
   std::string name;
   std::string title;
@@ -58,6 +65,7 @@ struct Model {
   std::vector<int> sampling_order;    // sampled parameters, each after those its prior refers to
   std::vector<Channel> channels;
   std::vector<Derived> derived;
+  std::vector<Unchecked> unchecked;  // in the order of the text
 };
 
 }  // namespace sysid

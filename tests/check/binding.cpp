@@ -7,7 +7,7 @@ using namespace sysid::test;
 namespace {
 
 std::string const model =
-    "model m {\ninput x [N]\nstate y [m]\ninitial y = 0\nparameter k ~ normal(1, sd = 1)\ny' = x - k*y\n"
+    "model m {\ninput x [N]\nstate y [m]\ninitial y = 0\nparameter k [N/m] ~ normal(1, sd = 1)\n1 [N s/m]*y' = x - k*y\n"
     "observe displacement ~ normal(y, sd = 1)\nobserve force ~ normal(k*y, sd = 1)\n}\n";
 
 std::string const whole =

@@ -140,7 +140,7 @@ TEST_CASE("beside a pure number a bare number is pure, and ratios of like quanti
   parameter a [mm] = 500
   parameter l [m] = 2
   parameter zeta [percent] = 5
-  y' = x - y
+  y' = x - y/1 [s]
   derive stretched = 1 + a/l
   derive ratio = a/l
   derive damped = 1 - zeta

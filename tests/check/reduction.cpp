@@ -62,7 +62,7 @@ TEST_CASE("a pendulum on a cart: the mass matrix depends on the state") {
 TEST_CASE("a third-order equation has three components with units per second") {
   Model const model = model_of(
       "state y [m]\ninitial y = 1, y' = 2, y'' = 3\nparameter a ~ normal(0, sd = 1)\n"
-      "y''' + a*y'' + y = 0\nobserve d ~ normal(y, sd = 1)");
+      "y''' + a*y'' + 1 [1/s^3]*y = 0\nobserve d ~ normal(y, sd = 1)");
   REQUIRE(model.states.size() == 3);
   CHECK(model.states[2].name == "y''");
   CHECK(model.states[2].unit_text() == "m/s^2");

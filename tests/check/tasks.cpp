@@ -9,7 +9,7 @@ namespace {
 std::string const file =
     "model m {\ninput x [kN]\nstate y [mm]\ninitial y = 0\nparameter k [N/mm] ~ log_uniform(1, 10)\nparameter s [mm] ~ "
     "half_normal(sd = 1)\n"
-    "y' = x - k*y\nobserve displacement ~ normal(y, sd = s)\n}\n"
+    "1 [N s/mm]*y' = x - k*y\nobserve displacement ~ normal(y, sd = s)\n}\n"
     "data d {\nfile \"d.csv\"\ntime t\ninput x = x hold linear\nmeasure displacement = y\nsplit train = rows 1..10, test = rows "
     "11..20\n}\n";
 
