@@ -481,7 +481,7 @@ class ModelChecker {
     Scope quiet = scope_.with(ignored);
     auto const value = quiet.expression(*location);
     if (!value || value->kind != Typed::Kind::known) return std::nullopt;
-    return value->unit;
+    return settled(*value).unit;
   }
 
   void derived() {

@@ -110,6 +110,10 @@ Unit turned(Unit unit, int powers) {
   return unit;
 }
 
+int turns_of(Graph const& graph, Typed const& factor) {
+  return factor.kind == Kind::literal ? powers_of_pi(graph, factor) : factor.turns;
+}
+
 // The root of 1/s^2, as in sqrt(k/m), is an angular frequency.
 Unit root(Unit const& unit) {
   Unit result = power(unit, {1, 2});
@@ -137,8 +141,14 @@ Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> c
 
 }  // namespace
 
+Typed settled(Typed typed) {
+  if (typed.kind == Kind::known) typed.unit = turned(std::move(typed.unit), typed.turns);
+  typed.turns = 0;
+  return typed;
+}
+
 Typed add(Graph& graph, Typed a, Typed b, bool subtract) {
-  Typed operands[] = {std::move(a), std::move(b)};
+  Typed operands[] = {settled(std::move(a)), settled(std::move(b))};
   auto const temperature = [](Typed const& t) { return t.kind == Kind::known && t.unit.offset != 0; };
   bool const difference = subtract && temperature(operands[0]) && temperature(operands[1]);
   // A temperature and an interval ([delta_degC], or a difference of two temperatures): the interval keeps its size. What is written
@@ -166,9 +176,8 @@ Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
-    result.unit = a.kind == Kind::literal   ? turned(b.unit, powers_of_pi(graph, a))
-                  : b.kind == Kind::literal ? turned(a.unit, powers_of_pi(graph, b))
-                                            : pure(sysid::multiply(a.unit, b.unit));
+    result.unit = a.kind == Kind::literal ? b.unit : b.kind == Kind::literal ? a.unit : pure(sysid::multiply(a.unit, b.unit));
+    result.turns = turns_of(graph, a) + turns_of(graph, b);
   }
   return unless_wrong(std::move(result), a, b);
 }
@@ -179,9 +188,9 @@ Typed divide(Graph& graph, Typed const& a, Typed const& b) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
-    result.unit = a.kind == Kind::literal   ? turned(pure(sysid::divide(Unit{}, b.unit)), powers_of_pi(graph, a))
-                  : b.kind == Kind::literal ? turned(a.unit, -powers_of_pi(graph, b))
-                                            : pure(sysid::divide(a.unit, b.unit));
+    Unit const one;
+    result.unit = pure(sysid::divide(a.kind == Kind::literal ? one : a.unit, b.kind == Kind::literal ? one : b.unit));
+    result.turns = turns_of(graph, a) - turns_of(graph, b);
   }
   return unless_wrong(std::move(result), a, b);
 }
@@ -200,6 +209,7 @@ Typed power(Graph& graph, Typed const& a, Typed const& b) {
     } else if (rational) {
       result.kind = Kind::known;
       result.unit = *rational == Rational{1, 2} ? root(a.unit) : pure(sysid::power(a.unit, *rational));
+      result.turns = a.turns * rational->numerator / rational->denominator;
     }
   }
   return unless_wrong(std::move(result), a, b);
@@ -212,13 +222,13 @@ Typed negate(Graph& graph, Typed const& a) {
 }
 
 Typed compare(Graph& graph, Operation operation, Typed a, Typed b) {
-  Typed operands[] = {std::move(a), std::move(b)};
+  Typed operands[] = {settled(std::move(a)), settled(std::move(b))};
   unify(graph, operands);
   return {graph.binary(operation, operands[0].node, operands[1].node), Kind::known, {}, cover_all(operands)};
 }
 
 Typed select(Graph& graph, Typed const& condition, Typed a, Typed b) {
-  Typed operands[] = {std::move(a), std::move(b)};
+  Typed operands[] = {settled(std::move(a)), settled(std::move(b))};
   auto const unit = unify(graph, operands);
   Typed result = shared(graph.select(condition.node, operands[0].node, operands[1].node), operands, unit);
   result.span = cover(condition.span, result.span);
@@ -239,6 +249,7 @@ Typed call(Graph& graph, FunctionRow const& row, std::vector<Typed> arguments) {
       if (arguments[0].kind == Kind::known) {
         result.kind = Kind::known;
         result.unit = root(arguments[0].unit);
+        result.turns = arguments[0].turns / 2;
       }
       break;
     case UnitRule::dimensionless:

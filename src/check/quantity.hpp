@@ -22,7 +22,11 @@ struct Typed {
   Kind kind = Kind::unknown;
   Unit unit{};  // when known
   Span span;
+  int turns = 0;  // powers of pi among the bare factors of a product, for what its unit counts (cycles or radians): see `settled`
 };
+
+/// The same where its product ends: 2*pi has made radians of cycles, 1/(2*pi) cycles of radians.
+Typed settled(Typed typed);
 
 Typed literal(Graph& graph, double value, Span span);
 /// A number tagged with a unit: SI inside, but a temperature stays in degrees above the zero of its unit.

@@ -98,9 +98,11 @@ std::optional<Typed> Scope::definition(ast::Definition const& definition) {
     value->node = adapt(graph_, *value, unit);
     value->kind = Typed::Kind::known;
     value->unit = *unit;
+    value->turns = 0;
   } else if (value && value->kind == Typed::Kind::literal) {
     value->kind = Typed::Kind::unknown;  // a named number is no longer a literal that adapts
   }
+  if (value) *value = settled(*value);
   return resolved_[&definition] = value;
 }
 
@@ -180,7 +182,7 @@ std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<UnitOpe
   } else {
     value = other_than_sum(tree);
     if (value) value->span = tree.span;
-    if (value) terms.push_back({*value, &tree, side});
+    if (value) terms.push_back({settled(*value), &tree, side});
   }
   if (value) {
     value->span = tree.span;
@@ -231,7 +233,7 @@ Typed Scope::compared(Operation operation, UnitOperand left, UnitOperand right) 
 std::optional<Typed> Scope::binary(ast::Binary const& binary) {
   auto left = expression(*binary.left), right = expression(*binary.right);
   if (!left || !right) return std::nullopt;
-  UnitOperand const a{*left, &*binary.left}, b{*right, &*binary.right};
+  UnitOperand const a{settled(*left), &*binary.left}, b{settled(*right), &*binary.right};
   std::string const& symbol = binary.symbol;
   if (symbol == "*") return multiply(graph_, *left, *right);
   if (symbol == "/") return divide(graph_, *left, *right);
@@ -267,7 +269,7 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     }
     auto value = expression(argument.value);
     good = good && value;
-    if (value) arguments.push_back({*value, &argument.value});
+    if (value) arguments.push_back({settled(*value), &argument.value});
   }
   auto const user = functions_.find(name);
   if (user != functions_.end()) {
@@ -373,7 +375,7 @@ std::optional<Typed> Scope::choice(ast::Conditional const& conditional) {
   auto const then = expression(*conditional.then), otherwise = expression(*conditional.otherwise);
   if (condition) units_.condition({*condition, &*conditional.condition});
   if (!condition || !then || !otherwise) return std::nullopt;
-  UnitOperand const branches[] = {{*then, &*conditional.then}, {*otherwise, &*conditional.otherwise}};
+  UnitOperand const branches[] = {{settled(*then), &*conditional.then}, {settled(*otherwise), &*conditional.otherwise}};
   bool const agreed = units_.agree({Occasion::Kind::branches}, branches);
   Typed result = select(graph_, *condition, *then, *otherwise);
   if (!agreed) result.kind = Typed::Kind::wrong;

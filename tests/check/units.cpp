@@ -183,12 +183,27 @@ TEST_CASE("cycles and radians without 2*pi are warned of, with it they are not")
     CHECK(said.count == 1);
     CHECK(messages("model a {\n" + names + equation + statement + "\n}\n").find("warning[E2210]") != std::string::npos);
   }
-  for (std::string const statement :
-       {"derive fn [Hz] = sqrt(k/m)/(2*pi)", "derive fn [Hz] = sqrt(k/m)/2/pi", "derive fn [Hz] = 1/(2*pi)*sqrt(k/m)",
-        "derive wn [rad/s] = 2*pi*f", "let a = sin(2*pi*f*t)", "let a = sin(f*2*pi*t)", "derive T [s] = 1/f",
-        "derive T [s] = 2*pi/sqrt(k/m)", "derive a [Hz] = 1/(3 [s])", "derive a [1/s] = f", "derive a [1/s] = sqrt(k/m)",
-        "let a = (2*pi*f)^2*m*y + k*y", "let a = m*w^2*y + k*y", "let a = 4*pi^2*f^2*m*y + k*y", "let a = exp(-f*t)",
-        "let wn = 2*pi*f\nlet a = sin(wn*t)", "derive a [rpm] = w", "derive Q = sqrt(k*m)/c", "derive v [m/s] = f*y"}) {
+  for (std::string const statement : {"derive fn [Hz] = sqrt(k/m)/(2*pi)",
+                                      "derive fn [Hz] = sqrt(k/m)/2/pi",
+                                      "derive fn [Hz] = 1/(2*pi)*sqrt(k/m)",
+                                      "derive wn [rad/s] = 2*pi*f",
+                                      "let a = sin(2*pi*f*t)",
+                                      "let a = sin(f*2*pi*t)",
+                                      "derive T [s] = 1/f",
+                                      "derive T [s] = 2*pi/sqrt(k/m)",
+                                      "derive a [Hz] = 1/(3 [s])",
+                                      "derive a [1/s] = f",
+                                      "derive a [1/s] = sqrt(k/m)",
+                                      "let a = (2*pi*f)^2*m*y + k*y",
+                                      "let a = m*w^2*y + k*y",
+                                      "let a = 4*pi^2*f^2*m*y + k*y",
+                                      "let a = exp(-f*t)",
+                                      "parameter r [m s/rad] = 1\nlet a = y + r*2*pi*f",
+                                      "let a = f*t*2*pi + w*t",
+                                      "let wn = 2*pi*f\nlet a = sin(wn*t)",
+                                      "derive a [rpm] = w",
+                                      "derive Q = sqrt(k*m)/c",
+                                      "derive v [m/s] = f*y"}) {
     CAPTURE(statement);
     CHECK_MESSAGE(with(statement).code.empty(), with(statement).message);
   }
