@@ -73,7 +73,7 @@ std::optional<Unit> Scope::unit_of(ast::Definition const& definition) const {
   auto const* known = symbol == nullptr ? nullptr : std::get_if<DefinitionSymbol>(&symbol->what);
   if (known != nullptr && known->definition == &definition) return symbol->unit;
   Diagnostics said_when_declared;
-  return check_unit(definition.name.unit, said_when_declared, whole_numbers_);
+  return check_unit(definition.name.unit, said_when_declared);
 }
 
 std::optional<Typed> Scope::definition(ast::Definition const& definition) {
@@ -123,8 +123,6 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
   Symbol const* symbol = find(name);
   if (symbol == nullptr) {
     if (reference.primes == 0) {
-      if (auto const number = whole_numbers_.find(name); number != whole_numbers_.end())
-        return with_unit(graph_.constant(number->second), Unit{}, span);
       if (name == "pi") return literal(graph_, std::numbers::pi, span);
       if (name == "inf") return literal(graph_, std::numeric_limits<double>::infinity(), span);
     }

@@ -58,12 +58,8 @@ class Scope {
   /// A function of the user's; null for built-in ones.
   ast::FunctionDefinition const* find_function_definition(std::string const& name) const;
 
-  /// Names that stand for whole numbers here, in expressions and in the exponents of units.
-  void set_whole_numbers(WholeNumbers numbers) { whole_numbers_ = std::move(numbers); }
   /// What stands between brackets.
-  std::optional<Unit> unit(std::optional<ast::UnitExpression> const& expression) {
-    return check_unit(expression, diagnostics_, whole_numbers_);
-  }
+  std::optional<Unit> unit(std::optional<ast::UnitExpression> const& expression) { return check_unit(expression, diagnostics_); }
 
   /// Nothing when a diagnostic was added that leaves no value; of unknown unit after one that does.
   std::optional<Typed> expression(ast::Expression const& expression);
@@ -88,7 +84,6 @@ class Scope {
         diagnostics_(diagnostics),
         symbols_(other.symbols_),
         functions_(other.functions_),
-        whole_numbers_(other.whole_numbers_),
         units_(other.units_, diagnostics) {}
   void open_names(ast::Expression const& tree, std::set<std::string>& names, std::set<std::string>& seen) const;
   std::optional<Unit> unit_of(ast::Definition const& definition) const;
@@ -110,7 +105,6 @@ class Scope {
   std::map<ast::Definition const*, std::optional<Typed>> resolved_;
   std::vector<std::string> resolving_;
   Arguments const* arguments_ = nullptr;
-  WholeNumbers whole_numbers_;
   UnitCheck units_;
 };
 

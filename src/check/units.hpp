@@ -1,8 +1,6 @@
 // Unit expressions of the syntax tree to units; and what the checker knows of the unit of an expression.
 #pragma once
-#include <map>
 #include <optional>
-#include <string>
 
 #include "core/diagnostic.hpp"
 #include "core/unit.hpp"
@@ -10,14 +8,10 @@
 
 namespace sysid {
 
-/// Names that stand for whole numbers known when a model is used: the n of `model bouc_wen(n)`.
-using WholeNumbers = std::map<std::string, int>;
-
-/// The unit written between brackets, with its text as the user wrote it; nothing (and a diagnostic) for an unknown atom or an
-/// exponent that is not made of numbers and `known` names.
-std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics, WholeNumbers const& known = {});
-std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics,
-                               WholeNumbers const& known = {});
+/// The unit written between brackets, with its text as the user wrote it; nothing (and a diagnostic) for an unknown atom or a
+/// non-constant exponent.
+std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics);
+std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics);
 /// A declared unit of time measures time.
 void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics);
 

@@ -1,9 +1,5 @@
 // Units are compared wherever two of them meet: what is refused and where, what passes, and what is said to do.
-#include <chrono>
-
-#include "check/scope.hpp"
 #include "checking.hpp"
-#include "syntax/parse.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -223,36 +219,6 @@ TEST_CASE("what stays unchecked is listed with its reason") {
   CHECK(lines[3] == "y: its exponent is no fraction of small whole numbers");
   CHECK(lines[4] == "h: its unit is not known");
   CHECK(model_of(names + equation).unchecked.size() == 1);  // n
-}
-
-TEST_CASE("exponents of units may use whole numbers known to the checker") {
-  Diagnostics diagnostics;
-  Source const source("test.sysid", "model a {\nparameter alpha [N^(1-n)/m] = 1\nlet e = abs(alpha)^(n - 1)\n}\n");
-  auto const tree = parse(source, diagnostics);
-  REQUIRE(tree);
-  auto const& model = std::get<ast::Model>(tree->items.at(0));
-  auto const& alpha = std::get<ast::ParameterDeclaration>(model.statements.at(0)).name;
-  for (int n = 1; n <= 4; ++n) {
-    Dimension expected{};
-    expected[0] = {1 - n, 1};         // kg
-    expected[1] = {1 - n - 1, 1};     // m
-    expected[2] = {-2 * (1 - n), 1};  // s
-    auto const unit = check_unit(alpha.unit, diagnostics, {{"n", n}});
-    REQUIRE(unit);
-    CHECK(unit->dimension == expected);
-    CHECK(unit->text == (n == 1 ? "N^0/m" : n == 2 ? "N^-1/m" : n == 3 ? "N^-2/m" : "N^-3/m"));
-    Graph graph;
-    Scope scope(graph, diagnostics, {});
-    scope.set_whole_numbers({{"n", n}});
-    scope.declare(alpha.name, {ParameterSymbol{0}, scope.unit(alpha.unit), alpha.name.span});
-    auto const value = scope.expression(std::get<ast::Definition>(model.statements.at(1)).value);
-    REQUIRE(value);
-    CHECK(value->unit.dimension == power(*unit, {n - 1, 1}).dimension);
-  }
-  CHECK(diagnostics.all().empty());
-  CHECK_FALSE(check_unit(alpha.unit, diagnostics));
-  REQUIRE(diagnostics.all().size() == 1);
-  CHECK(diagnostics.all().front().code == "E2012");
 }
 
 TEST_CASE("Bouc-Wen with units checks for each whole exponent, and only with the unit that belongs to it") {
