@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "app/session.hpp"
+#include "core/files.hpp"
 #include "report/number.hpp"
 
 namespace sysid {
@@ -13,13 +15,8 @@ namespace {
 // Says which files of the folder have names like the one wanted.
 Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path, std::string message) {
   std::vector<std::string> near;
-  std::error_code ignored;
-  std::filesystem::path const inside = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  for (auto const& entry : std::filesystem::directory_iterator(inside, ignored)) {
-    std::string const name = entry.path().filename().string();
-    if (entry.is_regular_file(ignored)) near.push_back((std::filesystem::path(block.path).parent_path() / name).string());
-  }
-  std::sort(near.begin(), near.end());
+  for (std::filesystem::path const file : files_beside(path))
+    near.push_back((std::filesystem::path(block.path).parent_path() / file.filename()).string());
   std::string const guess = did_you_mean(block.path, near);
   return {Severity::error,
           "E4018",
@@ -77,7 +74,9 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
     if (!record) throw UnusableData(std::move(diagnostics));
     return std::move(*record);
   } catch (IoError const& error) {
-    throw UnreadableData(unreadable(block, request.path, error.what()));
+    Diagnostics diagnostics;
+    diagnostics.add(unreadable(block, request.path, error.what()));
+    throw UnreadableData(std::move(diagnostics));
   }
 }
 
@@ -105,15 +104,18 @@ Experiment cut(Record const& record, DataBlock const& block, int part, StartRule
   return make_experiment(record, name, from, range, rows.span);
 }
 
-std::vector<ExperimentData> load_experiments(CheckedFile const& file, std::vector<ExperimentUse> const& uses, Model const& model,
-                                             std::filesystem::path const& folder, StartRule start) {
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start) {
   std::vector<ExperimentData> all;
   for (ExperimentUse const& use : uses) {
-    DataBlock const& block = file.data[static_cast<std::size_t>(use.data)];
-    Record record = load_record(block, model, folder);
-    Experiment experiment = cut(record, block, use.part, start);
-    all.push_back({use, std::move(record), std::move(experiment)});
+    Record const& record = session.record(use.data, model);
+    all.push_back({use, record, cut(record, session.file.data[static_cast<std::size_t>(use.data)], use.part, start)});
   }
+  return all;
+}
+
+std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data) {
+  std::vector<Experiment> all;
+  for (ExperimentData const& each : data) all.push_back(each.experiment);
   return all;
 }
 

@@ -11,14 +11,17 @@
 
 namespace sysid {
 
-/// A data file that cannot be read, with the place in the text that names it: exit code 74.
+class Session;
+
+/// Data files that cannot be read, with the places in the text that name them: exit code 74.
 class UnreadableData : public IoError {
  public:
-  explicit UnreadableData(Diagnostic diagnostic) : IoError(diagnostic.message), diagnostic_(std::move(diagnostic)) {}
-  Diagnostic const& diagnostic() const { return diagnostic_; }
+  explicit UnreadableData(Diagnostics diagnostics)
+      : IoError(diagnostics.all().front().message), diagnostics_(std::move(diagnostics)) {}
+  Diagnostics const& diagnostics() const { return diagnostics_; }
 
  private:
-  Diagnostic diagnostic_;
+  Diagnostics diagnostics_;
 };
 
 /// Data that cannot be used, with all that is wrong with them.
@@ -46,8 +49,8 @@ struct ExperimentData {
   Experiment experiment;  // cut and started as the task says; its name is that of the data, "bench.train"
 };
 /// Reads them in order; UserError, UnusableData, UnreadableData as above.
-std::vector<ExperimentData> load_experiments(CheckedFile const& file, std::vector<ExperimentUse> const& uses, Model const& model,
-                                             std::filesystem::path const& folder, StartRule start);
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start);
+std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data);
 
 /// The parameters of a model over the experiments of a fit.
 std::shared_ptr<ParameterSpace const> parameter_space(Model const& model, std::vector<ExperimentUse> const& uses);

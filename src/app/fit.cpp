@@ -10,7 +10,9 @@
 #include "app/derived_draws.hpp"
 #include "app/experiments.hpp"
 #include "app/fit_checks.hpp"
+#include "app/fit_target.hpp"
 #include "app/preparation.hpp"
+#include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/results.hpp"
@@ -83,11 +85,11 @@ class Fit {
         compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method)),
         model_(compiled_->model),
         space_(parameter_space(model_, what.experiments)),
-        data_(load_experiments(session.file, what.experiments, model_, session.folder(), what.start)),
+        data_(load_experiments(session, what.experiments, what.model, what.start)),
         began_(std::chrono::steady_clock::now()) {}
 
   ExitCode run() {
-    refuse();
+    if (auto const why = refusal(task_, what_, model_, data_)) throw UserError(*why);
     RunContext context{seed_,   session_.progress,
                        ledger_, [this] { return session_.interrupted(); },
                        {},      session_.options.checkpoint_interval,
@@ -113,44 +115,7 @@ class Fit {
 
  private:
   std::unique_ptr<ModelTarget> make_target(SolverSettings const& solver) const {
-    TargetOptions options;
-    options.solver = solver;
-    options.start_rows = what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0;
-    options.execution = session_.options.execution;
-    options.describe = [this](NodeId node, Graph const& graph) { return session_.describe(what_.model, graph, node); };
-    std::vector<Experiment> experiments;
-    for (ExperimentData const& each : data_) experiments.push_back(each.experiment);
-    return std::make_unique<ModelTarget>(compiled_, space_, std::move(experiments), options);
-  }
-
-  // What cannot be sampled is refused before the first step.
-  void refuse() const {
-    auto const refused = [&](std::string code, std::string message, std::string help) {
-      return UserError({Severity::error, std::move(code), std::move(message), Label{task_.span, {}}, {}, std::move(help)});
-    };
-    if (backend_.refuse != nullptr)
-      if (std::string const why = backend_.refuse(what_.settings); !why.empty())
-        throw refused("E6203", fmt::format("these settings of `{}` do not go together: {}", backend_.name, why),
-                      "change one of them");
-    if (backend_.needs.proper_prior)
-      for (Parameter const& parameter : model_.parameters)
-        if (parameter.prior && !parameter.prior->row->proper)
-          throw refused("E6204",
-                        fmt::format("`{}` needs priors that can be drawn from; that of `{}` is {}", backend_.name, parameter.name,
-                                    parameter.prior->row->name),
-                        fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
-    if (space_->dimension() == 0)
-      throw refused("E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model_.name),
-                    "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`");
-    for (ExperimentData const& each : data_) {
-      Experiment const& experiment = each.experiment;
-      bool any = false;
-      for (auto const& channel : experiment.measured)
-        for (std::size_t i = 0; i < channel.size(); ++i) any = any || (experiment.scored[i] != 0 && !std::isnan(channel[i]));
-      if (!any)
-        throw refused("E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment.name),
-                      "choose other rows or columns");
-    }
+    return make_fit_target(session_, what_, compiled_, space_, experiments_of(data_), solver);
   }
 
   // Search and, unless the user fixed it, the step. False: interrupted.

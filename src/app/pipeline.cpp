@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
+#include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/results.hpp"
 #include "app/session.hpp"
@@ -30,6 +32,21 @@ std::string verb_of(Task const& task) {
                                                          : "predict";
 }
 
+// Names of the file in a task that it could have, so that the line can be copied.
+std::string nothing_to_do(Source const& source, CheckedFile const& file, std::vector<std::string> const& verbs) {
+  std::string text = verbs.empty() ? fmt::format("there is no task in {}\n", source.name())
+                                   : fmt::format("there is no {} task in {}\n", fmt::join(verbs, " or "), source.name());
+  std::string const model = file.models.empty() ? "MODEL" : file.models.front().name;
+  std::string const data = file.data.empty() ? "DATA" : file.data.front().name;
+  if (verbs.empty() || verbs.front() == "fit")
+    text += fmt::format("help: add one, for example `posterior = fit {} to {} with mh`\n", model, data);
+  else if (verbs.front() == "predict")
+    text += fmt::format("help: add one, for example `forecast = predict posterior on {}`\n", data);
+  else
+    text += fmt::format("help: add one, for example `truth = simulate {} with samples = 1000, rate = 1000 [Hz]`\n", model);
+  return text;
+}
+
 }  // namespace
 
 std::optional<CheckedFile> load(Source const& source, Diagnostics& diagnostics) {
@@ -52,7 +69,7 @@ std::string dump_stage(Source const& source, std::string const& stage, Diagnosti
 ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<std::string> const& verbs, RunOptions const& options,
                    Progress& progress, std::ostream& out, std::ostream& notices) {
   Session session(source, file, options, progress, out, notices);
-  auto const wanted = [&](Task const& task) {
+  auto const asked = [&](Task const& task) {
     return verbs.empty() || std::find(verbs.begin(), verbs.end(), verb_of(task)) != verbs.end();
   };
   // A simulate task leaves its record and nothing else.
@@ -72,12 +89,17 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
     if (auto const wrong = stored_otherwise(session, task, model, seed); wrong && options.resume) throw UserError(*wrong);
     return true;
   };
-  if (!verbs.empty() && std::none_of(file.tasks.begin(), file.tasks.end(), wanted)) {
-    notices << fmt::format("there is no {} task in {}\n", fmt::join(verbs, " or "), source.name());
+  if (std::none_of(file.tasks.begin(), file.tasks.end(), asked)) {
+    notices << nothing_to_do(source, file, verbs);
     return ExitCode::usage;
   }
+  std::set<Task const*> complete_already;
+  for (Task const& task : file.tasks)
+    if (asked(task) && options.resume && kept(task)) complete_already.insert(&task);
+  auto const wanted = [&](Task const& task) { return asked(task) && !complete_already.contains(&task); };
+  check_readiness(session, wanted).require();  // before old results are touched
   for (Task const& task : file.tasks) {
-    if (!wanted(task) || (options.resume && kept(task))) continue;
+    if (!wanted(task)) continue;
     if (std::holds_alternative<SimulateTask>(task.what) && kept(task) && !options.force)
       throw UserError({Severity::error,
                        "",
@@ -90,11 +112,8 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
   ExitCode worst = ExitCode::success;
   for (std::size_t i = 0; i < file.tasks.size(); ++i) {
     Task const& task = file.tasks[i];
+    if (complete_already.contains(&task)) notices << fmt::format("{}: complete, kept\n", task.name);
     if (!wanted(task)) continue;
-    if (options.resume && kept(task)) {
-      notices << fmt::format("{}: complete, kept\n", task.name);
-      continue;
-    }
     ExitCode const code = std::visit(
         [&](auto const& what) {
           using What = std::decay_t<decltype(what)>;

@@ -38,7 +38,7 @@ class Predict {
         compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method)),
         model_(compiled_->model),
         space_(parameter_space(model_, fit_.experiments)),
-        data_(load_experiments(session.file, what.experiments, model_, session.folder(), what.start)),
+        data_(load_experiments(session, what.experiments, fit_.model, what.start)),
         seed_(session.seed(task, what.seed)),
         wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {}
 

@@ -7,6 +7,7 @@
 #include <random>
 #include <thread>
 
+#include "app/experiments.hpp"
 #include "core/interrupt.hpp"
 
 namespace sysid {
@@ -15,6 +16,13 @@ std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_star
   auto& place = compiled_[{model, free_start, method}];
   if (!place) place = compile(file.models[static_cast<std::size_t>(model)], free_start, method);
   return place;
+}
+
+Record const& Session::record(int data, int model) {
+  auto const found = records_.find({data, model});
+  if (found != records_.end()) return found->second;
+  Record read = load_record(file.data[static_cast<std::size_t>(data)], file.models[static_cast<std::size_t>(model)], folder());
+  return records_.emplace(std::pair(data, model), std::move(read)).first->second;
 }
 
 std::uint64_t Session::seed(Task const& task, std::optional<std::uint64_t> const& stated) {

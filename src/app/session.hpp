@@ -11,6 +11,7 @@
 #include "check/checked.hpp"
 #include "core/progress.hpp"
 #include "core/source.hpp"
+#include "data/record.hpp"
 #include "inference/draws.hpp"
 #include "likelihood/compiled_model.hpp"
 
@@ -41,6 +42,8 @@ class Session {
   std::filesystem::path result_folder(Task const& task) const { return options.output / task.name; }
   /// Compiled on first use.
   std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method);
+  /// The record of a data block as a model reads it, read on first use. Throws as `load_record`.
+  Record const& record(int data, int model);
   /// The seed of a task: the command line's, the file's, or one drawn from the system and printed.
   std::uint64_t seed(Task const& task, std::optional<std::uint64_t> const& stated);
   /// A sub-expression in the user's words, for the ledger.
@@ -52,6 +55,7 @@ class Session {
 
  private:
   std::map<std::tuple<int, bool, std::string>, std::shared_ptr<CompiledModel const>> compiled_;
+  std::map<std::pair<int, int>, Record> records_;
   std::optional<std::uint64_t> drawn_seed_;
   std::uint64_t polls_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "app/check_file.hpp"
 #include "app/experiments.hpp"
 #include "app/explain.hpp"
 #include "app/pipeline.hpp"
@@ -57,12 +58,12 @@ int guarded(CommandLine const& line, Source const& source, Verb const& verb) {
     show(diagnostics, source, line);
     return code(ExitCode::user_error);
   } catch (UnreadableData const& error) {
-    Diagnostics diagnostics;
-    diagnostics.add(error.diagnostic());
-    show(diagnostics, source, line);
+    show(error.diagnostics(), source, line);
     return code(ExitCode::io);
   } catch (IoError const& error) {
-    std::cerr << "sysid: " << error.what() << '\n';
+    Diagnostics diagnostics;
+    diagnostics.add({Severity::error, "", error.what(), std::nullopt, {}, error.help()});
+    show(diagnostics, Source("sysid", ""), line);
     return code(ExitCode::io);
   } catch (std::bad_alloc const&) {
     std::cerr << "sysid: out of memory\n";
@@ -106,10 +107,16 @@ int check(CommandLine const& line) {
     auto const file = load(source, diagnostics);
     show(diagnostics, source, line);
     if (!file) return code(ExitCode::user_error);
-    std::cout << fmt::format("{}: {} model{}, {} data block{}, {} task{}, no errors\n", line.file, file->models.size(),
-                             file->models.size() == 1 ? "" : "s", file->data.size(), file->data.size() == 1 ? "" : "s",
-                             file->tasks.size(), file->tasks.size() == 1 ? "" : "s");
-    return code(ExitCode::success);
+    return guarded(line, source, [&] {
+      SilentProgress silent;
+      std::ostream nowhere(nullptr);
+      Session session(source, *file, line.run, silent, nowhere, nowhere);
+      CheckResult const result = check_file(session);
+      show(result.diagnostics, source, line);
+      std::cout << (line.error_format == "json" ? check_json(result.page) : check_text(result.page));
+      if (result.diagnostics.has_errors()) return code(result.unreadable ? ExitCode::io : ExitCode::user_error);
+      return code(grade(result.page) == Severity::error ? ExitCode::doubtful : ExitCode::success);
+    });
   });
 }
 
@@ -185,8 +192,10 @@ int main(int argument_count, char** arguments) {
   runs("simulate", "do its simulate tasks: make data", {"simulate"});
   runs("fit", "do its fit tasks", {"fit"});
   runs("predict", "do its predict tasks, from stored draws", {"predict"});
-  CLI::App* checking = app.add_subcommand("check", "say what is wrong with a file, without running it");
+  CLI::App* checking = app.add_subcommand("check", "say what is wrong with a file and what its data can tell, before any sampling");
   checking->add_option("file", line.file, "the .sysid file")->required();
+  checking->add_option("-o,--output", line.run.output, "folder for results, where simulate tasks leave data (default: results)");
+  checking->add_option("--seed", line.run.seed, "seed of the prior draws, in place of the file's");
   checking->callback([&] { exit = check(line); });
   CLI::App* formatting = app.add_subcommand("fmt", "print a file in canonical layout (comments are not kept)");
   formatting->add_option("file", line.file, "the .sysid file")->required();

@@ -79,14 +79,15 @@ class UserError : public std::exception {
   Diagnostic diagnostic_;
 };
 
-/// A file that cannot be read or written: exit code 74.
+/// A file that cannot be read or written: exit code 74. help: what to do; may be empty.
 class IoError : public std::exception {
  public:
-  explicit IoError(std::string what) : what_(std::move(what)) {}
+  explicit IoError(std::string what, std::string help = {}) : what_(std::move(what)), help_(std::move(help)) {}
   char const* what() const noexcept override { return what_.c_str(); }
+  std::string const& help() const { return help_; }
 
  private:
-  std::string what_;
+  std::string what_, help_;
 };
 
 }  // namespace sysid

@@ -6,12 +6,23 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
 #include "core/diagnostic.hpp"
 
 namespace sysid {
+
+std::vector<std::string> files_beside(std::filesystem::path const& path) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  std::filesystem::path const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (auto const& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.is_regular_file(ignored)) names.push_back((path.parent_path() / entry.path().filename()).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 namespace {
 
@@ -24,7 +35,10 @@ std::string reason(int error) {
 }
 
 [[noreturn]] void fail(std::string_view what, std::filesystem::path const& path, int error) {
-  throw IoError(fmt::format("cannot {} `{}`: {}", what, path.string(), reason(error)));
+  std::string help = what == "read" ? did_you_mean(path.string(), files_beside(path)) : std::string();
+  if (help.empty())
+    help = what == "read" ? "check the path and the permissions" : "check that the folder takes files and the disk has room";
+  throw IoError(fmt::format("cannot {} `{}`: {}", what, path.string(), reason(error)), help);
 }
 
 int open_file(std::filesystem::path const& path, int flags) {

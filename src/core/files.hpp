@@ -3,8 +3,12 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sysid {
+
+/// Paths of the files beside `path`, spelt as it is, in order: for "did you mean".
+std::vector<std::string> files_beside(std::filesystem::path const& path);
 
 /// The bytes of a file. IoError "cannot read `PATH`: reason" otherwise.
 std::string read_file(std::filesystem::path const& path);

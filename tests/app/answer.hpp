@@ -9,6 +9,7 @@
 
 #include "app/experiments.hpp"
 #include "app/pipeline.hpp"
+#include "app/readiness.hpp"
 
 namespace sysid::test {
 
@@ -85,9 +86,12 @@ inline Answer answer(std::string const& name, std::string const& text, Depth dep
     auto const file = load(source, diagnostics);
     if (!file) answer.exit = ExitCode::user_error;
     if (file && depth == Depth::data)
-      for (Task const& task : file->tasks)
-        if (auto const* fit = std::get_if<FitTask>(&task.what))
-          load_experiments(*file, fit->experiments, file->models[static_cast<std::size_t>(fit->model)], {}, fit->start);
+    {
+      SilentProgress progress;
+      std::ostringstream ignored;
+      Session session(source, *file, options, progress, ignored, ignored);
+      check_readiness(session, [](Task const& task) { return std::holds_alternative<FitTask>(task.what); }).require();
+    }
     if (file && depth == Depth::run) {
       SilentProgress progress;
       std::ostringstream summaries, notices;
@@ -101,9 +105,9 @@ inline Answer answer(std::string const& name, std::string const& text, Depth dep
   } catch (UserError const& error) {
     failed(error.diagnostic(), ExitCode::user_error);
   } catch (UnreadableData const& error) {
-    failed(error.diagnostic(), ExitCode::io);
+    for (Diagnostic const& each : error.diagnostics().all()) failed(each, ExitCode::io);
   } catch (IoError const& error) {
-    unlocated = std::string("sysid: ") + error.what() + "\n";
+    unlocated = std::string("sysid: error: ") + error.what() + "\nhelp: " + error.help() + "\n";
     answer.exit = ExitCode::io;
   }
   answer.messages = render(diagnostics, source) + unlocated;

@@ -17,6 +17,7 @@
 #include <map>
 #include <regex>
 
+#include "app/check_file.hpp"
 #include "app/markdown.hpp"
 #include "app/pipeline.hpp"
 #include "distribution/distribution.hpp"
@@ -147,6 +148,10 @@ std::string const& printed_by(std::string const& command) {
   options.figures = false;
   SilentProgress progress;
   std::ostringstream out, notices;
+  if (words[1] == "check") {
+    Session session(source, *file, options, progress, out, notices);
+    return place->second = check_text(check_file(session).page);
+  }
   run_tasks(source, *file, words[1] == "run" ? std::vector<std::string>{} : std::vector{words[1]}, options, progress, out, notices);
   fs::remove_all(folder);
   return place->second = out.str();

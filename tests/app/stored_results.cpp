@@ -130,14 +130,14 @@ TEST_CASE("an output folder that cannot be made or written is an error of input 
     CAPTURE(folder);
     Answer const shown = run("k", folder);
     CHECK(shown.exit == ExitCode::io);
-    CHECK(shown.messages.starts_with("sysid: cannot make the folder `OUT/posterior`: "));
+    CHECK(shown.messages.starts_with("sysid: error: cannot make the folder `OUT/posterior`: "));
   }
   TemporaryFolder const output;
   std::filesystem::permissions(output.path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   if (::geteuid() != 0) {  // nothing is read-only to root
     Answer const shown = run("k", output.path / "x");
     CHECK(shown.exit == ExitCode::io);
-    CHECK(shown.messages.starts_with("sysid: cannot make the folder `OUT/posterior`: permission denied"));
+    CHECK(shown.messages.starts_with("sysid: error: cannot make the folder `OUT/posterior`: permission denied"));
   }
 }
 
@@ -154,6 +154,8 @@ TEST_CASE("a disk that takes no byte is found before any work, and nothing half-
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
   ::signal(SIGXFSZ, before_signal);
   CHECK(shown.exit == ExitCode::io);
-  CHECK(shown.messages == "sysid: cannot write `OUT/posterior/claim`: file too large\n");
+  CHECK(shown.messages ==
+        "sysid: error: cannot write `OUT/posterior/claim`: file too large\n"
+        "help: check that the folder takes files and the disk has room\n");
   CHECK(std::filesystem::is_empty(output.path / "posterior"));
 }

@@ -1,0 +1,101 @@
+// The checks of a file in order, each task on its own.
+#include "app/check_file.hpp"
+
+#include <fmt/format.h>
+
+#include "app/experiments.hpp"
+#include "app/readiness.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double band_limited_reach_of_rate = 0.45;  // as InputSignal says
+
+// The data of a task that are there, each described; nothing when some are still to be made.
+std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData const& task, TaskPage& page) {
+  bool complete = true;
+  std::vector<ExperimentUse> there;
+  for (ExperimentUse const& use : *task.experiments) {
+    DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+    Task const* made = maker(session, block);
+    if (made == nullptr || std::filesystem::exists(session.folder() / block.path)) {
+      there.push_back(use);
+      continue;
+    }
+    complete = false;
+    CoveragePage coverage;
+    coverage.name = data_name(block, use.part);
+    coverage.file = block.path;
+    coverage.made_by = made->name;
+    page.coverage.push_back(std::move(coverage));
+  }
+  Model const& model = session.file.models[static_cast<std::size_t>(task.model)];
+  std::vector<ExperimentData> data = load_experiments(session, there, task.model, task.start);
+  for (ExperimentData const& each : data)
+    page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
+  if (!complete) return std::nullopt;
+  return data;
+}
+
+void check_bands(TaskPage& page) {
+  for (CoveragePage const& coverage : page.coverage)
+    for (CoveragePage::Input const& input : coverage.inputs)
+      if (input.rule == rule_name(InputRule::band_limited) && input.high > band_limited_reach_of_rate * coverage.rate)
+        page.findings.push_back(
+            {Severity::warning, "input_band",
+             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `band_limited` is exact to 0.45 of "
+                         "it only",
+                         input.name, coverage.name, input.high, input.high / coverage.rate),
+             "was it held between the samples, or sampled without a filter against aliases?"});
+}
+
+TaskPage check_task(Session& session, Task const& task) {
+  CheckedFile const& file = session.file;
+  TaskPage page;
+  page.name = task.name;
+  auto const data = data_of(file, task);
+  if (auto const* made = std::get_if<SimulateTask>(&task.what)) {
+    page.what = fmt::format("simulate {}: {} samples at {:.6g} Hz into {}", file.models[static_cast<std::size_t>(made->model)].name,
+                            made->samples, 1 / made->step, made->file);
+  } else if (auto const* fit = std::get_if<FitTask>(&task.what)) {
+    Model const& model = file.models[static_cast<std::size_t>(fit->model)];
+    page.what = fmt::format("fit {} to {} with {}", model.name, data_names(file, fit->experiments), fit->backend);
+    auto const experiments = cover(session, *data, page);
+    check_bands(page);
+    if (experiments && !refusal(task, *fit, model, *experiments)) look_ahead(session, *fit, *experiments, page);
+  } else {
+    auto const& prediction = std::get<PredictTask>(task.what);
+    page.what = fmt::format("predict {} on {}", file.tasks[static_cast<std::size_t>(prediction.fit)].name,
+                            data_names(file, prediction.experiments));
+    cover(session, *data, page);
+  }
+  return page;
+}
+
+}  // namespace
+
+CheckResult check_file(Session& session) {
+  CheckResult result;
+  result.page.file = session.source.name();
+  result.page.data_blocks = static_cast<int>(session.file.data.size());
+  for (Model const& model : session.file.models) result.page.models.push_back(describe_structure(session.source, model));
+  Readiness const readiness = check_readiness(session, [&](Task const& task) {
+    // Data that a simulate task makes anew are checked when they are there.
+    auto const* made = std::get_if<SimulateTask>(&task.what);
+    return made == nullptr || !std::filesystem::exists(session.result_folder(task) / made->file);
+  });
+  result.diagnostics = readiness.diagnostics;
+  result.unreadable = readiness.unreadable;
+  for (Task const& task : session.file.tasks) {
+    try {
+      result.page.tasks.push_back(check_task(session, task));
+    } catch (IoError const&) {  // said by `readiness`
+      result.page.tasks.push_back({task.name, "its data cannot be read", {}, {}, {}, {}, {}});
+    } catch (UserError const&) {
+      result.page.tasks.push_back({task.name, "its data cannot be used", {}, {}, {}, {}, {}});
+    }
+  }
+  return result;
+}
+
+}  // namespace sysid

@@ -1,0 +1,28 @@
+// `sysid check`: what can be known of a file before any sampling.
+#pragma once
+#include "app/experiments.hpp"
+#include "app/session.hpp"
+#include "report/check_page.hpp"
+
+namespace sysid {
+
+/// Structure of all models, the data of all tasks, and for each fit what prior draws predict, which step they need and what the
+/// data can tell about the parameters. What is wrong with data or settings is added to `diagnostics`; tasks without usable data are
+/// left at that. `unreadable` is set when the only errors are files that cannot be read.
+struct CheckResult {
+  CheckPage page;
+  Diagnostics diagnostics;
+  bool unreadable = false;
+};
+CheckResult check_file(Session& session);
+
+/// Equations, unknowns and everything declared, in the user's words where the text has them.
+ModelPage describe_structure(Source const& source, Model const& model);
+
+/// Rows, gaps, rates and the band of each input.
+CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model);
+
+/// Simulates prior draws of a fit with its input and fills the page's prior, information and findings.
+void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, TaskPage& page);
+
+}  // namespace sysid

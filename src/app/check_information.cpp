@@ -1,0 +1,140 @@
+// Findings about identifiability: named once each, with the number of draws that show them.
+#include "app/check_information.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sysid {
+namespace {
+
+constexpr double barely_narrowed = 0.5;
+constexpr double strong_correlation = 0.99;
+
+class Description {
+ public:
+  Description(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals, std::string const& channels,
+              TaskPage& page)
+      : coordinates_(coordinates), locals_(locals), channels_(channels), page_(page) {
+    for (JudgedParameter const& each : coordinates)
+      if (each.role == ParameterRole::response) asked_.push_back(each.words);
+    null_.assign(asked_.size(), false);
+    for (LocalSlopes const& local : locals) expectations_.push_back(expect(local));
+  }
+
+  void fill() {
+    name_null_directions();
+    std::size_t i = 0;
+    for (JudgedParameter const& coordinate : coordinates_) {
+      InformationPage::Line line{coordinate.words.name, coordinate.words.unit, coordinate.relative, 0, 0, 0, {}};
+      line.prior_sd = coordinate.relative ? coordinate.spread : coordinate.spread / coordinate.words.scale;
+      if (coordinate.role == ParameterRole::response)
+        expect_knowledge(i++, line);
+      else
+        line.instead = unasked(coordinate);
+      page_.information->lines.push_back(std::move(line));
+    }
+    for (std::size_t a = 0; a < asked_.size(); ++a)
+      for (std::size_t b = a + 1; b < asked_.size(); ++b)
+        if (!null_[a] && !null_[b]) name_correlation(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
+
+ private:
+  void add(Severity severity, std::string code, std::string message, std::string help) {
+    page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
+  }
+
+  void name_null_directions() {
+    NullSpace const space = find_null_space(locals_);
+    for (NullDirection const& direction : space.directions) {
+      std::string const text = words(direction, asked_, channels_);
+      page_.information->null_directions.push_back(text);
+      for (NullDirection::Part const& part : direction.parts) null_[static_cast<std::size_t>(part.parameter)] = true;
+      add(Severity::error, "not_identifiable", fmt::format("{} (at {} of {} prior draws)", text, space.draws, space.draws),
+          direction.kind == NullDirection::Kind::no_influence
+              ? "fix it to a value (`=` in place of `~`), measure what it acts on, or excite it"
+              : "fix one of them to a known value (`=` in place of `~`), or measure what tells them apart");
+    }
+    int const size = static_cast<int>(asked_.size());
+    page_.information->rank_low = page_.information->rank_high = size;
+    if (space.dimensions.empty()) return;
+    auto const [least, most] = std::minmax_element(space.dimensions.begin(), space.dimensions.end());
+    page_.information->rank_low = size - *most;
+    page_.information->rank_high = size - *least;
+  }
+
+  // The expected sd of asked parameter i over the draws.
+  void expect_knowledge(std::size_t i, InformationPage::Line& line) {
+    double least = 1, most = 0;
+    for (Expectation const& each : expectations_) {
+      least = std::min(least, each.shrinkage(static_cast<Eigen::Index>(i)));
+      most = std::max(most, each.shrinkage(static_cast<Eigen::Index>(i)));
+    }
+    line.low = least * line.prior_sd;
+    line.high = most * line.prior_sd;
+    if (null_[i]) line.instead = "not determined";
+    if (!null_[i] && least > barely_narrowed)
+      add(Severity::warning, "barely_narrowed",
+          fmt::format("the data will hardly narrow {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} prior draws)",
+                      line.name, 100 * least, 100 * most, locals_.size(), locals_.size()),
+          "its posterior will be its prior: state what is known of it, or fix it");
+  }
+
+  std::string unasked(JudgedParameter const& coordinate) {
+    if (coordinate.role == ParameterRole::noise) return "from the residuals";
+    if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
+    add(Severity::error, "not_identifiable", fmt::format("{} is used nowhere in the model", coordinate.words.name),
+        "remove it, or use it in an equation");
+    return "used nowhere";
+  }
+
+  // A pair of which little but a combination is known: at every draw, or at most of them with the same combination each time.
+  void name_correlation(Eigen::Index i, Eigen::Index j) {
+    std::vector<double> sizes, slopes;  // at the draws where they are confounded; dp_j / dp_i along the long axis, SI
+    for (std::size_t d = 0; d < locals_.size(); ++d) {
+      Expectation const& each = expectations_[d];
+      double const correlation = each.correlation(i, j);
+      if (std::abs(correlation) < strong_correlation) continue;
+      auto const sd = [&](Eigen::Index p) { return each.shrinkage(p) * locals_[d].spread(p) * locals_[d].scale(p); };
+      sizes.push_back(std::abs(correlation));
+      slopes.push_back((correlation > 0 ? 1 : -1) * sd(j) / sd(i));
+    }
+    if (2 * sizes.size() <= locals_.size()) return;
+    auto const [least, most] = std::minmax_element(slopes.begin(), slopes.end());
+    double const middle = (*least + *most) / 2;
+    bool const same = *most - *least < 0.2 * std::abs(middle);
+    if (!same && sizes.size() < locals_.size()) return;
+    std::string combination;
+    if (same) {
+      double slope = middle;
+      for (double const simple : {1.0, 2.0, 0.5})
+        if (std::abs(std::abs(middle) / simple - 1) < 0.1) slope = middle > 0 ? simple : -simple;
+      NullDirection const direction{NullDirection::Kind::sum, {{static_cast<int>(i), 1, 1}, {static_cast<int>(j), slope, slope}}};
+      combination = fmt::format("nearly only {} is determined, ", determined_combination(direction, asked_));
+    }
+    add(Severity::warning, "nearly_confounded",
+        fmt::format("{} and {} trade against each other: {}expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
+                    asked_[static_cast<std::size_t>(i)].name, asked_[static_cast<std::size_t>(j)].name, combination,
+                    *std::min_element(sizes.begin(), sizes.end()), *std::max_element(sizes.begin(), sizes.end()), sizes.size(),
+                    locals_.size()),
+        "fix one of them, or record what tells them apart; what depends on their combination alone is well known");
+  }
+
+  std::vector<JudgedParameter> const& coordinates_;
+  std::vector<LocalSlopes> const& locals_;
+  std::string const& channels_;
+  TaskPage& page_;
+  std::vector<ParameterWords> asked_;  // those that may show in the response
+  std::vector<bool> null_;             // of them, part of a null direction
+  std::vector<Expectation> expectations_;
+};
+
+}  // namespace
+
+void describe_information(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
+                          std::string const& channels, TaskPage& page) {
+  Description(coordinates, locals, channels, page).fill();
+}
+
+}  // namespace sysid

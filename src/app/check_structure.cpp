@@ -1,0 +1,73 @@
+// A model as declared: names and units from the checked model, priors and expressions as the user wrote them.
+#include <fmt/format.h>
+
+#include <map>
+
+#include "app/check_file.hpp"
+#include "syntax/parse.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+struct Texts {
+  std::vector<std::string> equations;
+  std::map<std::string, std::string> parameters, channels, derived;
+};
+
+Texts texts_of(Source const& source, std::string const& model) {
+  Texts texts;
+  Diagnostics ignored;
+  auto const tree = parse(source, ignored);
+  if (!tree) return texts;
+  auto const call = [](ast::Call const& use) { return unparse(ast::Expression{{}, ast::Box<ast::Call>(use)}); };
+  for (ast::Item const& item : tree->items) {
+    auto const* found = std::get_if<ast::Model>(&item);
+    if (found == nullptr || found->name.text != model) continue;
+    for (ast::ModelStatement const& statement : found->statements) {
+      if (auto const* equation = std::get_if<ast::Equation>(&statement))
+        texts.equations.push_back(unparse(equation->left) + " = " + unparse(equation->right));
+      if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
+        texts.parameters[parameter->name.name.text] = parameter->prior   ? "~ " + call(*parameter->prior)
+                                                      : parameter->value ? "= " + unparse(*parameter->value)
+                                                                         : std::string();
+      if (auto const* observation = std::get_if<ast::Observation>(&statement))
+        texts.channels[observation->channel.name.text] = "~ " + call(observation->noise);
+      if (auto const* definition = std::get_if<ast::Definition>(&statement))
+        texts.derived[definition->name.name.text] = "= " + unparse(definition->value);
+    }
+  }
+  return texts;
+}
+
+}  // namespace
+
+ModelPage describe_structure(Source const& source, Model const& model) {
+  ModelPage page;
+  page.name = model.name;
+  page.title = model.title;
+  Texts texts = texts_of(source, model.name);
+  page.equations = std::move(texts.equations);
+  // "y", "y'", "y''" are one state of order 3; its unknown is y'''.
+  std::vector<std::pair<State const*, int>> orders;
+  for (State const& state : model.states) {
+    if (orders.empty() || !state.name.ends_with('\''))
+      orders.emplace_back(&state, 1);
+    else
+      ++orders.back().second;
+  }
+  for (auto const& [state, order] : orders) {
+    page.states.push_back({state->name, state->unit_text(), fmt::format("order {}", order)});
+    page.unknowns.push_back(state->name + std::string(static_cast<std::size_t>(order), '\''));
+  }
+  for (Quantity const& input : model.inputs) page.inputs.push_back({input.name, input.unit_text(), {}});
+  for (Channel const& channel : model.channels)
+    page.channels.push_back({channel.name, channel.unit_text(), texts.channels[channel.name]});
+  for (Parameter const& parameter : model.parameters)
+    page.parameters.push_back({parameter.name, parameter.unit_text(), texts.parameters[parameter.name]});
+  for (Derived const& derived : model.derived)
+    page.derived.push_back({derived.name, derived.unit_text(), texts.derived[derived.name]});
+  return page;
+}
+
+}  // namespace sysid

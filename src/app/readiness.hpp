@@ -1,0 +1,39 @@
+// What must hold before a task begins: its data can be read and cut, and its back end takes the model. Asked of all tasks of a file
+// at once, so that the last one does not fail after the first has sampled for an hour.
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "app/experiments.hpp"
+#include "app/session.hpp"
+#include "core/diagnostic.hpp"
+
+namespace sysid {
+
+/// Why a fit cannot begin: settings that do not go together, a prior that cannot be drawn from, nothing to fit or nothing measured.
+std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
+                                  std::vector<ExperimentData> const& data);
+
+struct Readiness {
+  Diagnostics diagnostics;
+  bool unreadable = false;  // all of them are files that cannot be read
+  /// UnreadableData or UnusableData when there is anything.
+  void require() const;
+};
+
+/// Reads the data of the wanted fit and predict tasks and asks `refusal`; each mistake once. Data that a wanted simulate task of
+/// the file makes are left for later.
+Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted);
+
+/// The data of a fit or predict task; nothing for others. `model`: which reads them.
+struct TaskData {
+  int model = 0;
+  std::vector<ExperimentUse> const* experiments = nullptr;
+  StartRule start;
+};
+std::optional<TaskData> data_of(CheckedFile const& file, Task const& task);
+
+/// The simulate task whose result the data block reads, or nullptr.
+Task const* maker(Session const& session, DataBlock const& block);
+
+}  // namespace sysid

@@ -1,0 +1,112 @@
+// The page of `sysid check` for a program: one JSON object.
+#include <nlohmann/json.hpp>
+
+#include "report/check_page.hpp"
+
+namespace sysid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json lines(std::vector<DeclaredLine> const& declared) {
+  Json out = Json::array();
+  for (DeclaredLine const& line : declared) out.push_back({{"name", line.name}, {"unit", line.unit}, {"text", line.text}});
+  return out;
+}
+
+Json model_object(ModelPage const& model) {
+  return {{"name", model.name},
+          {"title", model.title},
+          {"equations", model.equations},
+          {"unknowns", model.unknowns},
+          {"states", lines(model.states)},
+          {"inputs", lines(model.inputs)},
+          {"channels", lines(model.channels)},
+          {"parameters", lines(model.parameters)},
+          {"derived", lines(model.derived)},
+          {"unchecked_units", model.unchecked}};
+}
+
+Json coverage_object(CoveragePage const& data) {
+  Json inputs = Json::array(), channels = Json::array();
+  for (CoveragePage::Input const& input : data.inputs)
+    inputs.push_back(
+        {{"name", input.name}, {"rule", input.rule}, {"constant", input.constant}, {"band_hz", {input.low, input.high}}});
+  for (CoveragePage::Channel const& channel : data.channels)
+    channels.push_back({{"name", channel.name},
+                        {"unit", channel.unit},
+                        {"measured", channel.measured},
+                        {"missing", channel.missing},
+                        {"range", channel.range}});
+  return {{"name", data.name},    {"file", data.file},         {"made_by", data.made_by}, {"rows", data.rows},
+          {"first", data.first},  {"last", data.last},         {"scored", data.scored},   {"start_rows", data.start_rows},
+          {"rate_hz", data.rate}, {"equal_steps", data.equal}, {"inputs", inputs},        {"channels", channels}};
+}
+
+Json prior_object(PriorPage const& prior) {
+  Json failures = Json::array(), channels = Json::array();
+  for (Failure const& failure : prior.failures)
+    failures.push_back({{"class", name(failure.kind)}, {"where", failure.where}, {"count", failure.count}, {"time", failure.time}});
+  for (PriorPage::Channel const& channel : prior.channels)
+    channels.push_back({{"name", channel.name},
+                        {"unit", channel.unit},
+                        {"range_q5", channel.low},
+                        {"range_median", channel.middle},
+                        {"range_q95", channel.high},
+                        {"measured_range", channel.measured}});
+  return {{"draws", prior.draws}, {"failed", prior.failed}, {"failures", failures}, {"channels", channels}};
+}
+
+Json information_object(InformationPage const& page) {
+  Json parameters = Json::array(), moves = Json::array();
+  for (InformationPage::Line const& line : page.lines) {
+    Json each = {{"name", line.name}, {"unit", line.unit}, {"relative", line.relative}, {"prior_sd", line.prior_sd}};
+    if (line.instead.empty())
+      each["expected_sd"] = {line.low, line.high};
+    else
+      each["instead"] = line.instead;
+    parameters.push_back(std::move(each));
+  }
+  for (auto const& [solver, move] : page.moves) moves.push_back({{"solver", solver}, {"move_sd", move}});
+  return {{"draws", page.draws},
+          {"rows", page.rows},
+          {"rank", {page.rank_low, page.rank_high}},
+          {"noise", page.noise},
+          {"parameters", parameters},
+          {"null_directions", page.null_directions},
+          {"solvers", moves},
+          {"stated_solver", page.stated},
+          {"advised_solver", page.advised}};
+}
+
+Json task_object(TaskPage const& task) {
+  Json findings = Json::array(), data = Json::array();
+  for (CoveragePage const& coverage : task.coverage) data.push_back(coverage_object(coverage));
+  for (Finding const& finding : task.findings)
+    findings.push_back({{"severity", finding.severity == Severity::error     ? "error"
+                                     : finding.severity == Severity::warning ? "warning"
+                                                                             : "note"},
+                        {"code", finding.code},
+                        {"message", finding.message},
+                        {"help", finding.help}});
+  return {{"name", task.name},
+          {"what", task.what},
+          {"data", data},
+          {"prior", task.prior ? prior_object(*task.prior) : Json(nullptr)},
+          {"information", task.information ? information_object(*task.information) : Json(nullptr)},
+          {"left_out", task.left_out},
+          {"findings", findings}};
+}
+
+}  // namespace
+
+std::string check_json(CheckPage const& page) {
+  Json models = Json::array(), tasks = Json::array();
+  for (ModelPage const& model : page.models) models.push_back(model_object(model));
+  for (TaskPage const& task : page.tasks) tasks.push_back(task_object(task));
+  Json const all = {{"file", page.file}, {"models", models}, {"tasks", tasks}};
+  // The user's text may hold any bytes; what is not finite is null.
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sysid

@@ -1,0 +1,102 @@
+// What is known of a file before any sampling, as plain data, and as a page for a person or JSON for a program.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/ledger.hpp"
+#include "inference/finding.hpp"
+
+namespace sysid {
+
+/// Something declared: its name, unit and, in the user's words, what is said about it.
+struct DeclaredLine {
+  std::string name, unit, text;
+};
+
+struct ModelPage {
+  std::string name, title;
+  std::vector<std::string> equations, unknowns;  // "m*y'' + k*y = x"; "y''"
+  std::vector<DeclaredLine> states;              // text: "order 2"
+  std::vector<DeclaredLine> inputs, channels, parameters, derived;
+  std::vector<std::string> unchecked;  // places whose units could not be compared, in the user's words
+};
+
+/// The rows of a record that a task uses.
+struct CoveragePage {
+  std::string name, file, made_by;  // made_by: the simulate task that makes the file, when it is not there yet
+  int rows = 0, first = 0, last = 0, scored = 0, start_rows = 0;
+  double rate = 0;    // Hz, mean
+  bool equal = true;  // steps
+  struct Input {
+    std::string name, unit, rule;
+    double low = 0, high = 0;  // Hz: between them lies 99 % of the power
+    bool constant = false;
+  };
+  std::vector<Input> inputs;
+  struct Channel {
+    std::string name, unit;
+    int measured = 0, missing = 0;  // of the scored samples
+    double range = 0;               // largest less smallest, declared unit
+  };
+  std::vector<Channel> channels;
+};
+
+/// What draws of the prior predict with the actual input.
+struct PriorPage {
+  int draws = 0, failed = 0;
+  std::vector<Failure> failures;
+  struct Channel {
+    std::string name, unit;                // "displacement", "displacement on bare.train" where there are several experiments
+    double low = 0, middle = 0, high = 0;  // 5, 50 and 95 % of the draws' ranges, declared unit
+    double measured = 0;
+  };
+  std::vector<Channel> channels;
+};
+
+/// What the data can tell about parameters, at draws of the prior whose response is of the size measured.
+struct InformationPage {
+  int draws = 0;                    // that were looked at
+  int rank_low = 0, rank_high = 0;  // of the slopes, over draws
+  int rows = 0;                     // only so many scored rows were looked at; 0: all
+  std::string noise;                // "beta = 3.2e10 1/m^2": at which the noise was taken
+  struct Line {
+    std::string name, unit;
+    bool relative = false;     // sds are shares of the value
+    double prior_sd = 0;       // declared unit, or a share
+    double low = 0, high = 0;  // expected posterior sd over the draws
+    std::string instead;       // in their place: "no influence", "noise of displacement"
+  };
+  std::vector<Line> lines;
+  std::vector<std::string> null_directions;
+  std::string refinement;                             // "half the step"
+  std::vector<std::pair<std::string, double>> moves;  // solver, largest move of a parameter [sd] when it is refined
+  std::string stated;                                 // in the file; empty: the fit chooses
+  std::string advised;                                // the first that settles the result; empty: none that was tried
+};
+
+struct TaskPage {
+  std::string name, what;
+  std::vector<CoveragePage> coverage;  // of each experiment
+  std::optional<PriorPage> prior;
+  std::optional<InformationPage> information;
+  std::string left_out;  // why something was not looked at
+  Findings findings;
+};
+
+struct CheckPage {
+  std::string file;
+  std::vector<ModelPage> models;
+  std::vector<TaskPage> tasks;
+  int data_blocks = 0;
+};
+
+/// The worst of the tasks' findings; note when there are none.
+Severity grade(CheckPage const& page);
+
+std::string check_text(CheckPage const& page);
+std::string check_json(CheckPage const& page);
+
+}  // namespace sysid

@@ -1,0 +1,173 @@
+// The page of `sysid check` for a person.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/elementary.hpp"
+#include "report/check_page.hpp"
+#include "report/number.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int margin = 14;
+
+std::string with_unit(std::string const& number, std::string const& unit) { return unit.empty() ? number : number + " " + unit; }
+std::string count(int number, std::string const& noun) { return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s"); }
+
+// "  label       first line", further lines below it.
+std::string entry(std::string const& label, std::vector<std::string> const& lines) {
+  std::string out;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    out += fmt::format("  {:<{}}{}\n", i == 0 ? label : std::string(), margin - 2, lines[i]);
+  return out;
+}
+
+std::string table(std::string const& label, std::vector<std::vector<std::string>> const& rows, int left) {
+  std::string const text = align_columns(rows, left);
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t const end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return entry(label, lines);
+}
+
+std::vector<std::vector<std::string>> rows_of(std::vector<DeclaredLine> const& lines) {
+  std::vector<std::vector<std::string>> rows;
+  for (DeclaredLine const& line : lines) rows.push_back({line.name, line.unit.empty() ? "" : "[" + line.unit + "]", line.text});
+  return rows;
+}
+
+std::string model_text(ModelPage const& model) {
+  std::string out = fmt::format("model {}{}\n", model.name, model.title.empty() ? "" : " \"" + model.title + "\"");
+  std::vector<std::string> equations = model.equations;
+  std::string unknowns;
+  for (std::string const& unknown : model.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + unknown;
+  if (!model.unknowns.empty())
+    equations.push_back(fmt::format("{} for {}: {}", count(static_cast<int>(model.equations.size()), "equation"),
+                                    count(static_cast<int>(model.unknowns.size()), "unknown"), unknowns));
+  out += entry(model.equations.size() == 1 ? "equation" : "equations", equations);
+  out += table(model.states.size() == 1 ? "state" : "states", rows_of(model.states), 3);
+  out += table(model.inputs.size() == 1 ? "input" : "inputs", rows_of(model.inputs), 3);
+  out += table(model.channels.size() == 1 ? "channel" : "channels", rows_of(model.channels), 3);
+  out += table(model.parameters.size() == 1 ? "parameter" : "parameters", rows_of(model.parameters), 3);
+  out += table("derived", rows_of(model.derived), 3);
+  out += entry("unchecked", model.unchecked);
+  return out;
+}
+
+std::string hertz(double value) { return significant(value, 3); }
+
+std::string coverage_text(CoveragePage const& data) {
+  if (!data.made_by.empty())
+    return entry("data", {fmt::format("{}: made by {}, not there yet: `sysid simulate` makes it", data.file, data.made_by)});
+  std::vector<std::string> lines = {
+      fmt::format("{}: rows {}..{} of {} scored{}, {}{} Hz", data.file, data.first, data.last, data.rows,
+                  data.start_rows > 0 ? fmt::format(" ({} before them estimate the start)", data.start_rows) : std::string(),
+                  data.equal ? "" : "on average ", fmt::format("{:.6g}", data.rate))};
+  for (CoveragePage::Input const& input : data.inputs)
+    lines.push_back(input.constant
+                        ? fmt::format("input {}, {}: constant", input.name, input.rule)
+                        : fmt::format("input {}, {}: 99 % of its power between {} and {} Hz, up to {} of the sampling rate",
+                                      input.name, input.rule, hertz(input.low), hertz(input.high),
+                                      fmt::format("{:.2f}", input.high / data.rate)));
+  for (CoveragePage::Channel const& channel : data.channels)
+    lines.push_back(channel.measured + channel.missing == 0
+                        ? fmt::format("{}: not in this data", channel.name)
+                        : fmt::format("{}: {} samples, {} missing, range {}", channel.name, channel.measured, channel.missing,
+                                      with_unit(significant(channel.range, 3), channel.unit)));
+  return entry("data", lines);
+}
+
+std::string prior_text(PriorPage const& prior) {
+  std::vector<std::string> lines = {prior.failed == 0 ? fmt::format("{} draws, all simulations stay finite", prior.draws)
+                                                      : fmt::format("{} of {} simulations fail", prior.failed, prior.draws)};
+  for (Failure const& failure : prior.failures)
+    lines.push_back(fmt::format("  {} x {}: {} (first at t = {} s)", failure.count, name(failure.kind), failure.where,
+                                significant(failure.time, 4)));
+  for (PriorPage::Channel const& channel : prior.channels)
+    lines.push_back(fmt::format("{}: nine in ten predict a range of {} to {}, the middle one {}; measured {}", channel.name,
+                                significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
+                                with_unit(significant(channel.measured, 2), channel.unit)));
+  return entry("prior draws", lines);
+}
+
+// An sd of a logarithm.
+std::string share(double value) {
+  return value < 0.5 ? significant(100 * value, 2) + " %" : "factor " + significant(elementary::exp(std::min(value, 700.0)), 2);
+}
+
+std::string information_text(InformationPage const& page) {
+  std::vector<std::vector<std::string>> rows = {{"", "prior sd", "expected sd after the fit"}};
+  for (InformationPage::Line const& line : page.lines) {
+    auto const number = [&](double value) { return line.relative ? share(value) : with_unit(significant(value, 2), line.unit); };
+    rows.push_back({line.name, number(line.prior_sd),
+                    !line.instead.empty() ? line.instead : fmt::format("{} to {}", number(line.low), number(line.high))});
+  }
+  std::string out = table("information", rows, 1);
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("at {} prior draws whose response is nearest in size to the data{}", page.draws,
+                              page.noise.empty() ? std::string() : "; noise as with " + page.noise));
+  if (page.rows > 0) lines.push_back(fmt::format("over the first {} scored rows; the whole record tells more", page.rows));
+  for (std::string const& direction : page.null_directions) lines.push_back(direction);
+  out += entry("", lines);
+  std::string moves;
+  for (auto const& [solver, move] : page.moves)
+    moves += fmt::format("{}{} sd from {}", moves.empty() ? "" : ", ", move > 5 ? "many" : significant(move, 2), solver);
+  if (!moves.empty())
+    out += entry("solver", {fmt::format("with {}, parameters move by {}", page.refinement, moves),
+                            page.advised.empty()  ? "none of these settles the result"
+                            : page.stated.empty() ? fmt::format("{} would do; the fit chooses for itself", page.advised)
+                                                  : fmt::format("{} would do; the file states {}", page.advised, page.stated)});
+  return out;
+}
+
+std::string task_text(TaskPage const& task) {
+  std::string out = fmt::format("task {}: {}\n", task.name, task.what);
+  for (CoveragePage const& data : task.coverage) out += coverage_text(data);
+  if (task.prior) out += prior_text(*task.prior);
+  if (task.information) out += information_text(*task.information);
+  if (!task.left_out.empty()) out += entry("left out", {task.left_out});
+  for (Severity const severity : {Severity::error, Severity::warning, Severity::note})
+    for (Finding const& finding : task.findings) {
+      if (finding.severity != severity) continue;
+      char const* const mark = severity == Severity::error ? "serious" : severity == Severity::warning ? "warning" : "note";
+      out += entry(mark, {finding.message});
+      if (!finding.help.empty()) out += entry("", {"what to do: " + finding.help});
+    }
+  return out;
+}
+
+}  // namespace
+
+Severity grade(CheckPage const& page) {
+  Severity worst = Severity::note;
+  for (TaskPage const& task : page.tasks)
+    for (Finding const& finding : task.findings)
+      if (static_cast<int>(finding.severity) < static_cast<int>(worst)) worst = finding.severity;
+  return worst;
+}
+
+std::string check_text(CheckPage const& page) {
+  std::string out;
+  for (ModelPage const& model : page.models) out += model_text(model) + "\n";
+  for (TaskPage const& task : page.tasks) out += task_text(task) + "\n";
+  int serious = 0, warnings = 0;
+  for (TaskPage const& task : page.tasks)
+    for (Finding const& finding : task.findings) {
+      serious += finding.severity == Severity::error;
+      warnings += finding.severity == Severity::warning;
+    }
+  out += fmt::format("{}: {}, {}, {}: ", page.file, count(static_cast<int>(page.models.size()), "model"),
+                     count(page.data_blocks, "data block"), count(static_cast<int>(page.tasks.size()), "task"));
+  if (serious == 0 && warnings == 0)
+    out += "nothing found\n";
+  else
+    out += fmt::format("{}{}{}\n", serious > 0 ? count(serious, "serious finding") : std::string(),
+                       serious > 0 && warnings > 0 ? ", " : "", warnings > 0 ? count(warnings, "warning") : std::string());
+  return out;
+}
+
+}  // namespace sysid

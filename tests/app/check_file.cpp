@@ -1,0 +1,239 @@
+// `sysid check`: silent on what is sound, and naming what is planted: null directions, wild priors, coarse steps, data that are not
+// there. SYSID_BLESS=1 rewrites the recorded pages.
+#include "app/check_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "app/running.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::filesystem::path const models = std::filesystem::path(SYSID_SOURCE_DIR) / "models";
+std::filesystem::path const golden = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/check";
+
+/// name: as if the text stood there, so that data beside it are found.
+CheckResult checked(std::filesystem::path const& name, std::string const& text, RunOptions options = {}) {
+  Source const source(name.string(), text);
+  Diagnostics diagnostics;
+  auto const file = load(source, diagnostics);
+  if (!file) throw UserError(diagnostics.all().front());
+  SilentProgress silent;
+  std::ostream nowhere(nullptr);
+  Session session(source, *file, options, silent, nowhere, nowhere);
+  return check_file(session);
+}
+
+TaskPage const& task(CheckResult const& result, std::string const& name) {
+  for (TaskPage const& page : result.page.tasks)
+    if (page.name == name) return page;
+  throw InternalError("no task " + name);
+}
+
+std::vector<std::string> messages(CheckResult const& result, std::string const& code) {
+  std::vector<std::string> out;
+  for (TaskPage const& page : result.page.tasks)
+    for (Finding const& finding : page.findings)
+      if (finding.code == code) out.push_back(finding.message);
+  return out;
+}
+
+std::string shipped(std::string const& name) { return read_file(models / name); }
+
+// The shipped text with the force's scale free as well.
+std::string free_gain() {
+  std::string const text = with(shipped("duffing/duffing.sysid"), "k3*y^3 = x", "k3*y^3 = b*x");
+  return with(with(text, "  parameter c ", "  parameter b ~ log_uniform(0.1, 10)\n  parameter c "), "truth  ", "# ");
+}
+
+// The shipped text with a quadratic spring.
+std::string quadratic() {
+  std::string const text = with(shipped("silverbox/silverbox.sysid"), " + k3*y^3 =", " + k2*y^2 + k3*y^3 =");
+  return with(text, "  parameter b ", "  parameter k2 [1/(V s^2)] ~ normal(0, sd = 1e6)\n  parameter b ");
+}
+
+std::string const bouc_wen = R"(
+model loop {
+  input x [N]
+  state y [m], z [N]
+  initial y = 0, y' = 0, z = 0
+  parameter m [kg] ~ log_uniform(0.1, 10)
+  parameter c [N s/m] ~ log_uniform(2, 200)
+  parameter k [N/m] ~ uniform(0, 2e4)
+  parameter A [N/m] ~ uniform(0, 2e4)
+  parameter alpha [1/(N m)] ~ log_uniform(0.1, 10)
+  parameter beta [1/(N m)] ~ uniform(-5, 5)
+  parameter sigma [m] ~ log_uniform(1e-7, 1e-4)
+  m*y'' + c*y' + k*y + z = x
+  z' = A*y' - alpha*abs(y')*abs(z)*z - beta*y'*abs(z)^2
+  observe displacement [m] ~ normal(y, sd = sigma)
+}
+data bench {
+  file "results/truth/loop.csv"
+  time t [s]
+  input x = x [N] hold zero_order
+  measure displacement = displacement [m]
+}
+truth = simulate loop with values(m = 1, c = 20, k = 0, A = 6680, alpha = 1.5, beta = -1.5), input x = gaussian(sd = 10), noise = 1 [percent], samples = 1000, rate = 1000 [Hz], seed = 1, file = "loop.csv"
+posterior = fit loop to bench with mh(), seed = 1
+)";
+
+}  // namespace
+
+TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior it looks at") {
+  int count = 0;
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(models)) {
+    if (entry.path().extension() != ".sysid") continue;
+    ++count;
+    CAPTURE(entry.path().string());
+    for (std::optional<std::uint64_t> const seed :
+         {std::optional<std::uint64_t>(), std::optional<std::uint64_t>(2), std::optional<std::uint64_t>(3)}) {
+      RunOptions options;
+      options.seed = seed;
+      CheckResult const result = checked(entry.path(), read_file(entry.path()), options);
+      CHECK(result.diagnostics.all().empty());
+      for (TaskPage const& page : result.page.tasks) {
+        for (Finding const& finding : page.findings) FAIL_CHECK(page.name << ": " << finding.message);
+        CHECK(page.left_out == "");
+        if (page.prior) CHECK(page.information->draws >= 2);
+      }
+    }
+  }
+  CHECK(count >= 4);
+}
+
+TEST_CASE("the page of shipped models is the recorded one, and JSON holds the same") {
+  bool const bless = std::getenv("SYSID_BLESS") != nullptr;
+  for (char const* name : {"duffing/duffing", "silverbox/silverbox"}) {
+    CAPTURE(name);
+    CheckResult const result = checked(models / (std::string(name) + ".sysid"), shipped(std::string(name) + ".sysid"));
+    std::string const page = with(check_text(result.page), models.string() + "/", "");
+    auto const record = golden / (std::filesystem::path(name).filename().string() + ".txt");
+    if (bless) write_file(record, page);
+    CHECK(page == read_file(record));
+    nlohmann::json const object = nlohmann::json::parse(check_json(result.page));
+    CHECK(object.at("models").at(0).at("name") == result.page.models.front().name);
+    CHECK(object.at("tasks").size() == result.page.tasks.size());
+  }
+}
+
+TEST_CASE("a force of free scale makes Duffing's parameters a group that scales together") {
+  CheckResult const result = checked(models / "duffing/gain.sysid", free_gain());
+  auto const said = messages(result, "not_identifiable");
+  REQUIRE(said.size() == 1);
+  CHECK(said[0] == "scaling m, b, c, k and k3 together leaves displacement unchanged (at 8 of 8 prior draws)");
+  CHECK(grade(result.page) == Severity::error);
+}
+
+TEST_CASE("a quadratic spring beside both offsets of the Silverbox is one null direction of four parameters") {
+  // Moving the origin of y by a: offset + a, k + 2 k2 a, k2 + 3 k3 a, u0 + (k/b) a leave the output as it was, whatever a.
+  CheckResult const result = checked(models / "silverbox/quadratic.sysid", quadratic());
+  auto const said = messages(result, "not_identifiable");
+  REQUIRE(said.size() == 1);
+  std::string const names = said[0].substr(0, said[0].find(" trade"));
+  for (char const* name : {"k", "k2", "u0", "offset"})
+    CHECK_MESSAGE((", " + with(names, " and ", ", ") + ",").find(std::string(", ") + name + ",") != std::string::npos, names);
+}
+
+TEST_CASE("a linear spring beside a Bouc-Wen loop is nearly confounded with the loop's own stiffness") {
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "loop.sysid", bouc_wen, options, {"simulate"});
+  auto const said = messages(checked(folder.path() / "loop.sysid", bouc_wen, options), "nearly_confounded");
+  REQUIRE(said.size() == 1);
+  CHECK(said[0].find("k and A trade against each other: nearly only k + A is determined") == 0);
+  // Without the spring nothing is confounded.
+  std::string const without = with(with(bouc_wen, "parameter k [N/m] ~ uniform(0, 2e4)", "constant k [N/m] = 0"), "k = 0, ", "");
+  CheckResult const sound = checked(folder.path() / "loop.sysid", without, options);
+  CHECK(messages(sound, "nearly_confounded").empty());
+  CHECK(messages(sound, "not_identifiable").empty());
+}
+
+TEST_CASE("what has no influence is said, and apart from it what is used nowhere") {
+  std::string const text = with(shipped("duffing/duffing.sysid"), "  parameter c ",
+                                "  parameter idle ~ normal(0, sd = 1)\n  parameter late ~ log_uniform(1, 10)\n  parameter c ");
+  std::string const never = with(with(text, "k3*y^3 = x", "k3*y^3 + late*max(abs(y) - 1, 0) = x"), "truth  ", "# ");
+  auto const said = messages(checked(models / "duffing/idle.sysid", never), "not_identifiable");
+  REQUIRE(said.size() == 2);
+  CHECK(said[0] == "late has no influence on displacement with this input (at 8 of 8 prior draws)");
+  CHECK(said[1] == "idle is used nowhere in the model");
+}
+
+TEST_CASE("data in another unit than they were recorded in are seen in the prior's predictions") {
+  std::string const text =
+      with(shipped("duffing/duffing.sysid"), "displacement = displacement [m]", "displacement = displacement [km]");
+  auto const said = messages(checked(models / "duffing/unit.sysid", text), "prior_far_from_data");
+  REQUIRE(said.size() == 1);
+  CHECK(said[0].find("displacement") != std::string::npos);
+  CHECK(said[0].find("smaller") != std::string::npos);
+}
+
+TEST_CASE("a prior that reaches where the model diverges is said with the term that does") {
+  std::string const text =
+      with(with(shipped("duffing/duffing.sysid"), "log_uniform(5e8, 5e10)", "uniform(-5e12, -5e11)"), "truth  ", "# ");
+  CheckResult const result = checked(models / "duffing/softening.sysid", text);
+  REQUIRE(messages(result, "prior_fails").size() == 1);
+  CHECK(task(result, "posterior").prior->failures.front().where.find("y^3") != std::string::npos);
+}
+
+TEST_CASE("steps that the file states too coarse raise a warning with a number that would do") {
+  std::string const text = with(shipped("silverbox/silverbox.sysid"), "thin = 4)", "thin = 4), substeps = 1");
+  CheckResult const result = checked(models / "silverbox/coarse.sysid", text);
+  REQUIRE(messages(result, "integration_step").size() == 1);
+  InformationPage const& information = *task(result, "posterior").information;
+  CHECK(information.moves.size() > 1);
+  CHECK_FALSE(information.advised.empty());
+}
+
+TEST_CASE("what is wrong with the data of several tasks is said at once, and the sound tasks are still looked at") {
+  std::string const text = with(shipped("duffing/duffing.sysid"), "test = rows 501..1500", "test = rows 501..9500");
+  CheckResult const result = checked(models / "duffing/rows.sysid", text);
+  REQUIRE(result.diagnostics.all().size() == 1);
+  CHECK(result.diagnostics.all().front().code == "E4016");
+  CHECK_FALSE(result.unreadable);
+  CHECK(task(result, "posterior").information);
+  CHECK(task(result, "forecast").coverage.empty());
+}
+
+TEST_CASE("data that a task of the file will make are said to be made by it") {
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  CheckResult const result = checked(folder.path() / "loop.sysid", bouc_wen, options);
+  CHECK(result.diagnostics.all().empty());
+  CHECK(task(result, "posterior").coverage.at(0).made_by == "truth");
+  CHECK_FALSE(task(result, "posterior").information);
+}
+
+TEST_CASE("missing samples are counted per channel, and where the power of an input lies") {
+  TemporaryFolder folder;
+  std::string table = "t,u,y\n";
+  for (int i = 0; i < 400; ++i) {
+    // A sine of 5 Hz sampled at 100 Hz.
+    double const t = i / 100.0, u = elementary::sin(2 * 3.14159265358979 * 5 * t);
+    table += std::to_string(t) + "," + std::to_string(u) + "," + (i % 40 == 0 ? std::string() : std::to_string(0.5 * u)) + "\n";
+  }
+  write_file(folder.path() / "sine.csv", table);
+  std::string const text = R"(
+model lag { input u; state y; initial y = 0; parameter k ~ log_uniform(0.1, 1000); y' = k*(u - y); observe out ~ normal(y, sd = 0.1) }
+data bench { file "sine.csv"; time t [s]; input u = u hold linear; measure out = y; split late = rows 101..400 }
+posterior = fit lag to bench.late with map
+)";
+  CheckResult const result = checked(folder.path() / "lag.sysid", text);
+  CoveragePage const& data = task(result, "posterior").coverage.at(0);
+  CHECK(data.first == 101);
+  CHECK(data.scored == 300);
+  CHECK(data.channels.front().missing == 7);  // rows 121, 161, ..., 361
+  CHECK(data.channels.front().measured == 293);
+  CHECK(data.rate == doctest::Approx(100).epsilon(1e-9));
+  // A record of T = 4 s spreads a sine: beyond B to one side lies 1/(2 pi^2 T B) of its power, 0.5 % from 2.5 Hz on.
+  CHECK(data.inputs.front().low > 2);
+  CHECK(data.inputs.front().low < 5);
+  CHECK(data.inputs.front().high > 5);
+  CHECK(data.inputs.front().high < 8);
+}

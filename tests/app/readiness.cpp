@@ -1,0 +1,70 @@
+// Data of all tasks are looked at before the first task begins.
+#include <doctest/doctest.h>
+
+#include "answer.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+std::string const model =
+    "model decay {\n  state y\n  initial y = 1\n  parameter k ~ log_uniform(0.1, 10)\n  y' = -k*y\n"
+    "  observe size ~ normal(y, sd = 0.1)\n}\n";
+std::string const dish = "data dish {\n  file \"data/growth.csv\"\n  time t [s]\n  measure size = y\n}\n";
+std::string const fit = "posterior = fit decay to dish with mh(samples = 60, burn_in = 20, thin = 1, chains = 2), seed = 1\n";
+
+Answer run(std::string const& text, std::filesystem::path const& output, RunOptions options = {}) {
+  WorkingFolder const here(error_examples);
+  return answer("example.sysid", text, Depth::run, output, std::move(options));
+}
+
+}  // namespace
+
+TEST_CASE("mistakes in the data of any task are all reported before the first task begins") {
+  TemporaryFolder const output;
+  std::string const missing = "data gone { file \"data/gone.csv\"; time t [s]; measure size = y }\n";
+  std::string const beyond = "data cut { file \"data/growth.csv\"; time t [s]; measure size = y; split late = rows 5..9999 }\n";
+  Answer const shown =
+      run(model + dish + missing + beyond + fit + "a = predict posterior on gone with draws(5)\n" +
+              "b = predict posterior on cut.late with draws(5)\n" + "c = predict posterior on gone with draws(6)\n",
+          output.path);
+  CHECK(shown.exit == ExitCode::user_error);
+  CHECK(count(shown.messages, "error[E4018]") == 1);
+  CHECK(count(shown.messages, "error[E4016]") == 1);
+  CHECK_FALSE(std::filesystem::exists(output.path / "posterior"));
+}
+
+TEST_CASE("files that cannot be read are an input error of their own") {
+  TemporaryFolder const output;
+  std::string const missing = "data dish { file \"data/gone.csv\"; time t [s]; measure size = y }\n";
+  CHECK(run(model + missing + fit, output.path).exit == ExitCode::io);
+}
+
+TEST_CASE("old results outlive a forced run whose data cannot be read") {
+  TemporaryFolder const output;
+  REQUIRE(run(model + dish + fit, output.path).exit <= ExitCode::doubtful);
+  std::string const before = content(output.path / "posterior" / "draws_1.csv");
+  REQUIRE_FALSE(before.empty());
+  RunOptions options;
+  options.force = true;
+  std::string const beyond = "data late { file \"data/growth.csv\"; time t [s]; measure size = y; split end = rows 5..9999 }\n";
+  CHECK(run(model + dish + beyond + fit + "a = predict posterior on late.end with draws(5)\n", output.path, options).exit ==
+        ExitCode::user_error);
+  CHECK(content(output.path / "posterior" / "draws_1.csv") == before);
+}
+
+TEST_CASE("a file without tasks says which it could have") {
+  WorkingFolder const here(error_examples);
+  Source const source("example.sysid", model + dish);
+  Diagnostics diagnostics;
+  auto const file = load(source, diagnostics);
+  REQUIRE(file);
+  TemporaryFolder const output;
+  RunOptions options;
+  options.output = output.path;
+  SilentProgress progress;
+  std::ostringstream summaries, notices;
+  CHECK(run_tasks(source, *file, {}, options, progress, summaries, notices) == ExitCode::usage);
+  CHECK(notices.str() == "there is no task in example.sysid\nhelp: add one, for example `posterior = fit decay to dish with mh`\n");
+}
