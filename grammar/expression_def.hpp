@@ -84,6 +84,7 @@ constexpr auto take_group = [](auto& context) {
   else
     x3::_val(context).node = ast::Box<ast::List>(std::move(list));
 };
+constexpr auto end_of_range = [](auto& context) { fold(x3::_val(context).value, "..", x3::_attr(context)); };
 constexpr auto push_item = [](auto& context) { x3::_val(context).push_back(std::move(x3::_attr(context))); };
 constexpr auto count_prime = [](auto& context) { ++x3::_val(context).primes; };
 
@@ -116,7 +117,8 @@ auto const group_def =
 auto const call_def = located[name[to(&ast::Call::function)] >> '(' >>
                               -(argument[append(&ast::Call::arguments)] >> *(',' > argument[append(&ast::Call::arguments)])) > ')'];
 auto const distribution_def = located[call[take]];
-auto const argument_def = located[-(name >> equals)[to(&ast::Argument::name)] >> nested[expression][to(&ast::Argument::value)]];
+auto const argument_def = located[-(name >> equals)[to(&ast::Argument::name)] >> nested[expression][to(&ast::Argument::value)] >>
+                                  -(x3::lit("..") > nested[expression][end_of_range])];
 
 auto const reference_def =
     located[path[to(&ast::Reference::name)] >> -(x3::no_skip[&x3::lit('[')] >> index[to(&ast::Reference::index)]) >>

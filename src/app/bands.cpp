@@ -10,6 +10,9 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
   Prediction prediction;
   prediction.experiment = experiment.name;
   prediction.time = experiment.time;
+  prediction.rows = model.dynamics == Dynamics::none;
+  if (prediction.rows)  // of any order: shown as they stand in the file
+    for (std::size_t i = 0; i < prediction.time.size(); ++i) prediction.time[i] = experiment.first_row + static_cast<double>(i);
   prediction.scored = experiment.scored;
   for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
     TrajectoryQuantity const& quantity = trajectory.quantities()[q];

@@ -30,7 +30,7 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
     page.coverage.push_back(std::move(coverage));
   }
   Model const& model = session.file.models[static_cast<std::size_t>(task.model)];
-  std::vector<ExperimentData> data = load_experiments(session, there, task.model, task.start);
+  std::vector<ExperimentData> data = load_experiments(session, there, task.model, task.start, task.prediction);
   for (ExperimentData const& each : data)
     page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
   if (!complete) return std::nullopt;

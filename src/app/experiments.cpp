@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/session.hpp"
 #include "core/files.hpp"
+#include "model/past.hpp"
 #include "report/number.hpp"
 
 namespace sysid {
@@ -26,6 +28,61 @@ Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path,
           guess.empty() ? "paths are relative to the folder of the .sysid file" : guess};
 }
 
+// A model in discrete time goes from row to row: these must be as far apart as it says, and equally far.
+void check_steps(Record const& record, DataBlock const& block, Model const& model) {
+  double const mean = (record.time.back() - record.time.front()) / static_cast<double>(record.rows() - 1);
+  double const wanted = model.step.value_or(mean);
+  for (std::size_t i = 1; i < record.time.size(); ++i) {
+    double const step = record.time[i] - record.time[i - 1];
+    if (same_step(step, wanted)) continue;
+    throw UserError(
+        {Severity::error,
+         "E4203",
+         model.step ? fmt::format("row {} of `{}` comes {:.9g} s after the one before, but model `{}` steps by {:.9g} s", i + 1,
+                                  block.path, step, model.name, wanted)
+                    : fmt::format("row {} of `{}` comes {:.9g} s after the one before, on average it is {:.9g} s: model "
+                                  "`{}` needs equal steps",
+                                  i + 1, block.path, step, wanted, model.name),
+         Label{block.time ? block.time->span : block.span, {}},
+         {},
+         "correct `time discrete`, or bring the record to equal steps; a tolerance of 1 % is allowed for rounded times"});
+  }
+}
+
+// Samples that the density of a channel reads and that are missing: the row cannot be scored. One that the map from row to row
+// reads would spoil all that follows: an error.
+void mark_past(Experiment& experiment, Model const& model, Span place) {
+  int const rows = static_cast<int>(experiment.time.size());
+  auto const missing = [&](PastSample const& sample, int row) {
+    return std::isnan(measured_sample(experiment, sample.channel, row - sample.lag));
+  };
+  auto const refuse = [&](PastSample const& sample, int row) {
+    throw UserError({Severity::error,
+                     "E4204",
+                     fmt::format("`{}` is missing in row {}, and model `{}` goes on from it",
+                                 model.channels[static_cast<std::size_t>(sample.channel)].name,
+                                 experiment.first_row + row - sample.lag, model.name),
+                     Label{place, {}},
+                     {},
+                     "fill the gap, choose other rows, or write `with prediction = free_run`: then the model goes on from its own "
+                     "prediction"});
+  };
+  for (PastSample const& sample : past_samples(model, -2))
+    if (missing(sample, 0)) refuse(sample, 0);
+  for (PastSample const& sample : past_samples(model, -1))
+    for (int row = 0; row + 1 < rows; ++row)
+      if (missing(sample, row)) refuse(sample, row);
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    std::vector<PastSample> const samples = past_samples(model, static_cast<int>(c));
+    if (samples.empty()) continue;
+    if (experiment.has_past.empty()) experiment.has_past.resize(model.channels.size());
+    experiment.has_past[c].assign(static_cast<std::size_t>(rows), 1);
+    for (int row = 0; row < rows; ++row)
+      for (PastSample const& sample : samples)
+        if (missing(sample, row)) experiment.has_past[c][static_cast<std::size_t>(row)] = 0;
+  }
+}
+
 }  // namespace
 
 std::string_view rule_name(InputRule rule) {
@@ -42,6 +99,16 @@ std::string_view rule_name(InputRule rule) {
   return "?";
 }
 
+std::string prediction_text(Model const& model, PredictionRule rule) {
+  bool from_data = false;
+  for (int c = -1; c < static_cast<int>(model.channels.size()); ++c) from_data = from_data || !past_samples(model, c).empty();
+  bool const from_model = !model.states.empty();
+  return fmt::format("{}: from {}", prediction_name(rule),
+                     from_data && from_model ? "measured samples and the model's own past"
+                     : from_data             ? "measured samples, one step ahead"
+                                             : "the model's own past, a free run");
+}
+
 std::string data_name(DataBlock const& block, int part) {
   return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
 }
@@ -50,14 +117,15 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
   RecordRequest request;
   request.path = (folder / block.path).string();
   request.mention = block.path_span;
-  request.step = block.step;
+  request.step = block.step > 0 ? block.step : model.step.value_or(0);
+  request.independent_rows = model.dynamics == Dynamics::none;
   if (block.time) request.time = ColumnRequest{block.time->column, block.time->unit, std::nullopt, block.time->span};
   for (Quantity const& input : model.inputs) {
     auto const bound =
         std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
     InputRequest column;
     static_cast<ColumnRequest&>(column) = {bound->column, bound->unit, input.unit, bound->span};
-    column.rule = bound->rule;
+    column.rule = bound->rule.value_or(InputRule::zero_order);
     request.inputs.push_back(std::move(column));
   }
   for (Channel const& channel : model.channels) {
@@ -66,12 +134,13 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
     if (bound == block.measured.end())
       request.measured.emplace_back();
     else
-      request.measured.push_back(ColumnRequest{bound->column, bound->unit, channel.unit, bound->span});
+      request.measured.push_back(ColumnRequest{bound->column, bound->unit, channel.unit, bound->span, channel.noise.row->discrete});
   }
   try {
     Diagnostics diagnostics;
     auto record = load(request, diagnostics);
     if (!record) throw UnusableData(std::move(diagnostics));
+    if (model.dynamics == Dynamics::discrete) check_steps(*record, block, model);
     return std::move(*record);
   } catch (IoError const& error) {
     Diagnostics diagnostics;
@@ -80,7 +149,7 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
   }
 }
 
-Experiment cut(Record const& record, DataBlock const& block, int part, StartRule start) {
+Experiment cut(Record const& record, DataBlock const& block, Model const& model, int part, StartRule start) {
   std::string const name = data_name(block, part);
   DataPart whole;
   whole.span = block.span;
@@ -88,7 +157,17 @@ Experiment cut(Record const& record, DataBlock const& block, int part, StartRule
   RowRange range{rows.first, rows.last == 0 ? record.rows() : rows.last};
   std::string const what = part < 0 ? "data `" + block.name + "`" : "part `" + rows.name + "`";
   if (auto const wrong = check_rows(record, what, range, rows.span)) throw UserError(*wrong);
-  int from = 1;
+  // The first rows that a model only looks back to are neither simulated nor scored.
+  int const history = data_lag(model);
+  if (range.last <= history)
+    throw UserError({Severity::error,
+                     "E4201",
+                     fmt::format("{} ends at row {}, and model `{}` looks back {} rows", what, range.last, model.name, history),
+                     Label{rows.span, {}},
+                     {},
+                     "take more rows, or fewer lags"});
+  range.first = std::max(range.first, history + 1);
+  int from = history + 1;
   if (start.kind != StartRule::Kind::record) from = range.first;
   if (start.kind == StartRule::Kind::estimated) {
     if (range.first + start.rows > range.last)
@@ -101,14 +180,19 @@ Experiment cut(Record const& record, DataBlock const& block, int part, StartRule
            "take more rows, or estimate the start from fewer"});
     range.first += start.rows;
   }
-  return make_experiment(record, name, from, range, rows.span);
+  Experiment experiment = make_experiment(record, name, from, range, rows.span);
+  mark_past(experiment, model, rows.span);
+  return experiment;
 }
 
-std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start) {
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start,
+                                             PredictionRule prediction) {
+  auto const as_predicted = with_prediction(session.file.models[static_cast<std::size_t>(model)], prediction);
   std::vector<ExperimentData> all;
   for (ExperimentUse const& use : uses) {
     Record const& record = session.record(use.data, model);
-    all.push_back({use, record, cut(record, session.file.data[static_cast<std::size_t>(use.data)], use.part, start)});
+    DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+    all.push_back({use, record, cut(record, block, *as_predicted, use.part, start)});
   }
   return all;
 }
@@ -156,8 +240,9 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   for (Quantity const& input : model.inputs)
     for (DataInputUse const& use : block.inputs)
       if (use.input == input.name)
-        info.notes.push_back(fmt::format("input {} = {}{}, {}", input.name, use.column,
-                                         use.unit ? fmt::format(" [{}]", use.unit->text) : std::string(), rule_name(use.rule)));
+        info.notes.push_back(fmt::format(
+            "input {} = {}{}{}", input.name, use.column, use.unit ? fmt::format(" [{}]", use.unit->text) : std::string(),
+            use.rule && model.dynamics == Dynamics::continuous ? fmt::format(", {}", rule_name(*use.rule)) : ""));
   for (Channel const& channel : model.channels)
     for (DataMeasureUse const& use : block.measured)
       if (use.channel == channel.name)
@@ -169,6 +254,15 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
       std::string const unit = parameter.unit ? fmt::format(" [{}]", parameter.unit_text()) : std::string();
       info.notes.push_back(fmt::format("{} = {}{}", parameter.name, shortest(parameter.from_si(*data.use.constants[p])), unit));
     }
+  if (int const history = data_lag(model); history > 0)
+    info.notes.push_back(fmt::format("the first {} row{} the model looks back to {} not scored", history, history == 1 ? "" : "s",
+                                     history == 1 ? "is" : "are"));
+  for (std::size_t c = 0; c < data.experiment.has_past.size(); ++c) {
+    std::vector<std::uint8_t> const& has_past = data.experiment.has_past[c];
+    auto const without = std::count(has_past.begin(), has_past.end(), 0);
+    if (without > 0)
+      info.notes.push_back(fmt::format("{}: {} rows are not scored, a past sample is missing", model.channels[c].name, without));
+  }
   return info;
 }
 

@@ -38,9 +38,9 @@ class UnusableData : public UserError {
 /// UnusableData when something is wrong with it, UnreadableData when the file cannot be read.
 Record load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder);
 
-/// The rows of a part (-1: all), started as the task says. Throws UserError when they are outside the record or the start needs
-/// more rows.
-Experiment cut(Record const& record, DataBlock const& block, int part, StartRule start);
+/// The rows of a part (-1: all), started as the task says; the first rows that a discrete-time model looks back to are left out.
+/// Throws UserError when they are outside the record, the start needs more rows, or the model needs a sample that is missing.
+Experiment cut(Record const& record, DataBlock const& block, Model const& model, int part, StartRule start);
 
 /// What a task has of one of its experiments.
 struct ExperimentData {
@@ -49,7 +49,8 @@ struct ExperimentData {
   Experiment experiment;  // cut and started as the task says; its name is that of the data, "bench.train"
 };
 /// Reads them in order; UserError, UnusableData, UnreadableData as above.
-std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start);
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start,
+                                             PredictionRule prediction);
 std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data);
 
 /// The parameters of a model over the experiments of a fit.
@@ -64,6 +65,9 @@ std::vector<PriorInfo> priors_of(ParameterSpace const& space, std::vector<PriorI
 
 /// Provenance for reports.
 DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Model const& model);
+
+/// Which rule is in force and what it comes to: "as_written: from measured samples".
+std::string prediction_text(Model const& model, PredictionRule rule);
 
 /// "bench.train".
 std::string data_name(DataBlock const& block, int part);

@@ -82,10 +82,10 @@ class Fit {
         folder_(session.result_folder(task)),
         seed_(stored_seed(session, task, what)),
         backend_(*find_backend(what.backend)),
-        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method)),
+        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
         model_(compiled_->model),
         space_(parameter_space(model_, what.experiments)),
-        data_(load_experiments(session, what.experiments, what.model, what.start)),
+        data_(load_experiments(session, what.experiments, what.model, what.start, what.prediction)),
         began_(std::chrono::steady_clock::now()) {}
 
   ExitCode run() {
@@ -214,8 +214,9 @@ class Fit {
       FitCheck check = check_residuals(*target_, best);
       report.fit = std::move(check.lines);
       add(check.findings);
-      if (!preparation_.modes.empty()) add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
-      add(tolerance_findings(step_check(result.draws, extra), preparation_.solver));
+      if (!preparation_.modes.empty() && model_.dynamics == Dynamics::continuous)
+        add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
+      if (model_.integrated()) add(tolerance_findings(step_check(result.draws, extra), preparation_.solver));
     }
     if (interrupted)
       report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
@@ -231,7 +232,9 @@ class Fit {
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
-    add_solver(preparation_.solver, report.settings);
+    if (model_.integrated()) add_solver(preparation_.solver, report.settings);
+    if (model_.dynamics == Dynamics::discrete)
+      report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
     report.resolved_text = resolved_fit(session_, task_, what_, result.settings, preparation_.solver, seed_);
     report.ledger = preparation_.ledger;
     report.ledger.merge(ledger_);

@@ -22,12 +22,35 @@ std::string on(ModelTarget const& target, int experiment) {
   return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
 }
 
+// Pearson's residuals of counts, and how much heavier than normal their tails are: what chi-squared is taken of, since the deviance
+// residuals of small counts are not of unit size.
+struct PearsonResiduals {
+  std::vector<double> values;
+  double excess_kurtosis = 0;  // mean over the samples
+};
+
+// arguments: of the channel's noise, at every sample; deviance: one residual per sample, NaN where not scored.
+PearsonResiduals pearson(DistributionRow const& noise, std::vector<double> const& measured,
+                         std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance) {
+  PearsonResiduals result;
+  double count = 0;
+  for (std::size_t i = 0; i < deviance.size(); ++i) {
+    result.values.push_back(std::nan(""));
+    if (std::isnan(deviance[i]) || !(noise.variance(arguments[i]) > 0)) continue;
+    result.values.back() = (measured[i] - arguments[i][0]) / std::sqrt(noise.variance(arguments[i]));
+    result.excess_kurtosis += noise.excess_kurtosis(arguments[i]);
+    count += 1;
+  }
+  if (count > 0) result.excess_kurtosis /= count;
+  return result;
+}
+
 // residuals: standardised, one per sample of the experiment, NaN where not scored.
-void test_channel(ModelTarget const& target, int experiment, int channel, std::vector<double> const& residuals, FitLine& line,
-                  Findings& findings) {
+void test_channel(ModelTarget const& target, int experiment, int channel, std::vector<double> const& residuals,
+                  PearsonResiduals const& sized, FitLine& line, Findings& findings) {
   Model const& model = target.compiled()->model;
   std::string const name = model.channels[static_cast<std::size_t>(channel)].name + on(target, experiment);
-  ChiSquaredTest const size = chi_squared(residuals);
+  ChiSquaredTest const size = chi_squared(sized.values, sized.excess_kurtosis);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (size.fires())
     findings.push_back(
@@ -37,6 +60,7 @@ void test_channel(ModelTarget const& target, int experiment, int channel, std::v
          size.per_sample > 1
              ? "the noise is larger than stated, or the model misses something: estimate the noise, then look at the residuals"
              : "the stated noise is too large: estimate it"});
+  if (model.dynamics == Dynamics::none) return;  // rows of any order have no past
   CorrelationTest const white = whiteness(residuals);
   line.scores.push_back({"whiteness_p", white.p_value});
   if (white.fires())
@@ -84,7 +108,11 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
     if (observed.empty()) continue;
     FitLine line{experiment.name, model.channels[channel].name, model.channels[channel].unit_text(), {}};
     line.scores = {{"nmse", nmse(observed, location)}, {"rmse", rmse(observed, location)}};
-    test_channel(target, e, c, series, line, check.findings);
+    DistributionRow const& noise = *model.channels[channel].noise.row;
+    PearsonResiduals const sized =
+        noise.discrete ? pearson(noise, experiment.measured[channel], trajectory.noise_arguments(parameters, c), series)
+                       : PearsonResiduals{series, 0};
+    test_channel(target, e, c, series, sized, line, check.findings);
     check.lines.push_back(std::move(line));
   }
 }

@@ -35,10 +35,10 @@ class Predict {
         fit_task_(session.file.tasks[static_cast<std::size_t>(what.fit)]),
         fit_(std::get<FitTask>(fit_task_.what)),
         free_start_(what.start.kind == StartRule::Kind::estimated),
-        compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method)),
+        compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method, what.prediction)),
         model_(compiled_->model),
         space_(parameter_space(model_, fit_.experiments)),
-        data_(load_experiments(session, what.experiments, fit_.model, what.start)),
+        data_(load_experiments(session, what.experiments, fit_.model, what.start, what.prediction)),
         seed_(session.seed(task, what.seed)),
         wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {}
 
@@ -55,7 +55,9 @@ class Predict {
     report.settings = {{"draws", static_cast<std::int64_t>(wanted_)},
                        {"redraw", std::string(what_.redraw_each_step ? "step" : "trajectory")},
                        {"start", start_text(what_.start)}};
-    add_solver(fitted_.solver, report.settings);
+    if (model_.integrated()) add_solver(fitted_.solver, report.settings);
+    if (model_.dynamics == Dynamics::discrete)
+      report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
     report.ledger.add_solves(static_cast<std::uint64_t>(wanted_) * data_.size());
     report.verdict = failed == 0 ? "all trajectories stay finite" : "some trajectories do not stay finite";
     write_result(report, session_.result_folder(task_), session_.options.figures);

@@ -10,15 +10,16 @@
 
 #include "app/experiments.hpp"
 #include "inference/backend.hpp"
+#include "model/past.hpp"
 
 namespace sysid {
 
 std::optional<TaskData> data_of(CheckedFile const& file, Task const& task) {
-  if (auto const* fit = std::get_if<FitTask>(&task.what)) return TaskData{fit->model, &fit->experiments, fit->start};
+  if (auto const* fit = std::get_if<FitTask>(&task.what)) return TaskData{fit->model, &fit->experiments, fit->start, fit->prediction};
   auto const* prediction = std::get_if<PredictTask>(&task.what);
   if (prediction == nullptr) return std::nullopt;
   int const model = std::get<FitTask>(file.tasks[static_cast<std::size_t>(prediction->fit)].what).model;
-  return TaskData{model, &prediction->experiments, prediction->start};
+  return TaskData{model, &prediction->experiments, prediction->start, prediction->prediction};
 }
 
 std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
@@ -91,6 +92,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
     auto const data = wanted(task) ? data_of(session.file, task) : std::nullopt;
     if (!data) continue;
     bool complete = true;
+    auto const as_predicted = with_prediction(session.file.models[static_cast<std::size_t>(data->model)], data->prediction);
     for (ExperimentUse const& use : *data->experiments) {
       DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
       Task const* made = maker(session, block);
@@ -99,7 +101,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
         continue;
       }
       try {
-        cut(session.record(use.data, data->model), block, use.part, data->start);
+        cut(session.record(use.data, data->model), block, *as_predicted, use.part, data->start);
         continue;
       } catch (UnusableData const& error) {
         left_out.insert({use.data, data->model});
@@ -115,7 +117,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
     auto const* fit = std::get_if<FitTask>(&task.what);
     if (fit == nullptr || !complete) continue;
     if (auto const why = refusal(task, *fit, session.file.models[static_cast<std::size_t>(fit->model)],
-                                 load_experiments(session, fit->experiments, fit->model, fit->start)))
+                                 load_experiments(session, fit->experiments, fit->model, fit->start, fit->prediction)))
       add_one(*why);
   }
   result.unreadable = only_unreadable;

@@ -30,6 +30,7 @@ struct TaskData {
   int model = 0;
   std::vector<ExperimentUse> const* experiments = nullptr;
   StartRule start;
+  PredictionRule prediction = PredictionRule::as_written;
 };
 std::optional<TaskData> data_of(CheckedFile const& file, Task const& task);
 

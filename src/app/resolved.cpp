@@ -50,15 +50,19 @@ std::string start_text(StartRule start) {
 
 std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
                          SolverSettings const& solver, std::uint64_t seed) {
+  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
   Diagnostics ignored;
   auto tree = parse(session.source, ignored);
   if (!tree) throw InternalError("a checked file does not parse again");
   std::erase_if(tree->items, [](ast::Item const& item) { return std::holds_alternative<ast::Task>(item); });
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
-      "start = {}, solver = {}, seed = {}\n",
-      task.name, unparse(*tree), task.name, session.file.models[static_cast<std::size_t>(what.model)].name,
-      data_names(session.file, what.experiments), settings_text(what.backend, settings), start_text(what.start), solver.text(),
+      "start = {}{}{}, seed = {}\n",
+      task.name, unparse(*tree), task.name, model.name, data_names(session.file, what.experiments),
+      settings_text(what.backend, settings), start_text(what.start),
+      model.integrated() ? ", solver = " + solver.text() : std::string(),
+      what.prediction == PredictionRule::as_written ? std::string()
+                                                    : fmt::format(", prediction = {}", prediction_name(what.prediction)),
       seed);
 }
 

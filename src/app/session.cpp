@@ -8,13 +8,19 @@
 #include <thread>
 
 #include "app/experiments.hpp"
+#include "core/diagnostic.hpp"
 #include "core/interrupt.hpp"
 
 namespace sysid {
 
-std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start, std::string const& method) {
-  auto& place = compiled_[{model, free_start, method}];
-  if (!place) place = compile(file.models[static_cast<std::size_t>(model)], free_start, method);
+std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start, std::string const& method,
+                                                       PredictionRule prediction) {
+  auto& place = compiled_[{model, free_start, method, prediction}];
+  if (!place) {
+    auto ruled = with_prediction(file.models[static_cast<std::size_t>(model)], prediction);
+    if (!ruled) throw InternalError("a prediction rule was let through that the model has no data for");
+    place = compile(std::move(*ruled), free_start, method);
+  }
   return place;
 }
 

@@ -61,10 +61,39 @@ std::string first_failure(Session const& session, SimulateTask const& what, Comp
                      found->time);
 }
 
+bool reads_samples(Model const& model) {
+  for (int c = -1; c < static_cast<int>(model.channels.size()); ++c)
+    if (!past_samples(model, c).empty()) return true;
+  return false;
+}
+
+// A model that goes on from what it measured: noise enters all that follows. Each round makes at least one more sample right, the
+// draws being the same, so this ends; a stable model takes few rounds.
+Trajectory::Result with_feedback(std::shared_ptr<CompiledModel const> const& compiled, Experiment& experiment,
+                                 SimulateTask const& what, LaneArray const& parameters, StreamKey noise_key,
+                                 ExecutionOptions const& execution) {
+  for (auto& channel : experiment.measured) channel.assign(experiment.time.size(), 0.0);
+  while (true) {
+    Trajectory const trajectory(compiled, experiment, what.solver, 0, execution);
+    Trajectory::Result result = trajectory.run(parameters, noise_key);
+    std::vector<std::vector<double>> before = experiment.measured;
+    for (std::size_t c = 0; c < before.size(); ++c)
+      for (std::size_t i = 0; i < before[c].size(); ++i) {
+        double const made = compiled->model.channels[c].to_si(result.noisy[c][0][i]);
+        if (std::isfinite(made)) experiment.measured[c][i] = made;
+      }
+    if (result.failed > 0 || experiment.measured == before) return result;
+  }
+}
+
 }  // namespace
 
 ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) {
-  auto const compiled = session.compiled(what.model, false, what.solver.method);
+  bool const feeds_back = what.noise_fraction < 0 && reads_samples(session.file.models[static_cast<std::size_t>(what.model)]);
+  bool const discrete = session.file.models[static_cast<std::size_t>(what.model)].dynamics == Dynamics::discrete;
+  // Noise in percent is added to a response without noise.
+  auto const compiled = session.compiled(what.model, false, what.solver.method,
+                                         discrete && !feeds_back ? PredictionRule::free_run : PredictionRule::as_written);
   Model const& model = compiled->model;
   std::uint64_t const seed = session.seed(task, what.seed);
   // Several records made in one run with one seed are different records.
@@ -77,20 +106,30 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
 
   Experiment experiment;
   experiment.name = task.name;
-  for (int i = 0; i < what.samples; ++i) experiment.time.push_back(i * what.step);
+  bool const rows = model.dynamics == Dynamics::none;
+  int const history = data_lag(model);
+  std::vector<double> time;  // history included
+  for (int i = -history; i < what.samples; ++i) time.push_back(rows ? i + 1 : i * what.step);
+  experiment.time.assign(time.begin() + history, time.end());
+  experiment.history.assign(model.channels.size(), std::vector<double>(static_cast<std::size_t>(history), 0.0));
   experiment.scored.assign(static_cast<std::size_t>(what.samples), 1);
   experiment.measured.resize(model.channels.size());
   std::vector<std::vector<double>> inputs;
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     inputs.push_back(generate(what.inputs[i], what.samples, what.step, {seed, Purpose::input, i + series, 0}));
-    experiment.inputs.emplace_back(what.inputs[i].rule, experiment.time, inputs.back());
+    std::vector<double> samples(static_cast<std::size_t>(history), 0.0);
+    samples.insert(samples.end(), inputs.back().begin(), inputs.back().end());
+    InputRule const rule = model.dynamics == Dynamics::continuous ? what.inputs[i].rule : InputRule::zero_order;
+    experiment.inputs.push_back(InputSignal(rule, time, std::move(samples)).view(history, what.samples));
   }
   LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
   for (std::size_t p = 0; p < model.parameters.size(); ++p)
     parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
   Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
   StreamKey const noise_key{seed, Purpose::noise, series, 0};
-  Trajectory::Result const result = trajectory.run(parameters, noise_key);
+  Trajectory::Result const result =
+      feeds_back ? with_feedback(compiled, experiment, what, parameters, noise_key, session.options.execution)
+                 : trajectory.run(parameters, noise_key);
   if (result.failed > 0)
     throw UserError({Severity::error,
                      "E5001",
@@ -109,9 +148,9 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
                          Label{task.span, {}},
                          {},
                          "its scale must stay positive along the whole record"});
-  check_step(session, task, what, compiled, experiment, parameters, result);
+  if (model.integrated()) check_step(session, task, what, compiled, experiment, parameters, result);
 
-  std::string header = "t",
+  std::string header = rows ? "row" : "t",
               comments = fmt::format("# made by sysid {}: {} of model {}, seed {}\n", SYSID_VERSION, task.name, model.name, seed);
   for (std::size_t p = 0; p < model.parameters.size(); ++p)
     if (what.values[p])
@@ -120,11 +159,14 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   std::vector<std::vector<double>> columns = {experiment.time};
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     header += "," + model.inputs[i].name;
-    comments += fmt::format("# column {}{}: {} between samples\n", model.inputs[i].name, unit_suffix(model.inputs[i].unit_text()),
-                            rule_name(what.inputs[i].rule));
+    comments +=
+        fmt::format("# column {}{}{}\n", model.inputs[i].name, unit_suffix(model.inputs[i].unit_text()),
+                    model.dynamics == Dynamics::continuous ? fmt::format(": {} between samples", rule_name(what.inputs[i].rule))
+                                                           : std::string());
     for (double& value : inputs[i]) value = model.inputs[i].from_si(value);
     columns.push_back(inputs[i]);
   }
+  if (history > 0) comments += "# before the first row all inputs and measured samples are 0\n";
   for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
     TrajectoryQuantity const& quantity = trajectory.quantities()[q];
     std::vector<double> const& clean = result.values[q][0];
@@ -137,8 +179,8 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
       comments += fmt::format("# noise sd of {}: {}{}\n", quantity.name, shortest(sd), unit_suffix(quantity.unit));
     }
     header += fmt::format(",{},{}_clean", quantity.name, quantity.name);
-    comments +=
-        fmt::format("# column {}{}: measured; {}_clean: without noise\n", quantity.name, unit_suffix(quantity.unit), quantity.name);
+    comments += fmt::format("# column {}{}: measured; {}_clean: without {}noise\n", quantity.name, unit_suffix(quantity.unit),
+                            quantity.name, feeds_back ? "the sample's own " : "");
     columns.push_back(std::move(noisy));
     columns.push_back(clean);
   }

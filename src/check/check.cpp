@@ -1,6 +1,7 @@
 // A whole file: models, then data blocks, then tasks in order. What fails its own check is not reported again where it is used.
 #include "check/check.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "check/data.hpp"
@@ -25,6 +26,16 @@ class Unique {
   Diagnostics& diagnostics_;
   std::map<std::string, Span> seen_;
 };
+
+}  // namespace
+
+namespace {
+
+bool mentioned(std::vector<ast::Task const*> const& tasks, std::string const& block) {
+  return std::any_of(tasks.begin(), tasks.end(), [&](ast::Task const* task) {
+    return std::any_of(task->data.begin(), task->data.end(), [&](auto const& each) { return each.data.text == block; });
+  });
+}
 
 }  // namespace
 
@@ -58,6 +69,11 @@ std::optional<CheckedFile> check(ast::File const& tree, std::span<BackendSetting
     auto checked = check_task(*task, names, file, backends, tasks, diagnostics);
     if (checked) file.tasks.push_back(std::move(*checked));
   }
+  // A block that no task brings together with a model is held to what continuous time needs, unless the file has other models.
+  bool const other_dynamics = std::any_of(file.models.begin(), file.models.end(),
+                                          [](Model const& model) { return model.dynamics != Dynamics::continuous; });
+  for (DataBlock const& block : file.data)
+    if (!other_dynamics && !mentioned(tasks, block.name)) check_between_samples(block, nullptr, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
   return file;
 }

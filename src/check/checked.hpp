@@ -10,7 +10,7 @@
 #include "core/settings.hpp"
 #include "core/solver.hpp"
 #include "data/experiment.hpp"
-#include "model/model.hpp"
+#include "model/past.hpp"
 
 namespace sysid {
 
@@ -23,8 +23,8 @@ struct ColumnUse {
 
 struct DataInputUse : ColumnUse {
   std::string input;
-  InputRule rule = InputRule::zero_order;
-  Span rule_span;
+  std::optional<InputRule> rule;  // absent: not stated, which only models in continuous time refuse
+  Span rule_span;                 // of the whole statement where there is none
 };
 
 struct DataMeasureUse : ColumnUse {
@@ -54,7 +54,7 @@ struct DataBlock {
   std::string path;  // as written, relative to the .sysid file
   Span path_span;
   std::optional<ColumnUse> time;
-  double step = 0;  // [s], when there is no time column
+  double step = 0;  // [s], when there is no time column; 0: the block does not say when its rows were taken
   std::vector<DataInputUse> inputs;
   std::vector<DataMeasureUse> measured;
   std::vector<DataConstantUse> constants;
@@ -106,6 +106,7 @@ struct FitTask {
   std::string backend;
   Settings settings;  // of the back end
   StartRule start;
+  PredictionRule prediction = PredictionRule::as_written;
   SolverSettings solver;
   bool settle = true;  // the tolerance guard chooses how fine the solver is, from `solver` on
   std::optional<std::uint64_t> seed;
@@ -118,6 +119,7 @@ struct PredictTask {
   int draws = 200;
   bool redraw_each_step = false;  // the tutorial's Fig. 8.4; the default is one draw per trajectory
   StartRule start;
+  PredictionRule prediction = PredictionRule::as_written;
   std::optional<std::uint64_t> seed;
 };
 

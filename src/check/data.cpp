@@ -32,7 +32,6 @@ class DataChecker {
     block_.span = tree_.name.span;
     for (ast::DataStatement const& statement : tree_.statements) std::visit([&](auto const& each) { take(each); }, statement);
     if (!file_) diagnostics_.add(errors::no_file(tree_.name));
-    if (!times_) diagnostics_.add(errors::no_time(tree_.name));
     if (diagnostics_.has_errors(before_)) return std::nullopt;
     return block_;
   }
@@ -88,7 +87,7 @@ class DataChecker {
     static_cast<ColumnUse&>(use) = column(tree.column);
     use.input = tree.input.text;
     if (!tree.rule) {
-      diagnostics_.add(errors::rule_missing(tree));
+      use.rule_span = tree.span;
     } else if (auto const rule = input_rule(tree.rule->text)) {
       use.rule = *rule;
       use.rule_span = tree.rule->span;
@@ -147,6 +146,18 @@ std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnost
   return DataChecker(tree, diagnostics).run();
 }
 
+void check_between_samples(DataBlock const& block, Model const* model, Diagnostics& diagnostics) {
+  if (model != nullptr && model->dynamics == Dynamics::none) return;
+  bool const has_step = model != nullptr && model->step;
+  if (!block.time && !(block.step > 0) && !has_step) diagnostics.add(errors::no_time({{block.span}, block.name}));
+  if (model != nullptr && model->dynamics == Dynamics::discrete) return;
+  for (DataInputUse const& use : block.inputs) {
+    bool const wanted = model == nullptr || std::any_of(model->inputs.begin(), model->inputs.end(),
+                                                        [&](Quantity const& input) { return input.name == use.input; });
+    if (!use.rule && wanted) diagnostics.add(errors::rule_missing(use.rule_span, use.input));
+  }
+}
+
 void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics) {
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
     if (!column.unit || !declared.unit) return;
@@ -156,6 +167,7 @@ void check_binding(DataBlock const& block, Model const& model, Span use, Diagnos
     else if (cycles_against_radians(*column.unit, *declared.unit))
       diagnostics.add(data_errors::cycles_against_radians(column.column, column.unit->text, wanted, column.span));
   };
+  check_between_samples(block, &model, diagnostics);
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     Quantity const& input = model.inputs[i];
     auto const bound =

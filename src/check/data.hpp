@@ -13,6 +13,10 @@ namespace sysid {
 
 std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnostics);
 
+/// Whether the block says when its rows were taken and what inputs do between them, as far as the model's dynamics ask for it.
+/// Without a model: as continuous time does.
+void check_between_samples(DataBlock const& block, Model const* model, Diagnostics& diagnostics);
+
 /// Whether the block serves a model: every input bound, some channel measured, no unknown channel, units of one kind, input
 /// derivatives only where they exist. use: the place of the task that brings the two together.
 void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics);

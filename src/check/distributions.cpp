@@ -159,7 +159,13 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
   if (!good || use.arguments.size() != row->arguments.size()) return std::nullopt;
 
   if (row->dimensionless && unit && !unit->dimensionless()) {
-    diagnostics.add(errors::unit_of_share(call.span, name, unit->text.empty() ? format_dimension(unit->dimension) : unit->text));
+    std::string const text = unit->text.empty() ? format_dimension(unit->dimension) : unit->text;
+    diagnostics.add(row->discrete ? errors::unit_of_count(call.span, name, text) : errors::unit_of_share(call.span, name, text));
+    return std::nullopt;
+  }
+
+  if (row->discrete && unit && unit->scale != 1) {
+    diagnostics.add(errors::unit_of_count(call.span, name, unit->text));
     return std::nullopt;
   }
 

@@ -123,6 +123,10 @@ Diagnostic argument_count(ast::Name const& function, std::size_t given, std::siz
                fmt::format("`{}` takes {} argument{}, here it has {}", function.text, wanted, wanted == "1" ? "" : "s", given),
                "give each argument once, separated by commas");
 }
+Diagnostic piecewise_without_otherwise(ast::Call const& call) {
+  return error("E2004", call.span, fmt::format("`{}` has no value for when no condition holds", call.function.text),
+               "its arguments are condition, value, condition, value, ..., and last the value otherwise");
+}
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function) {
   return error("E2005", argument.span, fmt::format("arguments of the function `{}` have no names", function),
                fmt::format("leave out `{} =`", argument.text));
@@ -228,6 +232,19 @@ Diagnostic unit_of_share(Span span, std::string const& distribution, std::string
   return error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, here it should give [{}]", distribution, unit),
                fmt::format("multiply: a share with this prior, times a quantity in [{}]", unit));
 }
+Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit) {
+  return error("E2118", span, fmt::format("`{}` counts, here it should give [{}]", distribution, unit),
+               "a count is a pure number: divide the expression by the size of one item, and leave out the unit of the channel");
+}
+Diagnostic count_as_prior(ast::Call const& call) {
+  return error("E2119", call.function.span,
+               fmt::format("`{}` gives whole numbers: it is noise of a channel, not a prior", call.function.text),
+               "use a continuous prior, such as gamma or log_normal");
+}
+Diagnostic noise_of_counts(Span span, std::string const& channel, std::string const& distribution) {
+  return error("E6015", span, fmt::format("channel `{}` counts: noise in percent would not leave whole numbers", channel),
+               fmt::format("write `noise = model`: the counts are then drawn from `{}`", distribution));
+}
 Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter) {
   std::string const& name = parameter.name.name.text;
   return error("E2113", parameter.name.span, fmt::format("parameter `{}` has neither a prior nor a value", name),
@@ -307,9 +324,9 @@ Diagnostic time_and_rate(Span second, Span first) {
 Diagnostic stated_twice(Span second, Span first, std::string const& what) {
   return conflict("E4104", second, "again here", first, "first here", fmt::format("{} is given twice", what), "keep one");
 }
-Diagnostic rule_missing(ast::DataInput const& input) {
+Diagnostic rule_missing(Span span, std::string const& input) {
   return error(
-      "E4105", input.span, fmt::format("what does input `{}` do between its samples?", input.input.text),
+      "E4105", span, fmt::format("what does input `{}` do between its samples?", input),
       "add `hold zero_order`, `hold linear`, `hold cubic` or `hold band_limited`: it changes the answer more than anything else");
 }
 Diagnostic unknown_rule(ast::Name const& rule) {

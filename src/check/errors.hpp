@@ -17,6 +17,7 @@ Diagnostic unknown_name(ast::Name const& name, Names const& known);
 Diagnostic duplicate_name(ast::Name const& name, Span first);
 Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity);
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most);
+Diagnostic piecewise_without_otherwise(ast::Call const& call);
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function);
 Diagnostic definition_cycle(Span span, Names const& loop);
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what);
@@ -44,6 +45,9 @@ Diagnostic prior_cycle(Span span, Names const& loop);
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason);
 Diagnostic no_mass(Span span, std::string const& distribution);
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit);
+Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit);
+Diagnostic count_as_prior(ast::Call const& call);
+Diagnostic noise_of_counts(Span span, std::string const& channel, std::string const& distribution);
 Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter);
 
 // structure of a model (E30)
@@ -62,12 +66,27 @@ Diagnostic nothing_observed(ast::Name const& model);
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first);
 Diagnostic time_twice(Span second, Span first);
 
+// samples and discrete time (E31)
+Diagnostic lag_without_discrete_time(ast::Call const& call);
+Diagnostic lag_count(Span span);
+Diagnostic lags_out_of_place(ast::Call const& call);
+Diagnostic primes_in_discrete_time(ast::Reference const& reference);
+/// name: what stands in place of the channel, when it is a name.
+Diagnostic not_a_channel(Span span, std::string const& function, std::string const& name, Names const& channels);
+Diagnostic samples_in_differential_equation(ast::Call const& call);
+Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_states);
+Diagnostic own_sample(Span span, std::string const& channel);
+Diagnostic prediction_cycle(Span span, std::string const& channel);
+Diagnostic present_prediction(Span span, std::string const& channel);
+Diagnostic range_out_of_place(Span span);
+Diagnostic initial_past_missing(Span declaration, std::string const& state);
+
 // data blocks (E40; the file's own contents: data/errors.hpp)
 Diagnostic no_file(ast::Name const& block);
 Diagnostic no_time(ast::Name const& block);
 Diagnostic time_and_rate(Span second, Span first);
 Diagnostic stated_twice(Span second, Span first, std::string const& what);
-Diagnostic rule_missing(ast::DataInput const& input);
+Diagnostic rule_missing(Span span, std::string const& input);
 Diagnostic unknown_rule(ast::Name const& rule);
 Diagnostic not_a_time(Span span, Unit const& unit);
 Diagnostic rate_not_positive(Span span);
@@ -96,6 +115,9 @@ Diagnostic fixed_parameter(ast::Name const& name, Span declaration);
 Diagnostic value_missing(Span span, Names const& parameters);
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate);
 Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution);
+Diagnostic prediction_without_lags(Span span, std::string const& model);
+Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model);
+Diagnostic other_step(Span span, double given, double declared, std::string const& model);
 Diagnostic task_too_late(ast::Name const& name);
 
 // several experiments (E63)

@@ -14,6 +14,7 @@
 #include "check/errors.hpp"
 #include "check/scope.hpp"
 #include "check/units.hpp"
+#include "model/past.hpp"
 #include "model/reduction.hpp"
 
 namespace sysid {
@@ -54,6 +55,7 @@ std::string moving_part(Graph const& graph, NodeId root) {
   if (reads(LeafKind::state) || reads(LeafKind::unknown)) return "a state";
   if (reads(LeafKind::input) || reads(LeafKind::input_rate)) return "an input";
   if (reads(LeafKind::time)) return "time";
+  if (reads(LeafKind::measured) || reads(LeafKind::previous)) return "samples";
   return {};
 }
 
@@ -66,13 +68,17 @@ class ModelChecker {
     model_.name = tree_.name.text;
     if (tree_.title) model_.title = tree_.title->value;
     declare();
-    find_orders();
+    name_samples();
+    if (!scope_.samples().discrete) find_orders();
     lay_out_states();
+    scope_.samples().in_equation = true;
     equations();
+    scope_.samples().in_equation = false;
     initial_values();
     parameters();
     channels();
     derived();
+    if (!failed()) finish_samples();
     if (!failed()) order_priors();
     if (failed()) return std::nullopt;
     model_.unchecked = scope_.unchecked();
@@ -97,6 +103,7 @@ class ModelChecker {
 
   void declare() {
     ast::TimeDeclaration const* first_time = nullptr;
+    ast::DiscreteTimeDeclaration const* first_discrete = nullptr;
     for (ast::ModelStatement const& statement : tree_.statements) {
       if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement)) {
         if (first_time != nullptr) {
@@ -107,6 +114,10 @@ class ModelChecker {
         auto const unit = scope_.unit(time->time.unit);
         check_time_unit(unit, time->time.span, diagnostics_);
         scope_.declare(time->time.name, {TimeSymbol{}, unit, time->time.name.span});
+      } else if (auto const* discrete = std::get_if<ast::DiscreteTimeDeclaration>(&statement)) {
+        if (first_discrete != nullptr) diagnostics_.add(errors::time_twice(discrete->span, first_discrete->span));
+        first_discrete = discrete;
+        declare_step(*discrete);
       } else if (auto const* inputs = std::get_if<ast::InputDeclaration>(&statement)) {
         for (ast::Declared const& input : inputs->names) {
           auto const unit = scope_.unit(input.unit);
@@ -135,6 +146,116 @@ class ModelChecker {
       } else if (auto const* function = std::get_if<ast::FunctionDefinition>(&statement)) {
         scope_.define_function(*function);
       }
+    }
+  }
+
+  void declare_step(ast::DiscreteTimeDeclaration const& discrete) {
+    model_.dynamics = Dynamics::discrete;
+    scope_.samples().discrete = true;
+    if (!discrete.step) return;
+    Unit const second = unit_atom("s").value();
+    auto const value = scope_.expression(*discrete.step);
+    if (!value) return;
+    if (value->kind == Typed::Kind::known && value->unit.dimension != second.dimension) {
+      diagnostics_.add(errors::number_of_other_kind(discrete.step->span, "the time between samples", value->unit, second));
+      return;
+    }
+    auto const step = model_.graph.constant_value(adapt(model_.graph, *value, second));
+    if (!step || !(*step > 0))
+      diagnostics_.add(errors::rate_not_positive(discrete.step->span));
+    else
+      model_.step = step;
+  }
+
+  void name_samples() {
+    SampleNames& samples = scope_.samples();
+    samples.states = static_cast<int>(states_.size());
+    Diagnostics said_with_the_channel;
+    each<ast::Observation>([&](ast::Observation const& observation) {
+      samples.channels.emplace(observation.channel.name.text,
+                               SampleNames::Channel{static_cast<int>(samples.channels.size()),
+                                                    check_unit(observation.channel.unit, said_with_the_channel)});
+    });
+  }
+
+  // Place holders of samples become what they stand for.
+  void finish_samples() {
+    Graph& graph = model_.graph;
+    int const states = static_cast<int>(states_.size());
+    std::vector<NodeId> predicted(model_.channels.size());
+    enum class Mark { none, open, done };
+    std::vector<Mark> marks(model_.channels.size(), Mark::none);
+    bool good = true;
+    auto const resolve = [&](auto const& self, NodeId root) -> NodeId {
+      return graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
+        Node const node = graph[leaf];
+        if (node.leaf_kind != LeafKind::previous || node.lag != 0) return std::nullopt;
+        auto const c = static_cast<std::size_t>(node.index - states);
+        Channel const& channel = model_.channels[c];
+        if (marks[c] == Mark::open && good) {
+          diagnostics_.add(errors::prediction_cycle(channel.span, channel.name));
+          good = false;
+        }
+        if (marks[c] == Mark::none) {
+          marks[c] = Mark::open;
+          predicted[c] = self(self, channel.noise.row->centre(graph, channel.noise.arguments));
+          marks[c] = Mark::done;
+        }
+        return good ? std::optional(predicted[c]) : std::nullopt;
+      });
+    };
+    for (NodeId const highest : highest_)
+      for (NodeId const id : graph.reachable({&highest, 1})) {
+        Node const& node = graph[id];
+        if (!is_leaf(node, LeafKind::previous) || node.lag != 0 || !good) continue;
+        Channel const& channel = model_.channels[static_cast<std::size_t>(node.index - states)];
+        diagnostics_.add(errors::present_prediction(graph.span(id).value_or(channel.span), channel.name));
+        good = false;
+      }
+    if (!good) return;
+    for (std::size_t c = 0; c < model_.channels.size(); ++c) {
+      Channel& channel = model_.channels[c];
+      predicted[c] = resolve(resolve, graph.leaf(LeafKind::previous, states + static_cast<int>(c), Stage::begin, 0));
+      for (NodeId& argument : channel.noise.arguments) argument = resolve(resolve, argument);
+      bool const own = std::any_of(channel.noise.arguments.begin(), channel.noise.arguments.end(), [&](NodeId argument) {
+        return graph.depends(argument, [&](Node const& node) {
+          return is_leaf(node, LeafKind::measured) && node.index == static_cast<int>(c) && node.lag == 0;
+        });
+      });
+      if (own && good) diagnostics_.add(errors::own_sample(channel.span, channel.name));
+    }
+    for (Derived& derived : model_.derived) derived.value = resolve(resolve, derived.value);
+    if (failed()) return;
+    model_.memories = scope_.samples().memories;
+    for (NodeId& memory : model_.memories) memory = solved(memory);
+    if (model_.dynamics == Dynamics::discrete)
+      lay_out_lags(predicted);
+    else if (model_.states.empty() && !reads_input_rate())
+      model_.dynamics = Dynamics::none;
+  }
+
+  bool reads_input_rate() const {
+    for (NodeId id = 0; id < model_.graph.size(); ++id)
+      if (is_leaf(model_.graph[id], LeafKind::input_rate)) return true;
+    return false;
+  }
+
+  void lay_out_lags(std::vector<NodeId> const& predicted) {
+    std::vector<std::optional<NodeId>> initial = initial_pasts_;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      auto const& [name, info] = states_[i];
+      auto const unit = scope_.find(name)->unit;
+      model_.pasts.push_back({{name, unit, info.declaration->name.span}, highest_[i], -1, {}});
+      model_.derived.push_back({{name, unit, info.declaration->name.span}, highest_[i], true});
+    }
+    for (std::size_t c = 0; c < model_.channels.size(); ++c) {
+      Channel const& channel = model_.channels[c];
+      model_.pasts.push_back({{channel.name, channel.unit, channel.span}, predicted[c], static_cast<int>(c), {}});
+      initial.emplace_back();
+    }
+    if (auto const missing = lay_out_pasts(model_, initial)) {
+      Past const& past = model_.pasts[static_cast<std::size_t>(*missing)];
+      diagnostics_.add(errors::initial_past_missing(past.span, past.name));
     }
   }
 
@@ -236,6 +357,7 @@ class ModelChecker {
       return;
     }
     highest_ = std::get<std::vector<NodeId>>(solved);
+    if (scope_.samples().discrete) return;  // they are the states at the present sample
     for (std::size_t i = 0; i < states_.size(); ++i) {
       StateInfo const& info = states_[i].second;
       for (int k = 0; k + 1 < info.order; ++k)
@@ -283,7 +405,7 @@ class ModelChecker {
         if (model_.graph.depends(
                 residuals[i],
                 [&](Node const& node) { return is_leaf(node, LeafKind::unknown) && node.index == static_cast<int>(j); }) &&
-            states_[j].second.order > 0)
+            (states_[j].second.order > 0 || scope_.samples().discrete))
           unknowns[i].push_back(j);
     // Kuhn's matching of equations to states, in the user's order, so that the surplus equation is the last one that finds no
     // place.
@@ -308,7 +430,7 @@ class ModelChecker {
     for (std::size_t j = 0; j < n; ++j) {
       if (equation_of[j] >= 0) continue;
       auto const& [name, info] = states_[j];
-      bool const algebraic = mentioned(name) && info.order == 0 && initial_primes(name) < 1;
+      bool const algebraic = !scope_.samples().discrete && mentioned(name) && info.order == 0 && initial_primes(name) < 1;
       diagnostics_.add(algebraic ? errors::algebraic_state(info.declaration->name.span, name) : without_equation(name, info));
       good = false;
     }
@@ -329,7 +451,47 @@ class ModelChecker {
     });
   }
 
+  // In discrete time one value stands for all samples before the first; it may be what a channel measured there.
+  void initial_pasts() {
+    initial_pasts_.resize(states_.size());
+    std::map<std::string, Span> given;
+    each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
+      for (ast::InitialValue const& initial : declaration.values) {
+        auto const place =
+            std::find_if(states_.begin(), states_.end(), [&](auto const& state) { return state.first == initial.state.name.text; });
+        if (place == states_.end()) {
+          diagnostics_.add(errors::not_a_state(initial.state.name, state_names()));
+          continue;
+        }
+        if (initial.state.primes > 0) {
+          diagnostics_.add(errors::primes_in_discrete_time(initial.state));
+          continue;
+        }
+        if (auto const [first, fresh] = given.emplace(place->first, initial.span); !fresh) {
+          diagnostics_.add(errors::initial_twice(initial.span, first->second, place->first));
+          continue;
+        }
+        auto const value = scope_.expression(initial.value);
+        if (!value) continue;
+        bool const moves = model_.graph.depends(value->node, [](Node const& node) {
+          return node.operation == Operation::leaf && node.leaf_kind != LeafKind::parameter &&
+                 !(node.leaf_kind == LeafKind::measured && node.lag == 0);
+        });
+        if (moves) {
+          diagnostics_.add(errors::initial_moves(initial.value.span));
+          continue;
+        }
+        initial_pasts_[static_cast<std::size_t>(place - states_.begin())] =
+            adapt(model_.graph, *value, scope_.find(place->first)->unit);
+      }
+    });
+  }
+
   void initial_values() {
+    if (scope_.samples().discrete) {
+      initial_pasts();
+      return;
+    }
     std::map<int, Span> given;
     each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
       for (ast::InitialValue const& initial : declaration.values) {
@@ -381,6 +543,10 @@ class ModelChecker {
       } else if (tree.prior) {
         auto use = check_distribution(scope_, *tree.prior, parameter);
         if (!use) continue;
+        if (use->row->discrete) {
+          diagnostics_.add(errors::count_as_prior(*tree.prior));
+          continue;
+        }
         std::vector<NodeId> parts = use->arguments;
         if (use->lower) parts.push_back(*use->lower);
         if (use->upper) parts.push_back(*use->upper);
@@ -513,6 +679,7 @@ class ModelChecker {
   std::vector<ast::ParameterDeclaration const*> parameter_trees_;
   std::vector<NodeId> highest_;
   bool orders_doubtful_ = false;  // after a mistake in the units of an equation: a prime may be missing there
+  std::vector<std::optional<NodeId>> initial_pasts_;  // of each state of a discrete-time model
 };
 
 }  // namespace

@@ -238,12 +238,24 @@ Typed select(Graph& graph, Typed const& condition, Typed a, Typed b) {
 Typed call(Graph& graph, FunctionRow const& row, std::vector<Typed> arguments) {
   std::optional<Unit> unit;
   if (row.unit_rule == UnitRule::same || row.unit_rule == UnitRule::ratio) unit = unify(graph, arguments);
+  if (row.unit_rule == UnitRule::branches) {
+    std::vector<Typed> values;
+    for (std::size_t i = 1; i < arguments.size(); i += 2) values.push_back(arguments[i]);
+    values.push_back(arguments.back());
+    unit = unify(graph, values);
+    for (std::size_t i = 1; i < arguments.size(); i += 2) arguments[i].node = values[i / 2].node;
+    arguments.back().node = values.back().node;
+    std::vector<NodeId> nodes;
+    for (Typed const& argument : arguments) nodes.push_back(argument.node);
+    return shared(row.build(graph, nodes), values, unit);
+  }
   std::vector<NodeId> nodes;
   for (Typed const& argument : arguments) nodes.push_back(argument.node);
   NodeId const node = row.build(graph, nodes);
   Typed result = shared(node, arguments, unit);
   switch (row.unit_rule) {
     case UnitRule::same:
+    case UnitRule::branches:
       break;
     case UnitRule::root:
       if (arguments[0].kind == Kind::known) {

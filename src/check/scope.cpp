@@ -134,6 +134,10 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
     diagnostics_.add(errors::primes_on(reference, what));
     return false;
   };
+  if (samples_.discrete && reference.primes > 0) {
+    diagnostics_.add(errors::primes_in_discrete_time(reference));
+    return std::nullopt;
+  }
   if (auto const* state = std::get_if<StateSymbol>(&symbol->what)) {
     // The order of a state is the most primes its name carries anywhere in an equation, so `observe` may not ask for more.
     if (state->order == 0 && reference.primes > 0) return std::nullopt;  // a state without an equation: said there
@@ -229,10 +233,14 @@ Typed Scope::compared(Operation operation, UnitOperand left, UnitOperand right) 
 }
 
 std::optional<Typed> Scope::binary(ast::Binary const& binary) {
+  std::string const& symbol = binary.symbol;
+  if (symbol == "..") {
+    diagnostics_.add(errors::range_out_of_place(binary.span));
+    return std::nullopt;
+  }
   auto left = expression(*binary.left), right = expression(*binary.right);
   if (!left || !right) return std::nullopt;
   UnitOperand const a{settled(*left), &*binary.left}, b{settled(*right), &*binary.right};
-  std::string const& symbol = binary.symbol;
   if (symbol == "*") return multiply(graph_, *left, *right);
   if (symbol == "/") return divide(graph_, *left, *right);
   if (symbol == "^") {
@@ -257,10 +265,18 @@ std::optional<Typed> Scope::binary(ast::Binary const& binary) {
 }
 
 std::optional<Typed> Scope::function_call(ast::Call const& call) {
+  if (is_past_call(call)) return past_call(call);
   std::string const& name = call.function.text;
   bool good = true;
   std::vector<UnitOperand> arguments;
   for (ast::Argument const& argument : call.arguments) {
+    if (auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
+        inner != nullptr && !argument.name && (*inner)->function.text == "lags" && is_past_call(**inner)) {
+      auto const lags = lag_calls(**inner);
+      good = good && lags;
+      for (std::size_t i = 0; lags && i < lags->size(); ++i) arguments.push_back({settled((*lags)[i]), &argument.value});
+      continue;
+    }
     if (argument.name) {
       diagnostics_.add(errors::named_argument_of_function(*argument.name, name));
       good = false;
@@ -272,9 +288,9 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
   auto const user = functions_.find(name);
   if (user != functions_.end()) {
     ast::FunctionDefinition const& function = *user->second;
-    if (call.arguments.size() != function.parameters.size()) {
+    if (good && arguments.size() != function.parameters.size()) {
       diagnostics_.add(
-          errors::argument_count(call.function, call.arguments.size(), function.parameters.size(), function.parameters.size()));
+          errors::argument_count(call.function, arguments.size(), function.parameters.size(), function.parameters.size()));
       return std::nullopt;
     }
     if (!good) return std::nullopt;
@@ -305,10 +321,15 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     diagnostics_.add(errors::unknown_function(call.function, known, find(name) != nullptr));
     return std::nullopt;
   }
-  auto const count = call.arguments.size();
-  if (count < static_cast<std::size_t>(row->minimum_arguments) || count > static_cast<std::size_t>(row->maximum_arguments)) {
+  auto const count = good ? arguments.size() : call.arguments.size();
+  if (good &&
+      (count < static_cast<std::size_t>(row->minimum_arguments) || count > static_cast<std::size_t>(row->maximum_arguments))) {
     diagnostics_.add(errors::argument_count(call.function, count, static_cast<std::size_t>(row->minimum_arguments),
                                             static_cast<std::size_t>(row->maximum_arguments)));
+    return std::nullopt;
+  }
+  if (row->unit_rule == UnitRule::branches && count % 2 == 0) {
+    diagnostics_.add(errors::piecewise_without_otherwise(call));
     return std::nullopt;
   }
   if (!good) return std::nullopt;
@@ -327,6 +348,18 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
     case UnitRule::angle:
       for (UnitOperand const& argument : arguments) units_.pure(name, argument, row.unit_rule == UnitRule::angle);
       break;
+    case UnitRule::branches: {  // condition, value, condition, value, ..., otherwise
+      std::vector<UnitOperand> branches;
+      for (std::size_t i = 0; i < arguments.size(); ++i) {
+        bool const condition = i % 2 == 0 && i + 1 < arguments.size();
+        if (condition)
+          units_.condition(arguments[i]);
+        else
+          branches.push_back(arguments[i]);
+      }
+      agreed = units_.agree({Occasion::Kind::branches}, branches);
+      break;
+    }
     case UnitRule::root:
     case UnitRule::none:
       break;
@@ -334,7 +367,7 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
   std::vector<Typed> values;
   for (UnitOperand const& argument : arguments) values.push_back(argument.value);
   Typed result = call(graph_, row, std::move(values));
-  if (!agreed && row.unit_rule == UnitRule::same) result.kind = Typed::Kind::wrong;
+  if (!agreed && row.unit_rule != UnitRule::ratio) result.kind = Typed::Kind::wrong;
   return result;
 }
 

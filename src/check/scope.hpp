@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "check/past.hpp"
 #include "check/quantity.hpp"
 #include "check/unit_check.hpp"
 #include "check/units.hpp"
@@ -73,6 +74,8 @@ class Scope {
 
   /// What stayed without a unit where one was needed, in the order of the text.
   std::vector<Unchecked> unchecked() const;
+  /// What is known of samples and channels; the model's checker fills it.
+  SampleNames& samples() { return samples_; }
 
   Graph& graph() { return graph_; }
   Diagnostics& diagnostics() { return diagnostics_; }
@@ -84,7 +87,8 @@ class Scope {
         diagnostics_(diagnostics),
         symbols_(other.symbols_),
         functions_(other.functions_),
-        units_(other.units_, diagnostics) {}
+        units_(other.units_, diagnostics),
+        samples_(other.samples_) {}
   void open_names(ast::Expression const& tree, std::set<std::string>& names, std::set<std::string>& seen) const;
   std::optional<Unit> unit_of(ast::Definition const& definition) const;
   std::optional<Typed> reference(ast::Reference const& reference);
@@ -97,6 +101,14 @@ class Scope {
   Typed built_in(FunctionRow const& row, std::span<UnitOperand const> arguments);
   std::optional<Typed> choice(ast::Conditional const& conditional);
 
+  // past.cpp
+  bool is_past_call(ast::Call const& call) const;
+  std::optional<Typed> past_call(ast::Call const& call);
+  std::optional<std::vector<Typed>> lag_calls(ast::Call const& call);
+  std::optional<int> lag_count(ast::Expression const& tree);
+  std::optional<Typed> channel_call(ast::Call const& call);
+  std::optional<Typed> change_call(ast::Call const& call);
+
   using Arguments = std::map<std::string, Typed>;  // names that hide the others while a function is expanded
   Graph& graph_;
   Diagnostics& diagnostics_;
@@ -106,6 +118,7 @@ class Scope {
   std::vector<std::string> resolving_;
   Arguments const* arguments_ = nullptr;
   UnitCheck units_;
+  SampleNames samples_;
 };
 
 /// y, y', y'', ... as text.

@@ -132,14 +132,21 @@ class TaskChecker {
         if (options_.fresh(option, key)) options_.start(option, task.start);
       } else if (!option.input && option.key && (key == "substeps" || key == "solver")) {
         if (options_.fresh(option, key)) task.settle = !options_.solver(option, task.solver);
+      } else if (!option.input && option.key && key == "prediction") {
+        if (options_.fresh(option, key))
+          prediction(option, model ? &file_.models[static_cast<std::size_t>(*model)] : nullptr, task.prediction);
       } else if (!option.input && option.key && key == "seed") {
         if (options_.fresh(option, key)) options_.seed(option, task.seed);
       } else if (!option.input && !option.key && !key.empty()) {
         diagnostics_.add(errors::unknown_backend({{head_span(option.value)}, key}, names));
         task.backend = key;  // said once is enough
       } else {
-        options_.unknown(option, {"start", "solver", "substeps", "seed"});
+        options_.unknown(option, {"start", "solver", "substeps", "prediction", "seed"});
       }
+    }
+    if (model && !file_.models[static_cast<std::size_t>(*model)].integrated()) {  // there is nothing to solve
+      task.solver = {};
+      task.settle = false;
     }
     if (task.backend.empty() && !diagnostics_.has_errors(before_)) diagnostics_.add(errors::backend_missing(tree_, names));
     return task;
@@ -184,7 +191,7 @@ class TaskChecker {
     for (ast::Option const& option : tree_.options) {
       std::string const key = key_of(option);
       if (option.input || !options_.fresh(option, key)) {
-        if (option.input) options_.unknown(option, {"draws", "redraw", "start", "seed"});
+        if (option.input) options_.unknown(option, {"draws", "redraw", "start", "prediction", "seed"});
         continue;
       }
       if (key == "draws") {
@@ -205,13 +212,34 @@ class TaskChecker {
           diagnostics_.add(errors::option_choice(option.value.span, key, word.value_or("this"), {"trajectory", "step"}));
       } else if (option.key && key == "start") {
         options_.start(option, task.start);
+      } else if (option.key && key == "prediction") {
+        prediction(option, model, task.prediction);
       } else if (option.key && key == "seed") {
         options_.seed(option, task.seed);
       } else {
-        options_.unknown(option, {"draws", "redraw", "start", "seed"});
+        options_.unknown(option, {"draws", "redraw", "start", "prediction", "seed"});
       }
     }
     return task;
+  }
+
+  void prediction(ast::Option const& option, Model const* model, PredictionRule& rule) {
+    std::vector<std::string> names;
+    std::optional<PredictionRule> chosen;
+    for (PredictionRule const each : {PredictionRule::as_written, PredictionRule::one_step, PredictionRule::free_run}) {
+      names.emplace_back(prediction_name(each));
+      if (as_word(option.value) == names.back()) chosen = each;
+    }
+    if (!chosen) {
+      diagnostics_.add(errors::option_choice(option.value.span, "prediction", as_word(option.value).value_or("this"), names));
+      return;
+    }
+    if (model == nullptr || *chosen == PredictionRule::as_written) return;
+    if (model->dynamics != Dynamics::discrete)
+      diagnostics_.add(errors::prediction_without_lags(option.span, model->name));
+    else if (!with_prediction(*model, *chosen))
+      diagnostics_.add(errors::nothing_measured_to_predict_from(option.span, model->name));
+    rule = *chosen;
   }
 
   // The names that states, channel locations and (when the model makes the noise) noise need.
@@ -250,6 +278,7 @@ class TaskChecker {
     std::vector<bool> given(model.inputs.size(), false);
     std::vector<Span> places(model.inputs.size());
     std::optional<Span> spacing;
+    Span noise_place = tree_.verb.span;
     std::vector<std::string> const options = {"values", "input",  "noise",    "samples", "rate",
                                               "step",   "solver", "substeps", "seed",    "file"};
     for (ast::Option const& option : tree_.options) {
@@ -271,6 +300,7 @@ class TaskChecker {
       } else if (key == "values" && as_call(option.value) != nullptr) {
         values(*as_call(option.value), model, task);
       } else if (option.key && key == "noise") {
+        noise_place = option.span;
         if (as_word(option.value) == "model")
           task.noise_fraction = -1;
         else if (auto const value = options_.number(option.value, key, unit_of("percent"), 0, 1e6))
@@ -297,9 +327,18 @@ class TaskChecker {
         options_.unknown(option, options);
       }
     }
+    if (task.noise_fraction >= 0)
+      for (Channel const& channel : model.channels)
+        if (channel.noise.row->discrete)
+          diagnostics_.add(errors::noise_of_counts(noise_place, channel.name, std::string(channel.noise.row->name)));
     if (task.file.empty()) task.file = task_name(tree_) + ".csv";
     if (diagnostics_.has_errors(before_)) return task;
     if (task.samples == 0) diagnostics_.add(errors::option_missing(tree_, "samples", "samples = 500"));
+    if (model.step && task.step > 0 && !same_step(task.step, *model.step))
+      diagnostics_.add(errors::other_step(*spacing, task.step, *model.step, model.name));
+    if (task.step == 0 && model.step) task.step = *model.step;
+    if (task.step == 0 && model.dynamics == Dynamics::none) task.step = 1;
+    if (!model.integrated()) task.solver = {};
     if (task.step == 0) diagnostics_.add(errors::option_missing(tree_, "rate", "rate = 1000 [Hz]"));
     for (std::size_t i = 0; i < given.size(); ++i)
       if (!given[i])

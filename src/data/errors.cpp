@@ -117,6 +117,12 @@ Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention
                "correct the number");
 }
 
+Diagnostic not_a_count(Cell const& cell, double value, Mention mention) {
+  return error("E4019", mention, fmt::format("{}: {:.9g} is not a count", place(cell), value),
+               "a channel with poisson or negative_binomial noise measures whole numbers from 0 on; a missing sample is an empty "
+               "cell or NA");
+}
+
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention) {
   return error("E4013", mention, fmt::format("{} has no value, and {} needs one in every row", place(cell), what),
                "only measured columns may miss samples: fill the gap, or cut the record there");

@@ -39,6 +39,8 @@ Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention
 /// what: "an input" or "the time".
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention);
 
+Diagnostic not_a_count(Cell const& cell, double value, Mention mention);
+
 // the columns as a record
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention);
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention);

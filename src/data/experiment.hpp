@@ -35,7 +35,9 @@ class InputSignal {
   int degree() const { return record_->degree; }
   /// Number of samples seen.
   int rows() const { return rows_; }
-  /// The sample itself.
+  /// Number of rows of the record before the first one seen.
+  int earlier() const { return first_; }
+  /// The sample itself; row -1 is the one before the first, down to -earlier().
   double sample(int row) const { return record_->samples[static_cast<std::size_t>(first_ + row)]; }
   /// c_0 ... c_degree of interval i in [0, rows() - 2].
   std::span<double const> coefficients(int interval) const;
@@ -68,11 +70,19 @@ class InputSignal {
 /// channels.
 struct Experiment {
   std::string name;                           // "bench", as declared
-  std::vector<double> time;                   // [N] s, strictly increasing
+  std::vector<double> time;                   // [N] s, strictly increasing (of models without dynamics: any order)
   std::vector<InputSignal> inputs;            // one per model input
   std::vector<std::vector<double>> measured;  // one per model channel, each [N]; NaN: missing; empty: channel not in this data
   std::vector<std::uint8_t> scored;           // [N], 1: in the split; simulation runs over all rows from the first one needed
   int first_row = 1;                          // row of the file that is index 0 (rows count from 1)
+  /// What discrete-time models read before index 0, each channel latest first; inputs are views that begin later in their record.
+  std::vector<std::vector<double>> history;
+  /// Per channel [N]: 0 where a past measured sample that its density reads is missing, so that it cannot be scored. Empty:
+  /// nowhere.
+  std::vector<std::vector<std::uint8_t>> has_past;
 };
+
+/// The sample of a channel at `row`, which may lie before the first; NaN where it is missing or was not recorded.
+double measured_sample(Experiment const& experiment, int channel, int row);
 
 }  // namespace sysid

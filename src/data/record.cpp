@@ -42,11 +42,12 @@ std::vector<double> complete(Table const& table, ColumnRequest const& request, s
 std::vector<double> times(Table const& table, RecordRequest const& request) {
   if (!request.time) {
     std::vector<double> time(static_cast<std::size_t>(table.rows()));
-    for (std::size_t i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) * request.step;  // a running sum would drift
+    for (std::size_t i = 0; i < time.size(); ++i)
+      time[i] = request.step > 0 ? static_cast<double>(i) * request.step : static_cast<double>(i + 1);  // a running sum would drift
     return time;
   }
   std::vector<double> time = complete(table, *request.time, "the time");
-  for (std::size_t i = 1; i < time.size(); ++i)
+  for (std::size_t i = 1; i < time.size() && !request.independent_rows; ++i)
     if (!(time[i] > time[i - 1]))
       throw UserError(
           data_errors::time_not_increasing(cell(table, i, request.time->column), time[i - 1], time[i], request.time->mention));
@@ -74,7 +75,8 @@ auto collect(Diagnostics& diagnostics, std::optional<Span> mention, Read read) -
 }  // namespace
 
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
-  if (!request.time && !(request.step > 0)) throw InternalError("a record without a time column needs a step");
+  if (!request.time && !(request.step > 0) && !request.independent_rows)
+    throw InternalError("a record without a time column needs a step");
   std::optional<Table> const table = collect(diagnostics, request.mention, [&] {
     Table read = Table::read(request.path, request.mention);
     if (read.rows() < 2) throw UserError(data_errors::too_few_rows(read.name(), read.rows(), request.mention));
@@ -88,12 +90,16 @@ std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostic
   record.digest = table->digest();
   std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(*table, request); });
   if (!time) complete_record = false;
+  // Inputs of independent rows are read at rows alone.
+  std::vector<double> rows(static_cast<std::size_t>(table->rows()));
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i + 1);
   for (InputRequest const& input : request.inputs) {
     std::optional<std::vector<double>> samples =
         collect(diagnostics, input.mention, [&] { return complete(*table, input, "an input"); });
     std::optional<InputSignal> signal;
     if (samples && time)
-      signal = collect(diagnostics, input.mention, [&] { return InputSignal(input.rule, *time, std::move(*samples)); });
+      signal = collect(diagnostics, input.mention,
+                       [&] { return InputSignal(input.rule, request.independent_rows ? rows : *time, std::move(*samples)); });
     if (signal)
       record.inputs.push_back(std::move(*signal));
     else
@@ -106,6 +112,11 @@ std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostic
     else
       samples = collect(diagnostics, channel->mention, [&] {
         std::vector<double> values = table->numbers(channel->column, channel->mention);
+        if (channel->counts)
+          for (std::size_t i = 0; i < values.size(); ++i)
+            if (values[i] < 0 || values[i] != std::floor(values[i]) || std::isinf(values[i]))
+              if (!std::isnan(values[i]))
+                throw UserError(data_errors::not_a_count(cell(*table, i, channel->column), values[i], channel->mention));
         to_si(values, *channel);
         return values;
       });
@@ -117,6 +128,15 @@ std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostic
   if (!complete_record) return std::nullopt;
   record.time = std::move(*time);
   return record;
+}
+
+double measured_sample(Experiment const& experiment, int channel, int row) {
+  auto const c = static_cast<std::size_t>(channel);
+  std::vector<double> const& measured = experiment.measured[c];
+  double const missing = std::nan("");
+  if (row >= 0) return measured.empty() ? missing : measured[static_cast<std::size_t>(row)];
+  auto const back = static_cast<std::size_t>(-row - 1);
+  return c < experiment.history.size() && back < experiment.history[c].size() ? experiment.history[c][back] : missing;
 }
 
 std::optional<Diagnostic> check_rows(Record const& record, std::string const& what, RowRange rows, std::optional<Span> mention) {
@@ -143,6 +163,9 @@ Experiment make_experiment(Record const& record, std::string name, int simulate_
       experiment.measured.emplace_back();
     else
       experiment.measured.emplace_back(channel.begin() + begin, channel.begin() + last);
+    std::vector<double> before(channel.begin(), channel.begin() + (channel.empty() ? 0 : begin));
+    std::reverse(before.begin(), before.end());
+    experiment.history.push_back(std::move(before));
   }
   experiment.scored.assign(static_cast<std::size_t>(last - begin), 0);
   std::fill(experiment.scored.begin() + (scored.first - simulate_from), experiment.scored.end(), std::uint8_t{1});

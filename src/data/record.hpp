@@ -18,6 +18,7 @@ struct ColumnRequest {
   std::optional<Unit> unit;      // after the column in the data block
   std::optional<Unit> declared;  // in the model
   std::optional<Span> mention;   // where messages point to
+  bool counts = false;           // whole numbers >= 0 are expected
 };
 
 struct InputRequest : ColumnRequest {
@@ -29,6 +30,7 @@ struct RecordRequest {
   std::optional<Span> mention;
   std::optional<ColumnRequest> time;                   // in seconds unless it has a unit
   double step = 0;                                     // [s] > 0 when there is no time column; row 1 is then at time 0
+  bool independent_rows = false;                       // no dynamics: times in any order, and row numbers where there are none
   std::vector<InputRequest> inputs;                    // in the order of the model's inputs
   std::vector<std::optional<ColumnRequest>> measured;  // in the order of its channels; nothing: not in this data
 };

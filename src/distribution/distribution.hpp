@@ -40,7 +40,7 @@ struct DistributionRow {
   NodeId (*log_density)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// P(X <= x); nullptr: cannot be truncated.
   NodeId (*cumulative)(Graph&, NodeId x, std::span<NodeId const> arguments);
-  /// P(X > x), accurate where it is small; nullptr only when improper.
+  /// P(X > x), accurate where it is small; nullptr only when improper or discrete.
   NodeId (*survival)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// Natural bounds of the support; nullptr: infinite on that side.
   NodeId (*lower)(Graph&, std::span<NodeId const> arguments);
@@ -52,11 +52,18 @@ struct DistributionRow {
   NodeId (*saturated)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// One draw, untruncated; nullptr when improper.
   double (*draw)(Stream&, std::span<double const> arguments);
-  /// Inverse of `cumulative` (tail lower) or `survival` (upper), for draws from narrow truncations; nullptr only when improper.
+  /// Inverse of `cumulative` (tail lower) or `survival` (upper), for draws from narrow truncations; nullptr only when improper or
+  /// discrete.
   double (*quantile)(double probability, Tail tail, std::span<double const> arguments);
   /// Whether numeric arguments are admissible (sd > 0, lower < upper); returns the reason when not, else empty.
   std::string_view (*refuse)(std::span<double const> arguments);
   std::string_view summary;
+  /// The variate is a count: `log_density` is the logarithm of a probability, no unit scales it, and it is noise only. Neither
+  /// truncated nor a prior, so cumulative, survival and quantile are nullptr.
+  bool discrete = false;
+  /// Of a discrete noise, for Pearson's residual (y - centre)/sqrt(variance) and its fourth moment; nullptr for the others.
+  double (*variance)(std::span<double const> arguments) = nullptr;
+  double (*excess_kurtosis)(std::span<double const> arguments) = nullptr;
 };
 
 std::span<DistributionRow const> distributions();

@@ -18,7 +18,9 @@ DistributionRow half_normal_distribution();
 DistributionRow inverse_gamma_distribution();
 DistributionRow log_normal_distribution();
 DistributionRow log_uniform_distribution();
+DistributionRow negative_binomial_distribution();
 DistributionRow normal_distribution();
+DistributionRow poisson_distribution();
 DistributionRow student_t_distribution();
 DistributionRow uniform_distribution();
 

@@ -5,9 +5,10 @@ namespace sysid {
 
 std::span<DistributionRow const> distributions() {
   static DistributionRow const rows[] = {
-      uniform_distribution(),     log_uniform_distribution(),   normal_distribution(),      log_normal_distribution(),
-      half_normal_distribution(), student_t_distribution(),     half_cauchy_distribution(), exponential_distribution(),
-      gamma_distribution(),       inverse_gamma_distribution(), beta_distribution(),        flat_distribution(),
+      uniform_distribution(),     log_uniform_distribution(),       normal_distribution(),      log_normal_distribution(),
+      half_normal_distribution(), student_t_distribution(),         half_cauchy_distribution(), exponential_distribution(),
+      gamma_distribution(),       inverse_gamma_distribution(),     beta_distribution(),        flat_distribution(),
+      poisson_distribution(),     negative_binomial_distribution(),
   };
   return rows;
 }

@@ -32,6 +32,7 @@ enum class UnitRule {
   root,           // result is the square root of the unit (sqrt)
   none,           // any argument, dimensionless result (sign)
   ratio,          // two arguments of one unit, dimensionless result (atan2)
+  branches,       // condition, value, condition, value, ..., value: the values and the result share one unit (piecewise)
 };
 
 /// A name users can call: `sqrt(k/m)`. `build` makes the node, from a primitive or from operations.

@@ -23,6 +23,7 @@ std::uint64_t hash_of(Node const& node) {
   std::uint64_t hash = static_cast<std::uint64_t>(node.operation) | static_cast<std::uint64_t>(node.leaf_kind) << 8 |
                        static_cast<std::uint64_t>(node.stage) << 16 |
                        static_cast<std::uint64_t>(static_cast<std::uint32_t>(node.index)) << 32;
+  hash = mix(hash, static_cast<std::uint32_t>(node.lag));
   hash = mix(hash, std::bit_cast<std::uint64_t>(node.value));
   hash = mix(hash, std::bit_cast<std::uintptr_t>(node.function));
   hash = mix(hash, static_cast<std::uint64_t>(node.a) << 32 | node.b);
@@ -31,8 +32,9 @@ std::uint64_t hash_of(Node const& node) {
 
 bool same(Node const& left, Node const& right) {
   return left.operation == right.operation && left.leaf_kind == right.leaf_kind && left.stage == right.stage &&
-         left.index == right.index && std::bit_cast<std::uint64_t>(left.value) == std::bit_cast<std::uint64_t>(right.value) &&
-         left.function == right.function && left.a == right.a && left.b == right.b && left.c == right.c;
+         left.index == right.index && left.lag == right.lag &&
+         std::bit_cast<std::uint64_t>(left.value) == std::bit_cast<std::uint64_t>(right.value) && left.function == right.function &&
+         left.a == right.a && left.b == right.b && left.c == right.c;
 }
 
 double condition(bool holds) { return holds ? 1.0 : 0.0; }
@@ -64,8 +66,8 @@ NodeId Graph::constant(double value) {
   return intern({.operation = Operation::constant, .value = std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value});
 }
 
-NodeId Graph::leaf(LeafKind kind, int index, Stage stage) {
-  return intern({.operation = Operation::leaf, .leaf_kind = kind, .stage = stage, .index = index});
+NodeId Graph::leaf(LeafKind kind, int index, Stage stage, int lag) {
+  return intern({.operation = Operation::leaf, .leaf_kind = kind, .stage = stage, .index = index, .lag = lag});
 }
 
 NodeId Graph::negate(NodeId a) {

@@ -55,6 +55,7 @@ enum class LeafKind : std::uint8_t {
   input_rate,     // its time derivative
   time,
   measured,   // the channel's sample at the current time
+  previous,   // a remembered value, `index` says which, as it was at the sample before
   unknown,    // a highest derivative still to be solved for, or a place holder of a symbolic pass
   step_size,  // h of the integrator
 };
@@ -67,6 +68,7 @@ struct Node {
   LeafKind leaf_kind = LeafKind::parameter;
   Stage stage = Stage::begin;
   std::int32_t index = 0;
+  std::int32_t lag = 0;  // samples back, of what discrete-time models read: input, time, measured, unknown
   double value = 0;
   Function const* function = nullptr;
   NodeId a = 0, b = 0, c = 0;
@@ -79,7 +81,7 @@ class Graph {
   // operands of add, multiply, equal, conjunction and disjunction are put in one order. Nothing else is rewritten here: heavier
   // algebra belongs to the program stage. Constants are told apart by their bits (0 and -0 are two), and there is one NaN.
   NodeId constant(double value);
-  NodeId leaf(LeafKind kind, int index = 0, Stage stage = Stage::begin);
+  NodeId leaf(LeafKind kind, int index = 0, Stage stage = Stage::begin, int lag = 0);
   NodeId negate(NodeId a);
   NodeId add(NodeId a, NodeId b);
   NodeId subtract(NodeId a, NodeId b);

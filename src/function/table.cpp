@@ -40,6 +40,13 @@ NodeId step(Graph& graph, Arguments a) { return less_equal(Term(graph, 0.0), Ter
 
 NodeId clamp(Graph& graph, Arguments a) { return min(max(Term(graph, a[0]), Term(graph, a[1])), Term(graph, a[2])).id; }
 
+/// The value behind the first condition that holds, else the last argument.
+NodeId piecewise(Graph& graph, Arguments a) {
+  NodeId result = a.back();
+  for (std::size_t i = a.size() - 1; i >= 2; i -= 2) result = graph.select(a[i - 2], a[i - 1], result);
+  return result;
+}
+
 /// Phi(x) = erfc(-x / sqrt 2) / 2, accurate in the lower tail. DLMF 7.18
 NodeId normal_cdf(Graph& graph, Arguments a) { return (0.5 * erfc(-(Term(graph, a[0]) / std::numbers::sqrt2))).id; }
 
@@ -59,6 +66,7 @@ constexpr FunctionRow rows[] = {
     {"min", 2, any, same, &chain<Operation::minimum>, "smallest of two or more"},
     {"max", 2, any, same, &chain<Operation::maximum>, "largest of two or more"},
     {"clamp", 3, 3, same, &clamp, "clamp(x, low, high): x, but not below low or above high"},
+    {"piecewise", 3, any, branches, &piecewise, "piecewise(a < b, x, c < d, y, z): x where a < b, else y where c < d, else z"},
     {"step", 1, 1, none, &step, "1 where x >= 0, else 0"},
     {"floor", 1, 1, dimensionless, &unary<Operation::floor>, "largest integer not above x"},
     {"sin", 1, 1, angle, &primitive<sin_function>, "sine of an angle in radians"},

@@ -121,10 +121,10 @@ double rmse(std::span<double const> observed, std::span<double const> predicted)
   return std::sqrt(square / samples);
 }
 
-ChiSquaredTest chi_squared(std::span<double const> standardised) {
+ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis) {
   auto const [sum, samples] = products(standardised, 0, standardised, 0, 0);
   if (samples == 0) return {};
-  double const half = 0.5 * samples;
+  double const half = samples / (2 + excess_kurtosis);
   return {sum / samples, boost::math::gamma_p_inv(half, 5e-4) / half, boost::math::gamma_q_inv(half, 5e-4) / half};
 }
 

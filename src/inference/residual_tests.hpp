@@ -46,7 +46,9 @@ struct ChiSquaredTest {
   bool fires() const { return per_sample < low || per_sample > high; }
 };
 
-/// standardised: (y - location) / sd, independent under the model. n * per_sample ~ chi^2(n).
-ChiSquaredTest chi_squared(std::span<double const> standardised);
+/// standardised: (y - location) / sd, independent under the model. n * per_sample ~ chi^2(n) for normal ones. Where they have an
+/// excess kurtosis k (counts: 1/mean for Poisson's) the variance of the sum is n (2 + k), that of chi^2 with 2 n/(2 + k) degrees of
+/// freedom in place of n.
+ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis = 0);
 
 }  // namespace sysid

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "model/dump.hpp"
 
 #include "likelihood/parameter_space.hpp"
 
@@ -19,7 +22,9 @@ class Folded {
 
   NodeId operator()(NodeId root) {
     NodeId const result = graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
-      Node const& node = graph[leaf];
+      Node const node = graph[leaf];
+      if (node.leaf_kind == LeafKind::previous)  // a memory: it is kept behind the states
+        return graph.leaf(LeafKind::state, static_cast<int>(model_.states.size()) + node.index);
       if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())
         return std::nullopt;
       Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];
@@ -85,7 +90,8 @@ ChannelDensity channel_density(Folded& folded, Channel const& channel, int index
   Distribution const use = folded(channel.noise);
   NodeId const measured = graph.leaf(LeafKind::measured, index);
   NodeId const centre = use.row->centre(graph, use.arguments);
-  NodeId const unit = graph.constant(elementary::log(scale_of(channel)));
+  // A count has a probability, not a density per unit.
+  NodeId const unit = graph.constant(use.row->discrete ? 0.0 : elementary::log(scale_of(channel)));
   return {graph.add(log_density(graph, use, measured), unit), graph.add(use.row->saturated(graph, measured, use.arguments), unit),
           centre};
 }
@@ -112,6 +118,17 @@ SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
                                         : folded(model.states[i].initial));
     source.derivative.push_back(folded(model.states[i].derivative));
   }
+  source.map = model.dynamics == Dynamics::discrete;
+  // What is remembered begins as it is at the first sample.
+  for (NodeId const memory : model.memories) {
+    source.memories.push_back(folded(memory));
+    source.initial.push_back(folded.graph.substitute(source.memories.back(), [&](NodeId leaf) -> std::optional<NodeId> {
+      Node const& node = folded.graph[leaf];
+      if (node.leaf_kind != LeafKind::state) return std::nullopt;
+      return source.initial[static_cast<std::size_t>(node.index)];
+    }));
+    source.derivative.push_back(folded.graph.constant(0));
+  }
   return source;
 }
 
@@ -126,7 +143,11 @@ void compile_kernels(CompiledModel& compiled) {
     compiled.derived_index.push_back(static_cast<int>(i));
     quantities.push_back(graph.divide(folded(model.derived[i].value), graph.constant(scale_of(model.derived[i]))));
   }
-  for (State const& state : model.states) initial.push_back(folded(state.initial));
+  // Where a start is estimated, measured samples play no part in the first guess.
+  for (State const& state : model.states)
+    initial.push_back(graph.substitute(folded(state.initial), [&](NodeId leaf) -> std::optional<NodeId> {
+      return graph[leaf].leaf_kind == LeafKind::measured ? std::optional(graph.constant(0)) : std::nullopt;
+    }));
   compiled.derived = compile_kernel(graph, leaves, quantities);
   compiled.initial = compile_kernel(graph, leaves, initial);
 }
@@ -157,7 +178,8 @@ void compile_programs(CompiledModel& compiled) {
       trajectory.records.push_back(use.arguments[a]);
     }
   }
-  for (std::size_t s = 0; s < model.states.size(); ++s) {
+  // In discrete time states are what is remembered; their present values are among the derived quantities.
+  for (std::size_t s = 0; s < model.states.size() && model.dynamics != Dynamics::discrete; ++s) {
     compiled.records.push_back({CompiledModel::Record::Kind::state, static_cast<int>(s), 0});
     trajectory.records.push_back(folded.graph.leaf(LeafKind::state, static_cast<int>(s)));
   }
@@ -178,6 +200,7 @@ ProgramNames names_of(CompiledModel const& compiled) {
     for (State const& state : compiled.model.states) names.parameters.push_back(state.name + "(0)");
   for (Quantity const& input : compiled.model.inputs) names.inputs.push_back(input.name);
   for (State const& state : compiled.model.states) names.states.push_back(state.name);
+  for (std::size_t i = 0; i < compiled.model.memories.size(); ++i) names.states.push_back(fmt::format("previous({})", i));
   for (Channel const& channel : compiled.model.channels) names.channels.push_back(channel.name);
   return names;
 }
@@ -209,8 +232,13 @@ std::string describe(Model const& model, Graph const& graph, NodeId node, Source
     return fmt::format("`{}` ({}:{}:{})", source.text(*span), source.name(), place.line, place.column);
   }
   std::string text = graph.format(node, [&](NodeId leaf) -> std::string {
-    Node const& what = graph[leaf];
+    Node what = graph[leaf];
     auto const index = static_cast<std::size_t>(what.index);
+    if (what.leaf_kind == LeafKind::state && index >= model.states.size()) return "the value before";
+    if (what.lag > 0) {
+      int const lag = std::exchange(what.lag, 0);
+      return fmt::format("lag({}, {})", leaf_name(model, what), lag);
+    }
     switch (what.leaf_kind) {
       case LeafKind::parameter:
         return index < model.parameters.size() ? model.parameters[index].name

@@ -90,6 +90,24 @@ Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) c
   return result;
 }
 
+std::vector<std::vector<double>> Trajectory::noise_arguments(ConstLanes parameters, int channel) const {
+  LaneArray all(compiled_->parameter_rows(), parameters.width());
+  for (int r = 0; r < parameters.rows(); ++r)
+    for (int w = 0; w < parameters.width(); ++w) all(r, w) = parameters(r, w);
+  if (start_) start_->estimate(all);
+  int const rows = static_cast<int>(compiled_->records.size());
+  LaneArray records(samples() * rows, all.width());
+  std::vector<Outcome> outcome(static_cast<std::size_t>(all.width()));
+  simulator_.records(all, 0, samples(), records, outcome);
+  std::vector<std::vector<double>> arguments(static_cast<std::size_t>(samples()));
+  for (int r = 0; r < rows; ++r) {
+    auto const& record = compiled_->records[static_cast<std::size_t>(r)];
+    if (record.kind != RecordKind::noise_argument || record.index != channel) continue;
+    for (int i = 0; i < samples(); ++i) arguments[static_cast<std::size_t>(i)].push_back(records(i * rows + r, 0));
+  }
+  return arguments;
+}
+
 Trajectory::Result Trajectory::run_redrawn(ConstLanes parameters, int trajectories, StreamKey redraw_key,
                                            StreamKey noise_key) const {
   int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;

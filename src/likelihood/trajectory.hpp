@@ -34,6 +34,9 @@ class Trajectory {
   };
   /// parameters: of the model, SI [parameters x W]; NaN where irrelevant.
   Result run(ConstLanes parameters, StreamKey noise_key) const;
+  /// Arguments of a channel's noise along the record, SI: [samples][arguments]; NaN where the solve fails. parameters: [parameters
+  /// x 1].
+  std::vector<std::vector<double>> noise_arguments(ConstLanes parameters, int channel) const;
   /// The tutorial's Fig. 8.4: at every sample trajectory d continues with a posterior draw picked afresh by the stream of
   /// (redraw_key, index d, step sample). parameters: [parameters x draws]; trajectories: how many.
   Result run_redrawn(ConstLanes parameters, int trajectories, StreamKey redraw_key, StreamKey noise_key) const;

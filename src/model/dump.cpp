@@ -12,9 +12,7 @@ std::string declared(Quantity const& quantity) {
                        : quantity.name;
 }
 
-}  // namespace
-
-std::string leaf_name(Model const& model, Node const& leaf) {
+std::string present_name(Model const& model, Node const& leaf) {
   auto const index = static_cast<std::size_t>(leaf.index);
   switch (leaf.leaf_kind) {
     case LeafKind::parameter:
@@ -31,12 +29,21 @@ std::string leaf_name(Model const& model, Node const& leaf) {
       return "time";
     case LeafKind::measured:
       return fmt::format("measured({})", model.channels[index].name);
+    case LeafKind::previous:
+      return fmt::format("previous({})", index);
     case LeafKind::unknown:
       return fmt::format("unknown({})", index);
     case LeafKind::step_size:
       return "h";
   }
   return "?";
+}
+
+}  // namespace
+
+std::string leaf_name(Model const& model, Node const& leaf) {
+  std::string const name = present_name(model, leaf);
+  return leaf.lag == 0 ? name : fmt::format("lag({}, {})", name, leaf.lag);
 }
 
 std::string dump(Model const& model) {
@@ -61,8 +68,9 @@ std::string dump(Model const& model) {
                                          : "");
   for (State const& state : model.states) {
     out += fmt::format("  state {}, initially {}\n", declared(state), text(state.initial));
-    out += fmt::format("    d/dt = {}\n", text(state.derivative));
+    out += fmt::format("    {} {}\n", model.dynamics == Dynamics::discrete ? "next =" : "d/dt =", text(state.derivative));
   }
+  for (std::size_t i = 0; i < model.memories.size(); ++i) out += fmt::format("  previous({}) of {}\n", i, text(model.memories[i]));
   for (Channel const& channel : model.channels) out += fmt::format("  observe {} ~ {}\n", declared(channel), call(channel.noise));
   for (Derived const& derived : model.derived)
     out += fmt::format("  derive {} = {}{}\n", declared(derived), text(derived.value), derived.per_sample ? "  # per sample" : "");

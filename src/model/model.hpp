@@ -22,10 +22,17 @@ struct Quantity {
   std::string unit_text() const { return unit ? unit->text : std::string(); }
 };
 
+/// How a model goes from one sample to the next.
+enum class Dynamics {
+  continuous,  // by differential equations, which need times and what inputs do between samples
+  discrete,    // by a map from sample to sample
+  none,        // not at all: no states, rows are independent and of any order
+};
+
 /// One component of the first-order system: leaf state(i).
-struct State : Quantity {  // named "y", "y'", "y''", ...
-  NodeId derivative = 0;   // expression in state, input, parameter, time leaves
-  NodeId initial = 0;      // expression in parameters only
+struct State : Quantity {  // named "y", "y'", "y''", ...; in discrete time "lag(y, 1)", "lag(y, 2)", ...
+  NodeId derivative = 0;   // expression in state, input, parameter, time leaves; in discrete time the component's next value
+  NodeId initial = 0;      // expression in parameters only; in discrete time also measured leaves with a lag
   bool initial_given = false;
 };
 
@@ -55,9 +62,19 @@ struct Unchecked {
   std::string why;
 };
 
+/// Of a discrete-time model: what may have a past, a state or what a channel predicts. `registers` are the states that hold its
+/// lags 1, 2, ...
+struct Past : Quantity {
+  NodeId present = 0;  // its value at the present sample
+  int channel = -1;    // of which it is the prediction
+  std::vector<int> registers;
+};
+
 struct Model {
   std::string name;
   std::string title;
+  Dynamics dynamics = Dynamics::continuous;
+  std::optional<double> step;  // [s] between samples of a discrete-time model; absent: what the data have
   Graph graph;
   std::vector<Quantity> inputs;
   std::vector<State> states;
@@ -66,6 +83,11 @@ struct Model {
   std::vector<Channel> channels;
   std::vector<Derived> derived;
   std::vector<Unchecked> unchecked;  // in the order of the text
+  std::vector<Past> pasts;
+  std::vector<NodeId> memories;  // leaf previous(i): the value that memories[i] had at the sample before, at the first its own
+
+  /// Whether a solver integrates it, so that substeps mean something.
+  bool integrated() const { return dynamics == Dynamics::continuous && !states.empty(); }
 };
 
 }  // namespace sysid

@@ -45,12 +45,14 @@ class Dump {
   std::string text() {
     RegisterLayout const& layout = program_.registers;
     text_ = fmt::format(
-        "# integrator {}; registers: {} parameters, {} hoisted, {} states, {} accumulators, {} records, {} sums, {} temporaries\n"
+        "# {}; registers: {} parameters, {} hoisted, {} states, {} accumulators, {} records, {} sums, {} temporaries\n"
         "# a step and its observations touch {} of them; _ is the accumulator\n",
-        program_.source.integrator, layout.parameters, layout.hoisted, layout.states, layout.accumulators, layout.records,
-        layout.sums, layout.temporaries, program_.hot_registers);
+        program_.source.map ? "map from sample to sample" : "integrator " + program_.source.integrator, layout.parameters,
+        layout.hoisted, layout.states, layout.accumulators, layout.records, layout.sums, layout.temporaries,
+        program_.hot_registers);
     section("prologue: once per parameter vector", program_.prologue, "");
     section("start: initial states", program_.start, "");
+    if (!program_.source.memories.empty()) section("carry: what each sample leaves to remember", program_.carry, "sample");
     section("step", program_.step, "step");
     for (std::size_t c = 0; c < program_.observe.size(); ++c)
       section(fmt::format("observe {}: each scored sample", at(names_.channels, static_cast<int>(c))), program_.observe[c],
@@ -103,6 +105,11 @@ class Dump {
   }
 
   std::string leaf_name(UniformLeaf const& leaf) const {
+    std::string const name = present_name(leaf);
+    return leaf.lag == 0 ? name : fmt::format("lag({}, {})", name, leaf.lag);
+  }
+
+  std::string present_name(UniformLeaf const& leaf) const {
     std::string const stage = leaf.stage == Stage::begin ? "" : leaf.stage == Stage::middle ? "@middle" : "@end";
     switch (leaf.kind) {
       case LeafKind::input:

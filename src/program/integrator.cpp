@@ -32,7 +32,7 @@ std::vector<NodeId> Stages::evaluate(std::span<NodeId const> at, Stage stage) co
       case LeafKind::input:
       case LeafKind::input_rate:
       case LeafKind::time:
-        return graph.leaf(leaf.leaf_kind, leaf.index, stage);
+        return graph.leaf(leaf.leaf_kind, leaf.index, stage, leaf.lag);
       default:
         return std::nullopt;
     }

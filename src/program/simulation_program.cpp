@@ -51,6 +51,7 @@ class Compilation {
     expand_step();
     graph_ = program_.graph;
     compile_step();
+    compile_carry();
     for (std::size_t c = 0; c < source.channels.size(); ++c) compile_observation(static_cast<int>(c));
     compile_records();
     compile_epilogue();
@@ -62,6 +63,10 @@ class Compilation {
 
  private:
   void expand_step() {
+    if (program_.source.map) {
+      program_.next = program_.source.derivative;
+      return;
+    }
     IntegratorRow const* integrator = find_integrator(program_.source.integrator);
     if (integrator == nullptr) throw InternalError("there is no integrator `" + program_.source.integrator + "`");
     Graph& graph = program_.graph;
@@ -75,9 +80,26 @@ class Compilation {
   void compile_step() {
     Algebra algebra(graph_, program_.next);
     std::vector<Goal> goals;
-    for (std::size_t i = 0; i < program_.next.size(); ++i)
+    for (std::size_t i = 0; i < program_.next.size(); ++i) {
+      if (is_state(program_.next[i], i)) continue;  // what is remembered stays as it is
       goals.push_back({algebra.rewrite(program_.next[i]), state_bank + static_cast<std::uint32_t>(i)});
+    }
     program_.step = section(goals);
+  }
+
+  bool is_state(NodeId id, std::size_t state) const {
+    Node const& node = graph_[id];
+    return node.operation == Operation::leaf && node.leaf_kind == LeafKind::state && node.index == static_cast<int>(state);
+  }
+
+  void compile_carry() {
+    std::vector<NodeId> const& memories = program_.source.memories;
+    Algebra algebra(graph_, memories);
+    auto const first = static_cast<std::uint32_t>(program_.source.derivative.size() - memories.size());
+    std::vector<Goal> goals;
+    for (std::size_t i = 0; i < memories.size(); ++i)
+      goals.push_back({algebra.rewrite(memories[i]), state_bank + first + static_cast<std::uint32_t>(i)});
+    program_.carry = section(goals);
   }
 
   /// Splits the channel's sums and emits what is left to do at each sample.
@@ -209,7 +231,7 @@ class Compilation {
       Node const& node = graph_[id];
       if (node.operation != Operation::leaf) continue;
       leaves.push_back(id);
-      result.leaves.push_back({node.leaf_kind, node.index, node.stage});
+      result.leaves.push_back({node.leaf_kind, node.index, node.stage, node.lag});
     }
     result.kernel = compile_kernel(graph_, leaves, values);
     widest_row_ = std::max(widest_row_, result.kernel.outputs);
@@ -229,7 +251,8 @@ class Compilation {
     widest_row_ = std::max(widest_row_, static_cast<int>(program_.source.channels.size()) + data_sums_);
     program_.uniforms = static_cast<int>(program_.constants.size()) + widest_row_;
     std::set<std::uint32_t> hot;
-    std::vector<Section*> sections{&program_.prologue, &program_.start, &program_.step, &program_.record, &program_.epilogue};
+    std::vector<Section*> sections{&program_.prologue, &program_.start,  &program_.carry,
+                                   &program_.step,     &program_.record, &program_.epilogue};
     for (Section& observe : program_.observe) sections.push_back(&observe);
     for (Section* section : sections) {
       for (Instruction& instruction : section->code) {

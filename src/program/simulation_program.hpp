@@ -23,8 +23,13 @@ struct SimulationSource {
   Graph graph;
   int parameters = 0;  // parameter leaves 0 ... parameters - 1
   int inputs = 0;
-  std::vector<NodeId> initial;     // one per state: expressions of parameters
+  std::vector<NodeId> initial;     // one per state: expressions of parameters, and of data at the first sample
   std::vector<NodeId> derivative;  // one per state: expressions of state, input, input_rate, parameter, time
+  /// The derivatives are no derivatives but the states at the next sample, which read data at this one: no integrator.
+  bool map = false;
+  /// The last states remember: each takes the value of its expression at every sample, before the step from it; their derivatives
+  /// are zero.
+  std::vector<NodeId> memories;
   std::vector<ChannelSource> channels;
   std::vector<NodeId> records;  // written out at every sample: expressions of the same leaves (measured as well)
   std::string integrator = "rk4";
@@ -42,6 +47,7 @@ struct UniformLeaf {
   LeafKind kind = LeafKind::time;  // input, input_rate, time, measured, step_size
   int index = 0;
   Stage stage = Stage::begin;
+  int lag = 0;  // samples back
 };
 
 /// Values that depend on data alone, computed once per data set for every step or sample.
@@ -77,8 +83,9 @@ struct SimulationProgram {
   std::vector<double> constants;
   int uniforms = 0;              // constants and the widest row
   Section prologue;              // parameters -> hoisted values
-  Section start;                 // parameters, hoisted values -> initial states
-  Section step;                  // one integrator step
+  Section start;                 // parameters, hoisted values, data of the first sample -> initial states
+  Section carry;                 // what is to be remembered of a sample -> the last states
+  Section step;                  // one integrator step, or the map from sample to sample
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
   Section record;                // one sample into the record registers
   Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums

@@ -84,7 +84,7 @@ std::string predict_csv(Report const& report, Prediction const& prediction) {
   out += fmt::format("# experiment = {}\n", one_line(prediction.experiment));
   std::vector<std::string> names, unit_texts;
   std::vector<std::vector<double> const*> columns;
-  std::string header = "t";
+  std::string header = prediction.rows ? "row" : "t";
   auto const add_column = [&](std::string const& name, std::vector<double> const& values) {
     header += "," + field(name);
     columns.push_back(&values);

@@ -81,7 +81,7 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   out.script += data_block("fit", rows);
 
   Panel top = panel_at(78, width - 14.0, has_data ? 158.0 : 44.0, height - 34.0, x, y);
-  top.x_label = has_data ? "" : axis_label("time", "s", x.exponent);
+  top.x_label = has_data ? "" : axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : "s", x.exponent);
   top.x_numbers = !has_data;
   top.y_label = axis_label(quantity.name, quantity.unit, y.exponent);
   out.script += panel(top, width, height);
@@ -105,7 +105,7 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
       for (std::size_t c = 1; c < row.size(); ++c) row[c] = r.scaled(row[c]);
     out.script += data_block("residual", residual_rows);
     Panel low = panel_at(top.left, top.right, 44, 138, x, r);
-    low.x_label = axis_label("time", "s", x.exponent);
+    low.x_label = axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : "s", x.exponent);
     low.y_label = axis_label("residual", quantity.unit, r.exponent);
     out.script += panel(low, width, height);
     out.script += fmt::format(

@@ -10,15 +10,27 @@
 namespace sysid {
 
 Band band(std::vector<std::vector<double>> const& trajectories) {
-  std::vector<std::vector<double> const*> usable;
+  // Samples that no draw can predict, because what they follow from was not measured, say nothing about a draw.
+  std::vector<bool> predictable(trajectories.empty() ? 0 : trajectories.front().size(), false);
   for (std::vector<double> const& trajectory : trajectories)
-    if (std::all_of(trajectory.begin(), trajectory.end(), [](double v) { return std::isfinite(v); })) usable.push_back(&trajectory);
+    for (std::size_t i = 0; i < trajectory.size(); ++i) predictable[i] = predictable[i] || std::isfinite(trajectory[i]);
+  bool const any = std::find(predictable.begin(), predictable.end(), true) != predictable.end();
+  std::vector<std::vector<double> const*> usable;
+  for (std::vector<double> const& trajectory : trajectories) {
+    bool good = any;
+    for (std::size_t i = 0; i < trajectory.size(); ++i) good = good && (std::isfinite(trajectory[i]) || !predictable[i]);
+    if (good) usable.push_back(&trajectory);
+  }
   Band out;
   if (usable.empty()) return out;
   std::size_t const samples = usable[0]->size();
   auto const count = static_cast<double>(usable.size());
   std::vector<double> values(usable.size());
   for (std::size_t i = 0; i < samples; ++i) {
+    if (!predictable[i]) {
+      for (auto* column : {&out.mean, &out.sd, &out.lower, &out.upper}) column->push_back(std::nan(""));
+      continue;
+    }
     double sum = 0;
     for (std::size_t d = 0; d < usable.size(); ++d) sum += values[d] = (*usable[d])[i];
     double const mean = sum / count;
@@ -37,7 +49,7 @@ std::vector<Score> scores(PredictedQuantity const& quantity, std::vector<std::ui
   std::vector<std::size_t> rows;
   std::vector<double> observed, predicted;
   for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i) {
-    if (scored[i] == 0 || !std::isfinite(quantity.measured[i])) continue;
+    if (scored[i] == 0 || !std::isfinite(quantity.measured[i]) || !std::isfinite(quantity.response.mean[i])) continue;
     rows.push_back(i);
     observed.push_back(quantity.measured[i]);
     predicted.push_back(quantity.response.mean[i]);

@@ -11,7 +11,8 @@ struct Band {
   std::vector<double> mean, sd, lower, upper;
 };
 
-/// trajectories[d][i]: draw d at sample i; a draw that failed (any value not finite) is left out. Empty when none is left.
+/// trajectories[d][i]: draw d at sample i; a draw that failed (a value that is not finite where another draw's is) is left out. NaN
+/// at samples where no draw is finite; empty when no draw is left.
 Band band(std::vector<std::vector<double>> const& trajectories);
 
 /// A channel, a state or a derived quantity along a record, declared unit.
@@ -24,7 +25,8 @@ struct PredictedQuantity {
 
 struct Prediction {
   std::string experiment;
-  std::vector<double> time;          // [N] s
+  std::vector<double> time;          // [N] s, or row numbers
+  bool rows = false;                 // rows are independent: there is no time
   std::vector<std::uint8_t> scored;  // [N]
   std::vector<PredictedQuantity> quantities;
 };

@@ -35,6 +35,7 @@ void Block::set_parameters(ConstLanes parameters) {
 }
 
 void Block::start() {
+  file_.load_row(schedule_.start_row(), program_.start.uniforms.kernel.outputs);
   run(*program_.start.linked, executor_, file_.file);
   double* const accumulators = file_.registers + program_.registers.first_accumulator() * executor_.stride();
   std::fill(accumulators, accumulators + program_.registers.accumulators * executor_.stride(), 0.0);
@@ -42,7 +43,13 @@ void Block::start() {
   stepper_->start();
 }
 
-void Block::step(int sample) { stepper_->step(sample); }
+void Block::step(int sample) {
+  if (!program_.source.memories.empty()) {
+    file_.load_row(schedule_.carry_row(sample), program_.carry.uniforms.kernel.outputs);
+    run(*program_.carry.linked, executor_, file_.file);
+  }
+  stepper_->step(sample);
+}
 
 void Block::observe(int sample) {
   for (std::size_t c = 0; c < program_.observe.size(); ++c) {

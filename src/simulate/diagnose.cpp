@@ -1,5 +1,6 @@
 // Where a failed solve broke: the step is run again in one lane, as written, and the first sub-expression that is not finite is
 // named.
+#include <algorithm>
 #include <cmath>
 
 #include "program/kernel.hpp"
@@ -37,11 +38,12 @@ class Solve {
   std::optional<Diagnosis> run() {
     Graph const& graph = program_.source.graph;
     std::vector<NodeId> const& initial = program_.source.initial;
-    auto const parameter = [&](NodeId id) { return parameters_[static_cast<std::size_t>(graph[id].index)]; };
-    if (auto const node = first_not_finite(graph, initial, parameter)) return Diagnosis{*node, schedule_.time(0), 0};
-    states_ = graph.evaluate(initial, parameter);
+    auto const at_start = [&](NodeId id) { return leaf(graph[id], 0, -1, {}); };
+    if (auto const node = first_not_finite(graph, initial, at_start)) return Diagnosis{*node, schedule_.time(0), 0};
+    states_ = graph.evaluate(initial, at_start);
     for (int sample = 0; sample < schedule_.last_summed(); ++sample) {
       if (auto const node = look_at_sums(sample)) return Diagnosis{*node, schedule_.time(sample), sample};
+      carry(sample);
       for (int substep = 0; substep < schedule_.solver().substeps && sample + 1 < schedule_.last_summed(); ++substep)
         if (auto const found = step(sample, substep)) return found;
     }
@@ -52,7 +54,7 @@ class Solve {
   double leaf(Node const& node, int sample, int substep, std::vector<double> const& states) const {
     if (node.leaf_kind == LeafKind::parameter) return parameters_[static_cast<std::size_t>(node.index)];
     if (node.leaf_kind == LeafKind::state) return states[static_cast<std::size_t>(node.index)];
-    UniformLeaf const uniform{node.leaf_kind, node.index, node.stage};
+    UniformLeaf const uniform{node.leaf_kind, node.index, node.stage, node.lag};
     return substep < 0 ? schedule_.at_sample(uniform, sample) : schedule_.at_step(uniform, sample, substep);
   }
 
@@ -64,6 +66,13 @@ class Solve {
       if (auto const node = first_not_finite(graph, program_.source.channels[c].sums, value_of)) return node;
     }
     return std::nullopt;
+  }
+
+  void carry(int sample) {
+    Graph const& graph = program_.source.graph;
+    std::vector<double> const values =
+        graph.evaluate(program_.source.memories, [&](NodeId id) { return leaf(graph[id], sample, -1, states_); });
+    std::copy(values.begin(), values.end(), states_.end() - static_cast<std::ptrdiff_t>(values.size()));
   }
 
   std::optional<Diagnosis> step(int sample, int substep) {
@@ -81,6 +90,11 @@ class Solve {
     auto const at = [&](Stage stage, NodeId node) {
       return Diagnosis{node, schedule_.at_step({LeafKind::time, 0, stage}, sample, substep), sample};
     };
+    if (program_.source.map) {
+      auto const node =
+          first_not_finite(graph, program_.source.derivative, [&](NodeId id) { return leaf(graph[id], sample, -1, states_); });
+      return at(Stage::begin, node.value_or(program_.source.derivative[failed]));
+    }
     for (StageVisit const& visit : program_.visited) {
       std::vector<double> const states =
           program_.graph.evaluate(visit.states, [&](NodeId id) { return leaf(program_.graph[id], sample, substep, states_); });

@@ -9,7 +9,7 @@
 namespace sysid {
 
 Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver)
-    : experiment_(experiment), solver_(solver) {
+    : experiment_(experiment), solver_(solver), map_(program.source.map) {
   std::size_t const channels = program.source.channels.size();
   if (solver.substeps < 1 || solver.method != program.source.integrator ||
       static_cast<int>(experiment.inputs.size()) < program.source.inputs || experiment.measured.size() < channels)
@@ -20,7 +20,8 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
     std::vector<std::uint8_t> summed(experiment.time.size());
     int count = 0;
     for (std::size_t i = 0; i < summed.size(); ++i) {
-      summed[i] = !measured.empty() && experiment.scored[i] != 0 && !std::isnan(measured[i]);
+      bool const has_past = experiment.has_past.empty() || experiment.has_past[c].empty() || experiment.has_past[c][i] != 0;
+      summed[i] = !measured.empty() && experiment.scored[i] != 0 && has_past && !std::isnan(measured[i]);
       if (summed[i] == 0) continue;
       ++count;
       last_summed_ = std::max(last_summed_, static_cast<int>(i) + 1);
@@ -29,6 +30,8 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
     counts_.push_back(count);
   }
 
+  start_ = tabulate(program.start.uniforms, 1, false);
+  carry_ = tabulate(program.carry.uniforms, samples(), false);
   if (solver.fixed_step()) steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
   records_ = tabulate(program.record.uniforms, samples(), false);
   for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
@@ -50,6 +53,7 @@ bool Schedule::summed(int channel, int sample) const {
 int Schedule::count(int channel) const { return counts_[static_cast<std::size_t>(channel)]; }
 
 double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const {
+  if (map_) return at_sample(leaf, sample);
   double const place = leaf.stage == Stage::begin ? 0 : leaf.stage == Stage::middle ? 0.5 : 1;
   double const s = (substep + place) / solver_.substeps;
   double const interval = time(sample + 1) - time(sample);
@@ -69,17 +73,16 @@ double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const
 
 double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
   bool const last = sample + 1 == samples();
+  int const row = sample - leaf.lag;
   switch (leaf.kind) {
     case LeafKind::input:
-      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].sample(sample);
+      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].sample(row);
     case LeafKind::input_rate:
       return experiment_.inputs[static_cast<std::size_t>(leaf.index)].rate(last ? sample - 1 : sample, last ? 1 : 0);
     case LeafKind::time:
-      return time(sample);
-    case LeafKind::measured: {
-      std::vector<double> const& measured = experiment_.measured[static_cast<std::size_t>(leaf.index)];
-      return measured.empty() ? std::nan("") : measured[static_cast<std::size_t>(sample)];
-    }
+      return row >= 0 ? time(row) : time(0) + row * (time(1) - time(0));
+    case LeafKind::measured:
+      return measured_sample(experiment_, leaf.index, row);
     default:
       throw InternalError("a sample reads what only a step has");
   }

@@ -37,13 +37,16 @@ class Schedule {
 
   /// Step `substep` of the interval after `sample`; fixed steps only.
   double const* step_row(int sample, int substep) const { return steps_.row(sample * solver_.substeps + substep); }
+  double const* start_row() const { return start_.values.data(); }
+  double const* carry_row(int sample) const { return carry_.row(sample); }
   double const* observe_row(int channel, int sample) const { return observe_[static_cast<std::size_t>(channel)].row(sample); }
   double const* record_row(int sample) const { return records_.row(sample); }
   std::vector<double> const& epilogue_row() const { return epilogue_; }
 
   /// A leaf within a step: at `stage` of step `substep` of the interval after `sample`.
   double at_step(UniformLeaf const& leaf, int sample, int substep) const;
-  /// A leaf at a sample. Inputs are read from the right, `input_rate` at the last sample from the left.
+  /// A leaf at a sample, or `lag` samples before it: rows before the first are the experiment's history. Inputs are read from the
+  /// right, `input_rate` at the last sample from the left.
   double at_sample(UniformLeaf const& leaf, int sample) const;
 
  private:
@@ -51,10 +54,11 @@ class Schedule {
 
   Experiment experiment_;
   SolverSettings solver_;
+  bool map_ = false;                               // what a step reads, it reads at its first sample
   std::vector<std::vector<std::uint8_t>> summed_;  // [channels][samples]
   std::vector<int> counts_;
   int last_summed_ = 0;
-  UniformRows steps_, records_;
+  UniformRows start_, carry_, steps_, records_;
   std::vector<UniformRows> observe_;
   std::vector<double> epilogue_;
 };

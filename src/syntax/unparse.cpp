@@ -22,7 +22,8 @@ struct OperatorRow {
   Binding binding, left, right;
 };
 /// sysid.ebnf's levels. The right operand of `^` may carry a sign; comparisons do not associate.
-constexpr std::array<OperatorRow, 13> operators{{
+constexpr std::array<OperatorRow, 14> operators{{
+    {"..", Binding::conditional, Binding::conditional, Binding::conditional},  // of arguments alone
     {"or", Binding::disjunction, Binding::disjunction, Binding::conjunction},
     {"and", Binding::conjunction, Binding::conjunction, Binding::negation},
     {"<", Binding::comparison, Binding::sum, Binding::sum},
@@ -117,7 +118,7 @@ class Printer {
   }
   std::string operator()(ast::Box<ast::Binary> const& binary) const {
     OperatorRow const& row = row_of(binary->symbol);
-    bool const tight = row.binding >= Binding::product;
+    bool const tight = row.binding >= Binding::product || binary->symbol == "..";
     return fmt::format("{}{}{}{}{}", (*this)(*binary->left, row.left), tight ? "" : " ", binary->symbol, tight ? "" : " ",
                        Printer()(*binary->right, row.right));
   }

@@ -85,8 +85,7 @@ inline Answer answer(std::string const& name, std::string const& text, Depth dep
   try {
     auto const file = load(source, diagnostics);
     if (!file) answer.exit = ExitCode::user_error;
-    if (file && depth == Depth::data)
-    {
+    if (file && depth == Depth::data) {
       SilentProgress progress;
       std::ostringstream ignored;
       Session session(source, *file, options, progress, ignored, ignored);

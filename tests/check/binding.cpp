@@ -46,9 +46,9 @@ TEST_CASE("every mistake in a block is reported at once") {
   std::string const shown = messages(
       "data d {\nrate -1 [Hz]\ninput x = f\ninput x = g hold linear\ninput u = h hold zoh\nmeasure y = y [mmm]\n"
       "split train = rows 10..5, train = rows 1..2\n}\n");
-  for (char const* code : {"E4101", "E4107", "E4105", "E4104", "E4106", "E2011", "E4108"})
+  for (char const* code : {"E4101", "E4107", "E4104", "E4106", "E2011", "E4108"})
     CHECK_MESSAGE(shown.find(code) != std::string::npos, code);
-  CHECK(errors_in(shown) == 8);
+  CHECK(errors_in(shown) == 7);  // the rule that is missing is asked for where the block meets a model
 }
 
 TEST_CASE("inputs must all be bound, channels in part") {

@@ -55,6 +55,21 @@ inline std::vector<Case> const& whole_cases() {
   return cases;
 }
 
+/// Of the distributions of counts.
+inline std::vector<Case> const& count_cases() {
+  static std::vector<Case> const cases = {
+      {"poisson", {0.3}},
+      {"poisson", {4}},
+      {"poisson", {10}},
+      {"poisson", {250}},
+      {"negative_binomial", {0.5, 0.7}},
+      {"negative_binomial", {6, 3}},
+      {"negative_binomial", {40, 25}},
+      {"negative_binomial", {80, 1.5}},
+  };
+  return cases;
+}
+
 /// Bounds on either side, on both, in either tail, and beyond the natural support.
 inline std::vector<Case> const& truncated_cases() {
   static std::vector<Case> const cases = {

@@ -58,7 +58,12 @@ TEST_CASE("every distribution has a case here, a name of its own and a summary")
     CHECK(find_distribution(row.name) == &row);
     CHECK_FALSE(row.summary.empty());
     auto const covers = [&](Case const& use) { return use.name == row.name; };
-    if (row.proper) {
+    if (row.discrete) {
+      CHECK(std::any_of(test::count_cases().begin(), test::count_cases().end(), covers));
+      CHECK((row.draw != nullptr));
+      CHECK((row.variance != nullptr));
+      CHECK((row.excess_kurtosis != nullptr));
+    } else if (row.proper) {
       CHECK(std::any_of(test::whole_cases().begin(), test::whole_cases().end(), covers));
       CHECK(std::any_of(test::truncated_cases().begin(), test::truncated_cases().end(), covers));
       CHECK((row.draw != nullptr));

@@ -57,7 +57,11 @@ ast::UnitExpression RandomTree::unit(int depth) {
 }
 
 ast::Call RandomTree::call(int depth) {
-  return {{}, name(), several(0, [&] { return ast::Argument{{}, perhaps([&] { return name(); }), expression(depth - 1)}; })};
+  auto const value = [&]() -> ast::Expression {
+    if (random_.chance(6)) return {{}, ast::Box(ast::Binary{{}, "..", expression(depth - 1), expression(depth - 1)})};
+    return expression(depth - 1);
+  };
+  return {{}, name(), several(0, [&] { return ast::Argument{{}, perhaps([&] { return name(); }), value()}; })};
 }
 
 ast::Expression RandomTree::expression(int depth) {

@@ -1,0 +1,83 @@
+// The negative binomial distribution: counts that scatter more than Poisson's.
+#include "core/elementary.hpp"
+#include "distribution/counts.hpp"
+
+namespace sysid {
+namespace {
+
+NodeId shape_from_overdispersion(Graph& graph, NodeId overdispersion, Nodes) { return (1.0 / Term(graph, overdispersion)).id; }
+
+constexpr Spelling mean[] = {{"mean", 1, nullptr}};
+constexpr Spelling shape[] = {{"shape", 0, nullptr}, {"overdispersion", 0, &shape_from_overdispersion}};
+constexpr ArgumentRow arguments[] = {{mean, must_be_given}, {shape, must_be_given}};
+
+/// Stirling's series of log Gamma(x) beyond (x - 1/2) log x - x + log(2 pi)/2, DLMF 5.11.1; the next term is below 2e-15 for x
+/// >= 20.
+Term stirling_rest(Term x) {
+  Term const w = 1.0 / (x * x);
+  return (1. / 12 - w * (1. / 360 - w * (1. / 1260 - w * (1. / 1680)))) / x;
+}
+
+/// log Gamma(r + y) - log Gamma(r) - y log r. From r = 20 on by Stirling's series, where the terms would cancel.
+Term log_rising_ratio(Term y, Term r) {
+  Term const series = (r + y - 0.5) * log1p(y / r) - y + (stirling_rest(r + y) - stirling_rest(r));
+  return select(less(r, 20.0), lgamma(r + y) - lgamma(r) - y * log(r), series);
+}
+
+/// log of the negative binomial probability; `negative_binomial(mean, shape | overdispersion = ...)` in a model: a Poisson count
+/// whose mean is itself gamma distributed with this shape.
+///
+///   log p = log Gamma(y + r) - log Gamma(r) - log y! + y log(mean/r) - (y + r) log(1 + mean/r),   variance = mean + mean^2/r
+///                                                                            Hilbe 2011, Negative Binomial Regression, eq. 8.9
+///
+/// y: a whole number >= 0; mean >= 0; r = shape = 1/overdispersion > 0: all pure numbers. Poisson's is the limit of a large shape.
+NodeId log_density(Graph& graph, NodeId x, Nodes a) {
+  Term const y(graph, x), mu(graph, a[0]), r(graph, a[1]);
+  return (log_rising_ratio(y, r) - lgamma(y + 1.0) + count_times_log(y, mu) - (y + r) * log1p(mu / r)).id;
+}
+
+NodeId centre(Graph&, Nodes a) { return a[0]; }
+/// Of all means with this shape, y makes y likeliest.
+NodeId saturated(Graph& graph, NodeId x, Nodes a) {
+  NodeId const best[] = {x, a[1]};
+  return log_density(graph, x, best);
+}
+
+double draw(Stream& stream, Numbers a) {
+  return poisson_variate(std::min(a[0] / a[1] * elementary::exp(log_standard_gamma(a[1], stream)), largest_mean), stream);
+}
+double variance(Numbers a) { return a[0] + a[0] * a[0] / a[1]; }
+double excess_kurtosis(Numbers a) { return 6 / a[1] + 1 / variance(a); }
+
+std::string_view refuse(Numbers a) {
+  if (!(a[0] >= 0 && a[0] <= largest_mean)) return "the mean must be zero or positive, and at most 1e15";
+  if (!positive(a[1])) return "shape or overdispersion must be positive";
+  return {};
+}
+
+}  // namespace
+
+DistributionRow negative_binomial_distribution() {
+  return {.name = "negative_binomial",
+          .arguments = arguments,
+          .noise = true,
+          .proper = true,
+          .logarithmic = false,
+          .dimensionless = true,
+          .log_density = &log_density,
+          .cumulative = nullptr,
+          .survival = nullptr,
+          .lower = &zero_bound,
+          .upper = nullptr,
+          .centre = &centre,
+          .saturated = &saturated,
+          .draw = &draw,
+          .quantile = nullptr,
+          .refuse = &refuse,
+          .summary = "counts that scatter more than Poisson's, by mean and shape or overdispersion; noise only",
+          .discrete = true,
+          .variance = &variance,
+          .excess_kurtosis = &excess_kurtosis};
+}
+
+}  // namespace sysid
