@@ -8,6 +8,7 @@
 
 #include "app/bands.hpp"
 #include "app/derived_draws.hpp"
+#include "app/drift.hpp"
 #include "app/experiments.hpp"
 #include "app/fit_checks.hpp"
 #include "app/fit_target.hpp"
@@ -145,7 +146,7 @@ class Fit {
     if (!settled.settled)
       preparation_.findings.push_back({Severity::error, "step_not_settled",
                                        fmt::format("even {} do not settle the result", accuracy(settled.solver)),
-                                       "the model may be stiff or chaotic on this record"});
+                                       "where the model is stiff, fit it with `solver = cvode`; it may be chaotic on this record"});
     return true;
   }
 
@@ -227,7 +228,7 @@ class Fit {
     for (std::size_t c = static_cast<std::size_t>(result.draws.parameter_count); c < result.draws.names.size(); ++c)
       report.summary.push_back(summarise(result.draws.names[c], result.draws.units[c], column_of(result.draws, c)));
     for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
-      report.predictions.push_back(fitted_rows(result.draws, e));
+      report.predictions.push_back(fitted_rows(result.draws, e, report.findings));
     report.modes = result.modes;
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
@@ -274,15 +275,17 @@ class Fit {
          "the posterior reaches where the model diverges: narrow the prior or look at the equation there"});
   }
 
-  // Bands over the fitted rows of an experiment, for the report.
-  Prediction fitted_rows(Draws const& draws, int e) const {
+  // Bands over the fitted rows of an experiment, for the report, and how far the trajectories drift from constraints.
+  Prediction fitted_rows(Draws const& draws, int e, Findings& findings) const {
     Experiment const& experiment = data_[static_cast<std::size_t>(e)].experiment;
     LaneArray const columns = spread(draws, 100);
     LaneArray parameters(static_cast<int>(model_.parameters.size()), columns.width());
     space_->select(space_->values_of_declared(columns), e, parameters);
     Trajectory const trajectory(compiled_, experiment, preparation_.solver,
                                 what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
-    return bands_along(trajectory, trajectory.run(parameters, prediction_noise(seed_, e)), experiment, model_);
+    Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, e));
+    for (Finding& finding : drift_findings(session_, model_, result, experiment.name)) findings.push_back(std::move(finding));
+    return bands_along(trajectory, result, experiment, model_);
   }
 
   Session& session_;

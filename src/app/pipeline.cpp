@@ -62,7 +62,7 @@ std::string dump_stage(Source const& source, std::string const& stage, Diagnosti
   if (!file) return {};
   std::string text;
   for (Model const& model : file->models)
-    text += stage == "model" ? dump(model) : dump_program(*compile(model, false, SolverSettings{}.method));
+    text += stage == "model" ? dump(model) : dump_program(*compile(model, false, model.implicit ? "ida" : SolverSettings{}.method));
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/bands.hpp"
+#include "app/drift.hpp"
 #include "app/experiments.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
@@ -95,6 +96,8 @@ class Predict {
                                           ? trajectory.run_redrawn(draws, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
                                           : trajectory.run(draws, noise);
     report.predictions.push_back(bands_along(trajectory, result, experiment, model_));
+    for (Finding& finding : drift_findings(session_, model_, result, experiment.name))
+      report.findings.push_back(std::move(finding));
     if (result.failed > 0)
       report.findings.push_back({result.failed == wanted_ ? Severity::error : Severity::warning, "failed_predictions",
                                  fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands",

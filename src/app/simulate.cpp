@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/drift.hpp"
 #include "app/experiments.hpp"
 #include "app/session.hpp"
 #include "app/signals.hpp"
@@ -42,7 +43,7 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
 
 std::string unit_suffix(std::string const& unit) { return unit.empty() ? std::string() : " [" + unit + "]"; }
 
-// ": `y^3` (duffing.sysid:10:27) at t = 0.1 s", or nothing when plain arithmetic stays finite.
+// "does not stay finite: `y^3` (duffing.sysid:10:27) at t = 0.1 s"; the place is left out when the failure cannot be repeated.
 std::string first_failure(Session const& session, SimulateTask const& what, CompiledModel const& compiled, Experiment experiment,
                           LaneArray const& parameters) {
   // A solve is looked into up to the last sample to score: the states on the way, not what they would be compared with.
@@ -56,8 +57,10 @@ std::string first_failure(Session const& session, SimulateTask const& what, Comp
   // What only the noise reads may have no value; any does here.
   for (int p = 0; p < parameters.rows(); ++p) values.push_back(std::isnan(parameters(p, 0)) ? 1.0 : parameters(p, 0));
   auto const found = simulator.diagnose(values);
-  if (!found) return {};
-  return fmt::format(": {} at t = {:.4g} s", session.describe(what.model, simulator.program().source.graph, found->node),
+  if (!found) return "does not stay finite";
+  std::string const failed =
+      found->kind == FailureClass::non_finite ? "does not stay finite" : fmt::format("fails ({})", name(found->kind));
+  return fmt::format("{}: {} at t = {:.4g} s", failed, session.describe(what.model, simulator.program().source.graph, found->node),
                      found->time);
 }
 
@@ -131,13 +134,13 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
       feeds_back ? with_feedback(compiled, experiment, what, parameters, noise_key, session.options.execution)
                  : trajectory.run(parameters, noise_key);
   if (result.failed > 0)
-    throw UserError({Severity::error,
-                     "E5001",
-                     fmt::format("the simulation `{}` does not stay finite{}", task.name,
-                                 first_failure(session, what, *compiled, experiment, parameters)),
-                     Label{task.span, {}},
-                     {},
-                     "take smaller steps (substeps = 10) or other values"});
+    throw UserError(
+        {Severity::error,
+         "E5001",
+         fmt::format("the simulation `{}` {}", task.name, first_failure(session, what, *compiled, experiment, parameters)),
+         Label{task.span, {}},
+         {},
+         "take smaller steps (substeps = 10), `solver = cvode` where the model is stiff, or other values"});
 
   for (auto const& channel : result.noisy)
     for (auto const& values : channel)
@@ -149,6 +152,9 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
                          {},
                          "its scale must stay positive along the whole record"});
   if (model.integrated()) check_step(session, task, what, compiled, experiment, parameters, result);
+  for (Finding const& finding : drift_findings(session, model, result, task.name))
+    session.notices << fmt::format("{}: {}{}\n", task.name, finding.severity == Severity::warning ? "warning: " : "",
+                                   finding.message);
 
   std::string header = rows ? "row" : "t",
               comments = fmt::format("# made by sysid {}: {} of model {}, seed {}\n", SYSID_VERSION, task.name, model.name, seed);

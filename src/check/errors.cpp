@@ -257,16 +257,13 @@ Diagnostic state_without_equation(Span declaration, std::string const& state, st
 }
 Diagnostic algebraic_state(Span declaration, std::string const& state) {
   return error(
-      "E3002", declaration, fmt::format("no derivative of state `{}` appears in any equation", state),
-      fmt::format("give an equation with `{}'`; a quantity without memory is a local definition: `let {} = ...`", state, state));
+      "E3002", declaration,
+      fmt::format("nothing determines `{0}`: no equation has `{0}'`, and none is left for `{0}` itself", state),
+      fmt::format("give an equation for it; what follows from other quantities is a local definition: `let {} = ...`", state));
 }
 Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
   return error("E3003", equation.span, "one equation too many: the others already determine every state",
                fmt::format("states: {}; delete this equation or declare the state it is for", quoted(states)));
-}
-Diagnostic nonlinear_in_highest(ast::Equation const& equation, std::string const& unknown) {
-  return error("E3004", equation.span, fmt::format("this equation is not linear in `{}`, a highest derivative", unknown),
-               fmt::format("solve it for `{}` by hand and write that", unknown));
 }
 Diagnostic undetermined(Span declaration, std::string const& unknown) {
   return error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),

@@ -14,6 +14,8 @@
 #include "check/errors.hpp"
 #include "check/scope.hpp"
 #include "check/units.hpp"
+#include "model/index_reduction.hpp"
+#include "model/invariant.hpp"
 #include "model/past.hpp"
 #include "model/reduction.hpp"
 
@@ -78,6 +80,7 @@ class ModelChecker {
     parameters();
     channels();
     derived();
+    if (!failed()) constraints();
     if (!failed()) finish_samples();
     if (!failed()) order_priors();
     if (failed()) return std::nullopt;
@@ -264,6 +267,10 @@ class ModelChecker {
       if (each == name) return &info;
     return nullptr;
   }
+  std::size_t index_of(StateInfo const& info) const {
+    return static_cast<std::size_t>(
+        std::find_if(states_.begin(), states_.end(), [&](auto const& each) { return &each.second == &info; }) - states_.begin());
+  }
   std::vector<std::string> state_names() const {
     std::vector<std::string> names;
     for (auto const& [name, info] : states_) names.push_back(name);
@@ -340,30 +347,77 @@ class ModelChecker {
       report_unmentioned_states();
       return;
     }
-    good = enough_equations(trees, residuals);
+    good = reduce_to_index_one(trees, residuals);
     if (!good || failed()) return;
     auto const solved = solve_for_unknowns(graph, residuals);
-    if (auto const* failure = std::get_if<ReductionFailure>(&solved)) {
-      auto const& [name, info] = states_[static_cast<std::size_t>(failure->unknown)];
-      std::string const unknown = primed_name(name, info.order);
-      diagnostics_.add(failure->kind == ReductionFailure::Kind::nonlinear
-                           ? errors::nonlinear_in_highest(*trees[static_cast<std::size_t>(failure->equation)], unknown)
-                           : errors::undetermined(info.declaration->name.span, unknown));
-      return;
-    }
-    if (auto const open = undetermined_unknown(graph, residuals)) {
+    auto const* failure = std::get_if<ReductionFailure>(&solved);
+    std::optional<int> open = undetermined_unknown(graph, residuals);
+    if (failure != nullptr && failure->kind == ReductionFailure::Kind::singular) open = failure->unknown;
+    if (open) {
       auto const& [name, info] = states_[static_cast<std::size_t>(*open)];
       diagnostics_.add(errors::undetermined(info.declaration->name.span, primed_name(name, info.order)));
       return;
     }
-    highest_ = std::get<std::vector<NodeId>>(solved);
+    if (failure != nullptr)
+      model_.implicit = Implicit{trees[static_cast<std::size_t>(failure->equation)]->span,
+                                 unknown_name(static_cast<std::size_t>(failure->unknown))};
+    else
+      highest_ = std::get<std::vector<NodeId>>(solved);
     if (scope_.samples().discrete) return;  // they are the states at the present sample
+    bool const algebraic = std::any_of(states_.begin(), states_.end(), [](auto const& each) { return each.second.order == 0; });
+    if (algebraic || model_.implicit) model_.residuals = residuals;
     for (std::size_t i = 0; i < states_.size(); ++i) {
       StateInfo const& info = states_[i].second;
       for (int k = 0; k + 1 < info.order; ++k)
         model_.states[static_cast<std::size_t>(info.first + k)].derivative = graph.leaf(LeafKind::state, info.first + k + 1);
-      model_.states[static_cast<std::size_t>(info.first + info.order - 1)].derivative = highest_[i];
+      NodeId const top = model_.implicit ? graph.leaf(LeafKind::unknown, static_cast<int>(i)) : highest_[i];
+      if (info.order > 0) model_.states[static_cast<std::size_t>(info.first + info.order - 1)].derivative = top;
+      if (model_.residuals.empty()) continue;
+      Unknown unknown;
+      unknown.name = unknown_name(i);
+      unknown.unit = rate_unit(scope_.find(states_[i].first)->unit, info.order);
+      unknown.span = info.declaration->name.span;
+      unknown.component = info.order > 0 ? info.first + info.order - 1 : -1;
+      unknown.guess = graph.constant(0);
+      model_.unknowns.push_back(std::move(unknown));
     }
+  }
+
+  std::string unknown_name(std::size_t state) const { return primed_name(states_[state].first, states_[state].second.order); }
+
+  // A state that is never differentiated is an algebraic unknown, where others are.
+  bool may_be_algebraic(std::string const& name, StateInfo const& info) {
+    return info.order == 0 && initial_primes(name) < 1 && mentioned(name) &&
+           std::any_of(states_.begin(), states_.end(), [](auto const& each) { return each.second.order > 0; });
+  }
+
+  // As many equations as states, differentiated where they are constraints; said by name where that cannot be.
+  bool reduce_to_index_one(std::vector<ast::Equation const*> const& trees, std::vector<NodeId>& residuals) {
+    bool square = trees.size() == states_.size();
+    std::vector<UnknownOrder> orders;
+    for (auto const& [name, info] : states_) {
+      square = square && (info.order > 0 || may_be_algebraic(name, info));
+      orders.push_back({info.order, info.first});
+    }
+    if (!square) return enough_equations(trees, residuals);
+    auto const reduced = reduce_index(model_.graph, residuals, orders);
+    if (auto const* failure = std::get_if<IndexFailure>(&reduced)) {
+      auto const index = static_cast<std::size_t>(failure->index);
+      ast::Equation const& equation = *trees[static_cast<std::size_t>(failure->equation)];
+      if (failure->kind == IndexFailure::Kind::input_rate)
+        diagnostics_.add(errors::constraint_of_input(equation, model_.inputs[index].name));
+      else if (failure->kind == IndexFailure::Kind::algebraic)
+        diagnostics_.add(errors::constraint_of_unknown(equation, unknown_name(index)));
+      else if (enough_equations(trees, residuals))
+        diagnostics_.add(errors::surplus_equation(equation, state_names()));
+      return false;
+    }
+    auto const& found = std::get<IndexOne>(reduced);
+    residuals = found.residuals;
+    for (Constraint const& constraint : found.constraints)
+      constraints_.push_back({constraint.value, constraint_size(model_.graph, constraint.value),
+                              trees[static_cast<std::size_t>(constraint.equation)]->span});
+    return true;
   }
 
   bool mentioned(std::string const& state) {
@@ -405,7 +459,7 @@ class ModelChecker {
         if (model_.graph.depends(
                 residuals[i],
                 [&](Node const& node) { return is_leaf(node, LeafKind::unknown) && node.index == static_cast<int>(j); }) &&
-            (states_[j].second.order > 0 || scope_.samples().discrete))
+            (states_[j].second.order > 0 || scope_.samples().discrete || may_be_algebraic(states_[j].first, states_[j].second)))
           unknowns[i].push_back(j);
     // Kuhn's matching of equations to states, in the user's order, so that the surplus equation is the last one that finds no
     // place.
@@ -500,7 +554,11 @@ class ModelChecker {
           diagnostics_.add(errors::not_a_state(initial.state.name, state_names()));
           continue;
         }
-        if (info->order == 0) continue;  // reported with the equations
+        if (info->order == 0 && model_.unknowns.empty()) continue;  // reported with the equations
+        if (initial.state.primes == info->order && (info->order == 0 || model_.implicit)) {
+          guess(initial, model_.unknowns[index_of(*info)]);
+          continue;
+        }
         if (initial.state.primes >= info->order) {
           if (!orders_doubtful_) diagnostics_.add(errors::initial_of_highest(initial.state, initial.state.name.text, info->order));
           continue;
@@ -524,6 +582,33 @@ class ModelChecker {
     for (std::size_t i = 0; i < model_.states.size() && !orders_doubtful_; ++i)
       if (!given.contains(static_cast<int>(i)))
         diagnostics_.add(errors::initial_missing(model_.states[i].span, model_.states[i].name));
+  }
+
+  // Where the search for an unknown's first value begins.
+  void guess(ast::InitialValue const& initial, Unknown& unknown) {
+    auto const value = scope_.expression(initial.value);
+    if (!value) return;
+    if (moving_part(model_.graph, value->node).empty())
+      unknown.guess = adapt(model_.graph, *value, unknown.unit);
+    else
+      diagnostics_.add(errors::initial_moves(initial.value.span));
+  }
+
+  // Equations that were differentiated must hold at the start.
+  void constraints() {
+    std::optional<Span> given;
+    each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) { given = given.value_or(declaration.span); });
+    std::vector<NodeId> initial;
+    for (State const& state : model_.states) initial.push_back(state.initial);
+    std::set<std::size_t> seen;
+    for (Invariant const& constraint : constraints_) {
+      bool const original = seen.insert(constraint.span.begin).second;
+      if (original) model_.invariants.push_back(constraint);
+      if (given && violated_at_start(model_, constraint, initial)) {
+        diagnostics_.add(errors::start_off_constraint(constraint.span, *given));
+        return;
+      }
+    }
   }
 
   void parameters() {
@@ -668,6 +753,15 @@ class ModelChecker {
       quantity.per_sample = !moving.empty();
       model_.derived.push_back(std::move(quantity));
     });
+    // Algebraic unknowns are shown like states.
+    for (std::size_t i = 0; i < model_.unknowns.size(); ++i) {
+      if (model_.unknowns[i].component >= 0) continue;
+      Derived quantity;
+      static_cast<Quantity&>(quantity) = model_.unknowns[i];
+      quantity.value = solved(model_.graph.leaf(LeafKind::unknown, static_cast<int>(i)));
+      quantity.per_sample = !moving_part(model_.graph, quantity.value).empty();
+      model_.derived.push_back(std::move(quantity));
+    }
   }
 
   ast::Model const& tree_;
@@ -677,8 +771,9 @@ class ModelChecker {
   Scope scope_;
   std::vector<std::pair<std::string, StateInfo>> states_;
   std::vector<ast::ParameterDeclaration const*> parameter_trees_;
-  std::vector<NodeId> highest_;
-  bool orders_doubtful_ = false;  // after a mistake in the units of an equation: a prime may be missing there
+  std::vector<NodeId> highest_;         // solutions for the unknowns; none for an implicit model
+  std::vector<Invariant> constraints_;  // of every differentiation
+  bool orders_doubtful_ = false;        // after a mistake in the units of an equation: a prime may be missing there
   std::vector<std::optional<NodeId>> initial_pasts_;  // of each state of a discrete-time model
 };
 

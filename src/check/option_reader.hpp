@@ -44,6 +44,8 @@ class OptionReader {
   void start(ast::Option const& option, StartRule& place);
   /// `substeps = n`, short for rk4, or `solver = cvode(relative = 1e-8)`; one of them, once. Whether its accuracy was stated.
   bool solver(ast::Option const& option, SolverSettings& place);
+  /// Where the solver was stated.
+  std::optional<Span> const& solver_span() const { return solver_; }
   /// A table of settings against `name(key = value, ...)`.
   void settings(ast::Call const& call, std::span<SettingRow const> rows, Settings& place);
 

@@ -113,6 +113,23 @@ class TaskChecker {
     return (a.last == 0 || b.first <= a.last) && (b.last == 0 || a.first <= b.last);
   }
 
+  // Equations that cannot be solved for their highest derivatives need a solver that does without.
+  void suit(SolverSettings& solver, Model const& model) {
+    if (!model.implicit) return;
+    if (!options_.solver_span())
+      solver = {.method = "ida"};
+    else if (solver.row().stepping != Stepping::ida)
+      diagnostics_.add(
+          errors::explicit_solver(*options_.solver_span(), solver.method, model.implicit->equation, model.implicit->unknown));
+  }
+
+  void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options) {
+    if (start.kind != StartRule::Kind::estimated || model.invariants.empty()) return;
+    for (ast::Option const& option : options)
+      if (key_of(option) == "start")
+        diagnostics_.add(errors::estimated_start_of_constraint(option.span, model.invariants.front().span));
+  }
+
   FitTask fit() {
     FitTask task;
     std::vector<std::string> names;
@@ -144,9 +161,14 @@ class TaskChecker {
         options_.unknown(option, {"start", "solver", "substeps", "prediction", "seed"});
       }
     }
-    if (model && !file_.models[static_cast<std::size_t>(*model)].integrated()) {  // there is nothing to solve
-      task.solver = {};
-      task.settle = false;
+    if (model) {
+      Model const& whole = file_.models[static_cast<std::size_t>(*model)];
+      suit(task.solver, whole);
+      suit(task.start, whole, tree_.options);
+      if (!whole.integrated()) {  // there is nothing to solve
+        task.solver = {};
+        task.settle = false;
+      }
     }
     if (task.backend.empty() && !diagnostics_.has_errors(before_)) diagnostics_.add(errors::backend_missing(tree_, names));
     return task;
@@ -220,6 +242,7 @@ class TaskChecker {
         options_.unknown(option, {"draws", "redraw", "start", "prediction", "seed"});
       }
     }
+    if (model != nullptr) suit(task.start, *model, tree_.options);
     return task;
   }
 
@@ -246,6 +269,8 @@ class TaskChecker {
   std::vector<std::string> values_needed(Model const& model, SimulateTask const& task) const {
     std::vector<NodeId> roots;
     for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
+    roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());
+    for (Unknown const& unknown : model.unknowns) roots.push_back(unknown.guess);
     Graph graph = model.graph;
     for (Channel const& channel : model.channels) {
       if (task.noise_fraction >= 0)
@@ -331,6 +356,7 @@ class TaskChecker {
       for (Channel const& channel : model.channels)
         if (channel.noise.row->discrete)
           diagnostics_.add(errors::noise_of_counts(noise_place, channel.name, std::string(channel.noise.row->name)));
+    suit(task.solver, model);
     if (task.file.empty()) task.file = task_name(tree_) + ".csv";
     if (diagnostics_.has_errors(before_)) return task;
     if (task.samples == 0) diagnostics_.add(errors::option_missing(tree_, "samples", "samples = 500"));

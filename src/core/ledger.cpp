@@ -36,6 +36,10 @@ std::string name(FailureClass kind) {
       return "step limit";
     case FailureClass::domain:
       return "domain";
+    case FailureClass::convergence:
+      return "no convergence";
+    case FailureClass::inconsistent:
+      return "no consistent values";
   }
   return {};
 }

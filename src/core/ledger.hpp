@@ -6,14 +6,20 @@
 
 namespace sysid {
 
-enum class FailureClass { non_finite, step_limit, domain };
+enum class FailureClass {
+  non_finite,
+  step_limit,  // the work budget is spent, or no step is short enough for the tolerance
+  domain,
+  convergence,   // an implicit step has no solution that its iteration finds
+  inconsistent,  // no values of the algebraic states satisfy the constraints
+};
 
 struct Failure {
   FailureClass kind = FailureClass::non_finite;
-  std::string where;           // the sub-expression in the user's words, e.g. "k3*y^3 at duffing.sysid:12"
+  std::string where;  // the sub-expression in the user's words, e.g. "k3*y^3 at duffing.sysid:12"
   std::uint64_t count = 0;
-  double time = 0;             // of the first example [s]
-  std::vector<double> example; // its parameters, declared units, in the order of Target::names
+  double time = 0;              // of the first example [s]
+  std::vector<double> example;  // its parameters, declared units, in the order of Target::names
 };
 
 class Ledger {

@@ -15,6 +15,13 @@ constexpr SettingRow fixed_settings[] = {
      "equal steps per sampling interval; left out in a fit: chosen by the tolerance guard"},
 };
 
+constexpr SettingRow adaptive_settings[] = {
+    {"relative", SettingKind::real, "1e-8", 1e-13, 0.1, "", "error allowed per step, as a part of each state"},
+    {"absolute", SettingKind::real, "0", 0, 1e300, "",
+     "error allowed per step near zero, SI; 0: relative times a thousandth of the size reached"},
+    {"steps", SettingKind::integer, "10000", 1, 1e9, "", "most steps between two samples: then the solve has failed"},
+};
+
 // Shortest decimals that read back as the same number.
 std::string value_text(SettingValue const& value) {
   if (auto const* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
@@ -28,6 +35,8 @@ std::span<SolverRow const> solvers() {
       {"rk4", Stepping::fixed, "the classical Runge-Kutta method of order 4", fixed_settings},
       {"heun", Stepping::fixed, "Heun's method of order 2 (explicit trapezoidal rule)", fixed_settings},
       {"euler", Stepping::fixed, "Euler's explicit method of order 1", fixed_settings},
+      {"cvode", Stepping::cvode, "backward differentiation of order 1 to 5, for stiff equations", adaptive_settings},
+      {"ida", Stepping::ida, "backward differentiation for implicit and differential-algebraic equations", adaptive_settings},
   };
   return rows;
 }
@@ -49,7 +58,7 @@ SolverSettings SolverSettings::finer() const {
   if (fixed_step()) {
     result.substeps *= 2;
   } else {
-    result.relative /= 100;
+    result.relative = std::max(result.relative / 100, 1e-14);  // rounding is not far below
     result.absolute /= 100;
   }
   return result;

@@ -12,6 +12,8 @@ namespace sysid {
 /// What brings the states from one sample to the next.
 enum class Stepping {
   fixed,  // a one-step method expanded into the program: `substeps` equal steps in every interval, all lanes together
+  cvode,  // variable-order BDF for stiff equations, lane by lane (simulate/sundials_cvode.cpp)
+  ida,    // the same for implicit and differential-algebraic equations (simulate/sundials_ida.cpp)
 };
 
 struct SolverRow {
@@ -30,7 +32,7 @@ SolverRow const* find_solver(std::string_view name);
 struct SolverSettings {
   std::string method = "rk4";
   int substeps = 1;        // fixed: steps per sampling interval
-  double relative = 1e-6;  // adaptive: error allowed per step, as a part of each state
+  double relative = 1e-8;  // adaptive: error allowed per step, as a part of each state
   double absolute = 0;     // adaptive: error allowed per step near zero, in the state's SI unit; 0: see `near_zero`
   int steps = 10000;       // adaptive: most steps between two samples, the work budget of a solve
 

@@ -279,8 +279,8 @@ Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
                           failures[i].time);
   return {Severity::error, "no_finite_start",
           fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, places),
-          "look at this part of the equations, narrow the priors towards values for which the model can be solved, or take shorter "
-          "steps (substeps = 10)"};
+          "look at this part of the equations, narrow the priors towards values for which the model can be solved, take shorter "
+          "steps (substeps = 10), or fit with `solver = cvode` where the model is stiff"};
 }
 
 }  // namespace sysid

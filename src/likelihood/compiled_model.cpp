@@ -8,6 +8,7 @@
 
 #include "model/dump.hpp"
 
+#include "core/solver.hpp"
 #include "likelihood/parameter_space.hpp"
 
 namespace sysid {
@@ -18,12 +19,17 @@ NodeId parameter_leaf(Graph& graph, int index) { return graph.leaf(LeafKind::par
 // The graph of a model with parameters that are fixed for all experiments replaced by their values; the replaced roots share it.
 class Folded {
  public:
-  explicit Folded(Model const& model) : model_(model), graph(model.graph) {}
+  /// unknowns_are_states: leaf unknown(j) is the state that comes j places after the model's own (algebraic states of IDA).
+  explicit Folded(Model const& model, bool unknowns_are_states = false)
+      : model_(model), unknowns_are_states_(unknowns_are_states), graph(model.graph) {}
 
   NodeId operator()(NodeId root) {
     NodeId const result = graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
       Node const node = graph[leaf];
-      if (node.leaf_kind == LeafKind::previous)  // a memory: it is kept behind the states
+      auto const state = static_cast<int>(model_.states.size()) + node.index;
+      if (node.leaf_kind == LeafKind::previous) return graph.leaf(LeafKind::state, state);  // a memory: it is kept behind the states
+      if (node.leaf_kind == LeafKind::unknown && unknowns_are_states_)
+        return graph.leaf(LeafKind::state, state + static_cast<int>(model_.memories.size()));
         return graph.leaf(LeafKind::state, static_cast<int>(model_.states.size()) + node.index);
       if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())
         return std::nullopt;
@@ -41,6 +47,7 @@ class Folded {
 
  private:
   Model const& model_;
+  bool unknowns_are_states_;
 
  public:
   Graph graph;
@@ -105,6 +112,11 @@ NodeId deviance_residual(Graph& graph, ChannelDensity const& density, int index)
   return graph.multiply(graph.unary(Operation::sign, graph.subtract(measured, density.centre)), size);
 }
 
+// Whether a program keeps the model's unknowns as algebraic states: not where they could be solved for and the solver wants y' = f.
+bool keeps_unknowns(CompiledModel const& compiled) {
+  return !compiled.model.unknowns.empty() && find_solver(compiled.method)->stepping == Stepping::ida;
+}
+
 SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
   Model const& model = compiled.model;
   bool const free_start = compiled.free_start;
@@ -128,6 +140,15 @@ SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
       return source.initial[static_cast<std::size_t>(node.index)];
     }));
     source.derivative.push_back(folded.graph.constant(0));
+  }
+  if (!keeps_unknowns(compiled)) return source;
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j) {
+    Unknown const& unknown = model.unknowns[j];
+    source.initial.push_back(folded(unknown.guess));
+    source.constraints.push_back(folded(model.residuals[j]));
+    if (unknown.component >= 0)
+      source.derivative[static_cast<std::size_t>(unknown.component)] =
+          folded.graph.leaf(LeafKind::state, static_cast<int>(model.states.size() + model.memories.size() + j));
   }
   return source;
 }
@@ -159,7 +180,7 @@ std::shared_ptr<SimulationProgram const> finish(Folded& folded, SimulationSource
 
 void compile_programs(CompiledModel& compiled) {
   Model const& model = compiled.model;
-  Folded folded(model);
+  Folded folded(model, keeps_unknowns(compiled));
   std::vector<ChannelDensity> densities;
   for (std::size_t c = 0; c < model.channels.size(); ++c)
     densities.push_back(channel_density(folded, model.channels[c], static_cast<int>(c)));
@@ -188,6 +209,12 @@ void compile_programs(CompiledModel& compiled) {
     compiled.records.push_back({CompiledModel::Record::Kind::derived, static_cast<int>(d), 0});
     trajectory.records.push_back(folded(model.derived[d].value));
   }
+  for (std::size_t i = 0; i < model.invariants.size(); ++i) {
+    compiled.records.push_back({CompiledModel::Record::Kind::constraint, static_cast<int>(i), 0});
+    trajectory.records.push_back(folded(model.invariants[i].value));
+    compiled.records.push_back({CompiledModel::Record::Kind::constraint_size, static_cast<int>(i), 0});
+    trajectory.records.push_back(folded(model.invariants[i].size));
+  }
   compiled.likelihood = finish(folded, std::move(likelihood));
   compiled.residuals = finish(folded, std::move(residuals));
   compiled.trajectory = finish(folded, std::move(trajectory));
@@ -201,6 +228,8 @@ ProgramNames names_of(CompiledModel const& compiled) {
   for (Quantity const& input : compiled.model.inputs) names.inputs.push_back(input.name);
   for (State const& state : compiled.model.states) names.states.push_back(state.name);
   for (std::size_t i = 0; i < compiled.model.memories.size(); ++i) names.states.push_back(fmt::format("previous({})", i));
+  if (keeps_unknowns(compiled))
+    for (Unknown const& unknown : compiled.model.unknowns) names.states.push_back(unknown.name);
   for (Channel const& channel : compiled.model.channels) names.channels.push_back(channel.name);
   return names;
 }
@@ -244,7 +273,9 @@ std::string describe(Model const& model, Graph const& graph, NodeId node, Source
         return index < model.parameters.size() ? model.parameters[index].name
                                                : model.states[index - model.parameters.size()].name + "(0)";
       case LeafKind::state:
-        return model.states[index].name;
+        if (index < model.states.size()) return model.states[index].name;
+        if (index < model.states.size() + model.memories.size()) return fmt::format("previous({})", index - model.states.size());
+        return model.unknowns[index - model.states.size() - model.memories.size()].name;
       case LeafKind::input:
         return model.inputs[index].name;
       case LeafKind::input_rate:

@@ -27,9 +27,9 @@ struct CompiledModel {
       residuals;  // records: per channel the deviance residual; sums: the saturated log density
   std::shared_ptr<SimulationProgram const> trajectory;  // records: see below
   struct Record {
-    enum class Kind { centre, noise_argument, state, derived };
+    enum class Kind { centre, noise_argument, state, derived, constraint, constraint_size };
     Kind kind;
-    int index;     // channel, channel, state, model.derived
+    int index;     // channel, channel, state, model.derived, model.invariants (twice)
     int argument;  // of the noise
   };
   std::vector<Record> records;  // of `trajectory`, SI

@@ -91,7 +91,7 @@ void ModelTarget::record_failures(Simulator const& simulator, std::size_t experi
     std::vector<double> example;
     for (int p = 0; p < declared.rows(); ++p) example.push_back(declared(p, static_cast<int>(w)));
     if (ledger.failed() >= traced_failures) {
-      ledger.add_failure(FailureClass::non_finite, "not traced", simulator.schedule().time(std::max(outcome[w].sample, 0)),
+      ledger.add_failure(outcome[w].kind, "not traced", simulator.schedule().time(std::max(outcome[w].sample, 0)),
                          std::move(example));
       continue;
     }
@@ -102,7 +102,7 @@ void ModelTarget::record_failures(Simulator const& simulator, std::size_t experi
                         : options_.describe ? options_.describe(found->node, simulator.program().source.graph)
                                             : std::string("the model");
     if (parts_.size() > 1) where += fmt::format(" on `{}`", experiments_[experiment].name);
-    ledger.add_failure(FailureClass::non_finite, where,
+    ledger.add_failure(found ? found->kind : outcome[w].kind, where,
                        found ? found->time : simulator.schedule().time(std::max(outcome[w].sample, 0)), std::move(example));
   }
 }

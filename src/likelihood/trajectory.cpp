@@ -13,6 +13,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using RecordKind = CompiledModel::Record::Kind;
 
+bool is_shown(CompiledModel::Record const& record) {
+  return record.kind == RecordKind::centre || record.kind == RecordKind::state || record.kind == RecordKind::derived;
+}
+
 Quantity const& quantity_of(Model const& model, CompiledModel::Record const& record) {
   auto const index = static_cast<std::size_t>(record.index);
   if (record.kind == RecordKind::state) return model.states[index];
@@ -28,7 +32,7 @@ Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment
       simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, solver), options) {
   if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, solver, options);
   for (auto const& record : compiled_->records) {
-    if (record.kind == RecordKind::noise_argument) continue;
+    if (!is_shown(record)) continue;
     Quantity const& quantity = quantity_of(compiled_->model, record);
     std::string const unit = !quantity.unit                ? std::string()
                              : quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension)
@@ -44,13 +48,22 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   double const nan = std::nan("");
   result.values.resize(quantities_.size());
   result.noisy.resize(model.channels.size());
+  result.drift.resize(model.invariants.size());
   for (int w = 0; w < records.width(); ++w) {
     bool const good = outcome[static_cast<std::size_t>(w)].ok;
     if (!good) ++result.failed;
     std::size_t q = 0;
     for (int r = 0; r < rows; ++r) {
       auto const& record = compiled_->records[static_cast<std::size_t>(r)];
-      if (record.kind == RecordKind::noise_argument) continue;
+      if (record.kind == RecordKind::constraint) {
+        double violation = 0, size = 0;
+        for (int i = 0; i < samples; ++i) {
+          violation = std::max(violation, std::abs(records(i * rows + r, w)));
+          size = std::max(size, records(i * rows + r + 1, w));
+        }
+        result.drift[static_cast<std::size_t>(record.index)].push_back(!good ? nan : size > 0 ? violation / size : 0.0);
+      }
+      if (!is_shown(record)) continue;
       Quantity const& quantity = quantity_of(model, record);
       std::vector<double> values(static_cast<std::size_t>(samples), nan);
       if (good)

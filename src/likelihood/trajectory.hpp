@@ -31,6 +31,8 @@ class Trajectory {
   struct Result {
     std::vector<std::vector<std::vector<double>>> values, noisy;
     int failed = 0;
+    /// drift[k][d]: largest violation of invariant k of the model along vector d, as a part of the largest size of its terms.
+    std::vector<std::vector<double>> drift;
   };
   /// parameters: of the model, SI [parameters x W]; NaN where irrelevant.
   Result run(ConstLanes parameters, StreamKey noise_key) const;

@@ -32,7 +32,7 @@ std::string present_name(Model const& model, Node const& leaf) {
     case LeafKind::previous:
       return fmt::format("previous({})", index);
     case LeafKind::unknown:
-      return fmt::format("unknown({})", index);
+      return index < model.unknowns.size() ? model.unknowns[index].name : fmt::format("unknown({})", index);
     case LeafKind::step_size:
       return "h";
   }
@@ -71,6 +71,10 @@ std::string dump(Model const& model) {
     out += fmt::format("    {} {}\n", model.dynamics == Dynamics::discrete ? "next =" : "d/dt =", text(state.derivative));
   }
   for (std::size_t i = 0; i < model.memories.size(); ++i) out += fmt::format("  previous({}) of {}\n", i, text(model.memories[i]));
+  for (Unknown const& unknown : model.unknowns)
+    out += fmt::format("  unknown {}, sought from {}\n", declared(unknown), text(unknown.guess));
+  for (NodeId const residual : model.residuals) out += fmt::format("    0 = {}\n", text(residual));
+  for (Invariant const& invariant : model.invariants) out += fmt::format("  invariant 0 = {}\n", text(invariant.value));
   for (Channel const& channel : model.channels) out += fmt::format("  observe {} ~ {}\n", declared(channel), call(channel.noise));
   for (Derived const& derived : model.derived)
     out += fmt::format("  derive {} = {}{}\n", declared(derived), text(derived.value), derived.per_sample ? "  # per sample" : "");

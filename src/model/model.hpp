@@ -70,6 +70,27 @@ struct Past : Quantity {
   std::vector<int> registers;
 };
 
+/// What the equations determine beside the states, leaf unknown(i): a quantity that is never differentiated, or the highest
+/// derivative of a state.
+struct Unknown : Quantity {
+  int component = -1;  // the state whose derivative it is; -1: an algebraic unknown
+  NodeId guess = 0;    // where the search for its first value begins: an expression in parameters only
+};
+
+/// An equation that was differentiated in time to reach index 1. It holds along every solution that starts in it, but for the drift
+/// of the integration.
+struct Invariant {
+  NodeId value = 0;  // zero, but for the drift
+  NodeId size = 0;   // of its terms, which the drift is compared with: sum |d value/d q * q| over the states and parameters q
+  Span span;
+};
+
+/// Why a model cannot be written as y' = f(t, y).
+struct Implicit {
+  Span equation;
+  std::string unknown;  // that it is not linear in
+};
+
 struct Model {
   std::string name;
   std::string title;
@@ -85,6 +106,13 @@ struct Model {
   std::vector<Unchecked> unchecked;  // in the order of the text
   std::vector<Past> pasts;
   std::vector<NodeId> memories;  // leaf previous(i): the value that memories[i] had at the sample before, at the first its own
+
+  // Where an unknown is algebraic, or cannot be solved for; else empty. Residuals are zero, of index 1, as many as unknowns. Where
+  // all could be solved for, the states' derivatives, channels and derived quantities read the solutions, not the unknowns.
+  std::vector<Unknown> unknowns;
+  std::vector<NodeId> residuals;
+  std::vector<Invariant> invariants;
+  std::optional<Implicit> implicit;
 
   /// Whether a solver integrates it, so that substeps mean something.
   bool integrated() const { return dynamics == Dynamics::continuous && !states.empty(); }

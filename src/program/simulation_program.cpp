@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/diagnostic.hpp"
+#include "core/solver.hpp"
 #include "program/algebra.hpp"
 #include "program/emit.hpp"
 #include "program/interpreter/executor.hpp"
@@ -48,9 +49,20 @@ class Compilation {
     program_.graph = source.graph;
     program_.registers.parameters = source.parameters;
     program_.registers.states = source.states();
-    expand_step();
-    graph_ = program_.graph;
-    compile_step();
+    if (source.map || find_integrator(source.integrator) != nullptr) {
+      if (!source.constraints.empty()) throw InternalError("a fixed-step method for a model with algebraic states");
+      expand_step();
+      graph_ = program_.graph;
+      compile_step();
+    } else if (SolverRow const* solver = find_solver(source.integrator)) {
+      if (!source.constraints.empty() && solver->stepping != Stepping::ida)
+        throw InternalError("a solver for explicit equations for a model with algebraic states");
+      program_.equations = compile_equation_kernels(source);
+      graph_ = program_.graph;
+      program_.step = section({});
+    } else {
+      throw InternalError("there is no integrator `" + source.integrator + "`");
+    }
     compile_carry();
     for (std::size_t c = 0; c < source.channels.size(); ++c) compile_observation(static_cast<int>(c));
     compile_records();
@@ -68,7 +80,6 @@ class Compilation {
       return;
     }
     IntegratorRow const* integrator = find_integrator(program_.source.integrator);
-    if (integrator == nullptr) throw InternalError("there is no integrator `" + program_.source.integrator + "`");
     Graph& graph = program_.graph;
     std::vector<NodeId> states;
     for (int i = 0; i < program_.source.states(); ++i) states.push_back(graph.leaf(LeafKind::state, i));

@@ -7,8 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "program/equation_kernels.hpp"
 #include "program/integrator.hpp"
 #include "program/kernel.hpp"
+#include "program/uniform_leaf.hpp"
 
 namespace sysid {
 
@@ -23,31 +25,25 @@ struct SimulationSource {
   Graph graph;
   int parameters = 0;  // parameter leaves 0 ... parameters - 1
   int inputs = 0;
-  std::vector<NodeId> initial;     // one per state: expressions of parameters, and of data at the first sample
-  std::vector<NodeId> derivative;  // one per state: expressions of state, input, input_rate, parameter, time
+  std::vector<NodeId> initial;     // one per state: expressions of parameters, and of data at the first sample; of an algebraic one:
+                                   // where its iteration begins
+  std::vector<NodeId> derivative;  // one per differential state: expressions of state, input, input_rate, parameter, time
   /// The derivatives are no derivatives but the states at the next sample, which read data at this one: no integrator.
   bool map = false;
-  /// The last states remember: each takes the value of its expression at every sample, before the step from it; their derivatives
-  /// are zero.
+  /// The last differential states remember: each takes the value of its expression at every sample, before the step from it; their
+  /// derivatives are zero.
   std::vector<NodeId> memories;
+  std::vector<NodeId> constraints;  // one per algebraic state, which come last: expressions that are zero
   std::vector<ChannelSource> channels;
-  std::vector<NodeId> records;  // written out at every sample: expressions of the same leaves (measured as well)
-  std::string integrator = "rk4";
+  std::vector<NodeId> records;     // written out at every sample: expressions of the same leaves (measured as well)
+  std::string integrator = "rk4";  // a solver's name
 
-  int states() const { return static_cast<int>(derivative.size()); }
+  int states() const { return static_cast<int>(derivative.size() + constraints.size()); }
 };
 
 /// Names of leaves, for the dump.
 struct ProgramNames {
   std::vector<std::string> parameters, inputs, states, channels;
-};
-
-/// A value that is the same in all lanes at a step or sample, as raw data before the tables are computed.
-struct UniformLeaf {
-  LeafKind kind = LeafKind::time;  // input, input_rate, time, measured, step_size
-  int index = 0;
-  Stage stage = Stage::begin;
-  int lag = 0;  // samples back
 };
 
 /// Values that depend on data alone, computed once per data set for every step or sample.
@@ -85,7 +81,8 @@ struct SimulationProgram {
   Section prologue;              // parameters -> hoisted values
   Section start;                 // parameters, hoisted values, data of the first sample -> initial states
   Section carry;                 // what is to be remembered of a sample -> the last states
-  Section step;                  // one integrator step, or the map from sample to sample
+  Section step;                  // one integrator step, or the map from sample to sample; empty for solvers that choose their own steps
+  EquationKernels equations;     // for those
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
   Section record;                // one sample into the record registers
   Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums

@@ -20,8 +20,7 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
             memory_.view().data() + program.constants.size(),
             memory_.view().data() + uniform_space(program.uniforms)},
       stepper_(make_stepper(file_)),
-      death_(static_cast<std::size_t>(lanes), -1),
-      failure_(static_cast<std::size_t>(lanes), FailureClass::non_finite) {
+      death_(static_cast<std::size_t>(lanes), -1) {
   std::copy(program.constants.begin(), program.constants.end(), file_.file);
 }
 
@@ -77,7 +76,7 @@ bool Block::bury(int sample) {
   for (int w = 0; w < lanes_; ++w) {
     int& death = death_[static_cast<std::size_t>(w)];
     for (int r = 0; r < now.rows() && death < 0; ++r)
-      if (!std::isfinite(now(r, w))) death = sample, failure_[static_cast<std::size_t>(w)] = stepper_->failure(w);
+      if (!std::isfinite(now(r, w))) death = sample;
     found_dead = found_dead || death == sample;
     if (death < 0) live = w;
   }

@@ -2,6 +2,7 @@
 // stop anywhere, be looked at, lose its dead lanes and go on.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/lanes.hpp"
@@ -38,7 +39,12 @@ class Block {
   /// The sample at which a lane was found dead; -1: it lives.
   std::vector<int> const& death() const { return death_; }
   /// Why a dead lane died.
-  FailureClass failure(int lane) const { return failure_[static_cast<std::size_t>(lane)]; }
+  FailureClass failure(int lane) const {
+    auto const known = stepper_->failure(lane);
+    return known ? known->kind : FailureClass::non_finite;
+  }
+  /// What the solver knows of it.
+  std::optional<StepFailure> step_failure(int lane) const { return stepper_->failure(lane); }
 
  private:
   ConstLanes rows(int first, int count) const { return file_.rows(first, count).columns(0, lanes_); }
@@ -50,7 +56,6 @@ class Block {
   LaneFile file_;
   std::unique_ptr<Stepper> stepper_;
   std::vector<int> death_;
-  std::vector<FailureClass> failure_;
 };
 
 }  // namespace sysid

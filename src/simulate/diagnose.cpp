@@ -1,23 +1,15 @@
-// Where a failed solve broke: the step is run again in one lane, as written, and the first sub-expression that is not finite is
-// named.
+// Where a failed solve broke: it is run again in one lane. Fixed steps are evaluated as written, and the first sub-expression that
+// is not finite is named; other solvers say themselves where they gave up.
 #include <algorithm>
 #include <cmath>
 
 #include "program/kernel.hpp"
+#include "simulate/block.hpp"
+#include "simulate/not_finite.hpp"
 #include "simulate/simulator.hpp"
 
 namespace sysid {
 namespace {
-
-/// The first node below the roots that is not finite, in evaluation order; values of leaves from `value_of`.
-std::optional<NodeId> first_not_finite(Graph const& graph, std::span<NodeId const> roots,
-                                       std::function<double(NodeId)> const& value_of) {
-  std::vector<NodeId> const nodes = graph.reachable(roots);
-  std::vector<double> const values = graph.evaluate(nodes, value_of);
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (!std::isfinite(values[i]) && graph[nodes[i]].operation != Operation::constant) return nodes[i];
-  return std::nullopt;
-}
 
 std::optional<std::size_t> not_finite(std::vector<double> const& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -41,6 +33,7 @@ class Solve {
     auto const at_start = [&](NodeId id) { return leaf(graph[id], 0, -1, {}); };
     if (auto const node = first_not_finite(graph, initial, at_start)) return Diagnosis{*node, schedule_.time(0), 0};
     states_ = graph.evaluate(initial, at_start);
+    if (!schedule_.solver().fixed_step()) return run_solver();
     for (int sample = 0; sample < schedule_.last_summed(); ++sample) {
       if (auto const node = look_at_sums(sample)) return Diagnosis{*node, schedule_.time(sample), sample};
       carry(sample);
@@ -51,6 +44,24 @@ class Solve {
   }
 
  private:
+  std::optional<Diagnosis> run_solver() {
+    Block block(program_, schedule_, choose_executor(1), 1);
+    LaneArray parameters(program_.registers.parameters, 1);
+    for (int p = 0; p < parameters.rows(); ++p) parameters(p, 0) = parameters_[static_cast<std::size_t>(p)];
+    block.set_parameters(parameters);
+    block.start();
+    for (int sample = 0; sample < schedule_.last_summed(); ++sample) {
+      if (sample > 0) block.step(sample - 1);
+      if (auto const failure = block.step_failure(0)) {
+        if (!failure->node) return std::nullopt;
+        return Diagnosis{*failure->node, schedule_.time(0) + failure->time, sample, failure->kind};
+      }
+      for (std::size_t s = 0; s < states_.size(); ++s) states_[s] = block.states()(static_cast<int>(s), 0);
+      if (auto const node = look_at_sums(sample)) return Diagnosis{*node, schedule_.time(sample), sample};
+    }
+    return std::nullopt;
+  }
+
   double leaf(Node const& node, int sample, int substep, std::vector<double> const& states) const {
     if (node.leaf_kind == LeafKind::parameter) return parameters_[static_cast<std::size_t>(node.index)];
     if (node.leaf_kind == LeafKind::state) return states[static_cast<std::size_t>(node.index)];

@@ -52,6 +52,15 @@ bool Schedule::summed(int channel, int sample) const {
 
 int Schedule::count(int channel) const { return counts_[static_cast<std::size_t>(channel)]; }
 
+bool Schedule::jumps(int sample) const {
+  if (sample == 0) return true;
+  for (InputSignal const& signal : experiment_.inputs) {
+    if (signal.rule() == InputRule::zero_order && signal.value(sample - 1, 1) != signal.value(sample, 0)) return true;
+    if (signal.rule() == InputRule::linear && signal.rate(sample - 1, 1) != signal.rate(sample, 0)) return true;
+  }
+  return false;
+}
+
 double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const {
   if (map_) return at_sample(leaf, sample);
   double const place = leaf.stage == Stage::begin ? 0 : leaf.stage == Stage::middle ? 0.5 : 1;

@@ -35,6 +35,9 @@ class Schedule {
   /// One past the last sample that is summed in any channel.
   int last_summed() const { return last_summed_; }
 
+  /// Whether what an equation reads, or its rate, jumps at the sample: a solver that remembers earlier steps begins anew there.
+  bool jumps(int sample) const;
+
   /// Step `substep` of the interval after `sample`; fixed steps only.
   double const* step_row(int sample, int substep) const { return steps_.row(sample * solver_.substeps + substep); }
   double const* start_row() const { return start_.values.data(); }

@@ -56,10 +56,10 @@ Work Simulator::blocks(int width, int samples, BlockWork const& work) const {
   result.instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
   int widest = options_.lanes;
   if (widest == 0) {
-    widest = std::max(16, cache_bytes / 8 / std::max(1, program_->hot_registers));
+    widest = std::max(least_lanes(schedule_.solver()), cache_bytes / 8 / std::max(1, program_->hot_registers));
     // Narrower blocks rather than idle threads, but not so narrow that the time goes into dispatch.
     if (pool_ && result.instructions > small_job)
-      widest = std::min(widest, std::max(16, (width + pool_->threads() - 1) / pool_->threads()));
+      widest = std::min(widest, std::max(least_lanes(schedule_.solver()), (width + pool_->threads() - 1) / pool_->threads()));
   }
   Executor const executor =
       choose_executor(std::min(width, widest), options_.lanes == 0 ? widest : std::numeric_limits<int>::max());

@@ -30,11 +30,12 @@ struct Outcome {
   FailureClass kind = FailureClass::non_finite;
 };
 
-/// The first sub-expression of a failed solve that is not finite, and when.
+/// Why and where a solve failed: the first sub-expression that is not finite, or the equation that a solver gave up at.
 struct Diagnosis {
   NodeId node = 0;  // of SimulationProgram::source.graph
   double time = 0;
   int sample = 0;
+  FailureClass kind = FailureClass::non_finite;
 };
 
 /// Blocks of lanes that may run in any order and on any threads, each touching its own part of the results.
@@ -77,7 +78,7 @@ class Simulator {
   /// several threads at once.
   void records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const;
 
-  /// Re-runs one lane with plain arithmetic until something is not finite; nothing when it stays finite there.
+  /// Re-runs one lane (fixed steps: with plain arithmetic) until it fails; nothing when it does not.
   std::optional<Diagnosis> diagnose(std::span<double const> parameters) const;
 
  private:

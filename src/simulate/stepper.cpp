@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/diagnostic.hpp"
+#include "simulate/lane_solver.hpp"
 
 namespace sysid {
 namespace {
@@ -29,18 +30,25 @@ class FixedSteps : public Stepper {
 
 void LaneFile::load_row(double const* values, int width) const { std::copy(values, values + width, row); }
 
-FailureClass Stepper::failure(int) const { return FailureClass::non_finite; }
-
 std::unique_ptr<Stepper> make_stepper(LaneFile const& file) {
   switch (file.schedule.solver().row().stepping) {
     case Stepping::fixed:
       return std::make_unique<FixedSteps>(file);
+    case Stepping::cvode:
+      return make_cvode_steps(file);
+    case Stepping::ida:
+      return make_ida_steps(file);
   }
   throw InternalError("a solver without a strategy");
 }
 
 double work_per_sample(SimulationProgram const& program, SolverSettings const& solver) {
-  return static_cast<double>(program.step.code.size()) * solver.substeps;
+  if (solver.fixed_step()) return static_cast<double>(program.step.code.size()) * solver.substeps;
+  // Some twenty steps of two evaluations each, and what the solver does itself.
+  EquationKernels const& equations = program.equations;
+  return 20 * (2 * static_cast<double>(equations.rates.code.size()) + 200 * equations.states);
 }
+
+int least_lanes(SolverSettings const& solver) { return solver.fixed_step() ? 16 : 4; }
 
 }  // namespace sysid

@@ -1,6 +1,7 @@
 // How the states of a block of lanes come from one sample to the next: one strategy per kind of solver.
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "core/lanes.hpp"
 #include "core/ledger.hpp"
@@ -28,6 +29,13 @@ struct LaneFile {
   void load_row(double const* values, int width) const;
 };
 
+/// Why a lane could not be brought to the next sample, and where.
+struct StepFailure {
+  FailureClass kind = FailureClass::non_finite;
+  double time = 0;             // [s] after the first sample
+  std::optional<NodeId> node;  // of SimulationProgram::source.graph, where it is known
+};
+
 /// Belongs to one block, so it may keep what it needs from step to step. A lane's results depend on that lane alone.
 class Stepper {
  public:
@@ -36,17 +44,18 @@ class Stepper {
   virtual void start() {}
   /// The parameters have changed; the states have not.
   virtual void parameters_changed() {}
-  /// From `sample` to the next one. A lane that cannot be brought there gets states that are not finite, and its `failure` says
-  /// why.
+  /// From `sample` to the next one. A lane that cannot be brought there gets states that are not finite.
   virtual void step(int sample) = 0;
-  /// Why a lane's states are not finite.
-  virtual FailureClass failure(int lane) const;
+  /// Why a lane's states are not finite, where more is known than that.
+  virtual std::optional<StepFailure> failure(int) const { return std::nullopt; }
 };
 
 /// The strategy of the schedule's solver.
 std::unique_ptr<Stepper> make_stepper(LaneFile const& file);
 
-/// Lane-instructions that one lane takes per sampling interval, to share the work out.
+/// Lane-instructions that one lane takes per sampling interval, roughly: to share the work out.
 double work_per_sample(SimulationProgram const& program, SolverSettings const& solver);
+/// The narrowest block that is worth a thread of its own.
+int least_lanes(SolverSettings const& solver);
 
 }  // namespace sysid

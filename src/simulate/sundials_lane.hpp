@@ -1,0 +1,66 @@
+// What the SUNDIALS solvers share: vectors, matrix and linear solver of one trajectory, error weights, and where a failure was.
+#pragma once
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <limits>
+#include <memory>
+#include <sundials/sundials_context.hpp>
+
+#include "simulate/lane_solver.hpp"
+
+namespace sysid {
+
+/// One context per block: SUNDIALS wants one per thread, and a block is run by one.
+using SundialsContext = std::shared_ptr<sundials::Context>;
+
+struct FreeVector {
+  void operator()(N_Vector v) const { N_VDestroy(v); }
+};
+struct FreeMatrix {
+  void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
+};
+struct FreeLinearSolver {
+  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+};
+using Vector = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeVector>;
+using Matrix = std::unique_ptr<std::remove_pointer_t<SUNMatrix>, FreeMatrix>;
+using LinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeLinearSolver>;
+
+class SundialsLane : public LaneSolver {
+ public:
+  SundialsLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver);
+
+ protected:
+  Vector make_vector() const;
+  /// Throws InternalError when a call that cannot fail by the user's doing did.
+  static void require(int flag, char const* call);
+  /// Function handed to SUNDIALS: one over relative |y| + what is allowed near zero, from the largest |y| so far.
+  static int weights(N_Vector states, N_Vector result, void* self);
+  /// `weights` starts again from the states as they are.
+  void reset_reached();
+
+  /// Whether it is a value that is not finite which keeps the solver from going beyond `reached`.
+  bool blocked(double reached) const { return bad_time_ >= reached; }
+  StepFailure not_finite();
+  /// An iteration or error control that gave up: at the state whose `errors`, weighted, are largest.
+  StepFailure at_worst_state(FailureClass kind, double time, N_Vector errors) const;
+
+  double* data(Vector const& v) const { return N_VGetArrayPointer(v.get()); }
+  std::size_t count() const { return reached_.size(); }
+
+  SundialsContext context_;
+  LaneEquations& equations_;
+  SolverSettings solver_;
+  std::vector<double> reached_;
+  Vector states_;
+  Matrix matrix_;
+  LinearSolver linear_;
+  // Where an evaluation was last not finite in this interval.
+  double bad_time_ = never;
+  std::vector<double> bad_states_;
+  static constexpr double never = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace sysid

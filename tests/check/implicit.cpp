@@ -1,0 +1,101 @@
+// Differential-algebraic and implicit models: which equations are differentiated, what is solved for, what is refused and why.
+#include "checking.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+std::string const pendulum =
+    "state x [m], y [m], pull [N]\nparameter g [m/s^2] ~ log_uniform(1, 100)\nconstant l [m] = 2\nconstant m [kg] = 3\n"
+    "initial x = l*sin(0.5), y = -l*cos(0.5), x' = 0, y' = 0\nm*x'' = -pull*x/l\nm*y'' = -pull*y/l - m*g\nx^2 + y^2 = l^2\n"
+    "observe position ~ normal(x, sd = 1)\nobserve force ~ normal(pull, sd = 1)\n";
+
+std::string const braking =
+    "model braking {\nstate v [m/s]\nparameter a [m/s^3] ~ log_uniform(0.1, 10)\ninitial v = 10, v' = -1\n(v')^2 = a*v\n"
+    "observe speed ~ normal(v, sd = 0.1)\n}\n";
+
+std::string refused(std::string const& statements) { return messages("model m {\n" + statements + "\n}\n"); }
+
+}  // namespace
+
+TEST_CASE("a rod's constraint is differentiated twice, and the force behind it solved for") {
+  Model const model = model_of(pendulum);
+  REQUIRE(model.states.size() == 4);
+  CHECK_FALSE(model.implicit);
+  REQUIRE(model.unknowns.size() == 3);
+  CHECK(model.unknowns[0].name == "x''");
+  CHECK(model.unknowns[2].name == "pull");
+  CHECK(model.unknowns[2].component == -1);
+  REQUIRE(model.invariants.size() == 1);
+  // On the circle pull = m (v^2 - g y)/l; x'' and y'' follow from it.
+  Values const point = {{"x", 1.2}, {"y", -1.6}, {"x'", 0.8}, {"y'", 0.6}, {"g", 9.0}};
+  double const pull = 3 * (1.0 + 9.0 * 1.6) / 2;
+  CHECK(rate_of(model, "x'", point) == near(-pull * 1.2 / 2 / 3));
+  CHECK(rate_of(model, "y'", point) == near(pull * 1.6 / 2 / 3 - 9));
+  REQUIRE(model.derived.size() == 1);
+  CHECK(model.derived[0].name == "pull");
+  CHECK(model.derived[0].per_sample);
+  CHECK(at(model, model.derived[0].value, point) == near(pull));
+  CHECK(at(model, model.invariants[0].value, {{"x", 1}, {"y", 1}}) == near(2));
+}
+
+TEST_CASE("a constraint between a current and a voltage is solved as it stands") {
+  Model const model = model_of(
+      "input u\nstate q, i\nparameter r ~ log_uniform(1, 10)\ninitial q = 0\nq' = i\nr*i + q = u\nobserve d ~ normal(i, sd = 1)\n");
+  CHECK(model.invariants.empty());
+  CHECK(rate_of(model, "q", {{"u", 5}, {"q", 1}, {"r", 2}}) == near(2));
+}
+
+TEST_CASE("two capacitors side by side share their voltage: one differentiation") {
+  Model const model = model_of(
+      "input i\nstate u1, u2, i1\nparameter c1 ~ log_uniform(1, 10)\nconstant c2 = 4\ninitial u1 = 1, u2 = 1\nc1*u1' = i1\n"
+      "c2*u2' = i - i1\nu1 = u2\nobserve d ~ normal(u1, sd = 1)\n");
+  CHECK(model.invariants.size() == 1);
+  CHECK(rate_of(model, "u1", {{"i", 3}, {"u1", 1}, {"u2", 1}, {"c1", 2}}) == near(0.5));
+}
+
+TEST_CASE("an equation that cannot be solved for a highest derivative makes an implicit model, with a guess for its branch") {
+  Model const model = checked(braking).models.at(0);
+  REQUIRE(model.implicit);
+  CHECK(model.implicit->unknown == "v'");
+  REQUIRE(model.unknowns.size() == 1);
+  CHECK(at(model, model.unknowns[0].guess, {}) == near(-1));
+  CHECK(model.residuals.size() == 1);
+}
+
+TEST_CASE("an implicit model is solved by ida, and by no solver of explicit equations") {
+  std::string const data = "data d { file \"d.csv\"; rate 1 [Hz]; measure speed = v [m/s] }\n";
+  CheckedFile const file = checked(braking + data + "fit braking to d with map");
+  auto const& fit = std::get<FitTask>(file.tasks.at(0).what);
+  CHECK(fit.solver.method == "ida");
+  CHECK(fit.settle);
+  for (char const* solver : {"substeps = 2", "solver = rk4", "solver = cvode"}) {
+    std::string const shown = messages(braking + data + "fit braking to d with map, " + solver);
+    CHECK(errors_in(shown) == 1);
+    CHECK(shown.find("error[E3004]") != std::string::npos);
+    CHECK(shown.find("not linear in `v'`") != std::string::npos);
+  }
+}
+
+TEST_CASE("what no differentiation can mend is refused by name") {
+  std::string const driven =
+      "input u [m]\nstate y [m], force [N]\ninitial y = 0, y' = 0\ny'' + y = force\ny = u\n"
+      "observe d ~ normal(force, sd = 1)\n";
+  CHECK(refused(driven).find("error[E3015]: this constraint prescribes a motion") != std::string::npos);
+  std::string const tied = "input u\nstate y, a, b\ninitial y = 0\na = u\na = y\ny' = b\nobserve d ~ normal(y, sd = 1)\n";
+  CHECK(refused(tied).find("error[E3016]") != std::string::npos);
+  std::string const open = "state y, a, b\ninitial y = 0\ny' = a + b\na + b = 1\n2*a + 2*b = y\nobserve d ~ normal(y, sd = 1)\n";
+  CHECK(refused(open).find("error[E3005]") != std::string::npos);
+}
+
+TEST_CASE("initial values off a constraint, or off its time derivative, are refused; those on it for every parameter are not") {
+  auto const with_initial = [](std::string const& values) {
+    return refused("state x, y, pull\nparameter l ~ log_uniform(1, 2)\ninitial " + values +
+                   "\nx'' = -pull*x\ny'' = -pull*y - 9.81\nx^2 + y^2 = l^2\nobserve d ~ normal(x, sd = 1)\n");
+  };
+  CHECK(with_initial("x = l*sin(0.3), y = -l*cos(0.3), x' = 0, y' = 0") == "");
+  CHECK(with_initial("x = 0.8*l, y = -0.6*l, x' = 0.3, y' = 0.4") == "");
+  CHECK(with_initial("x = 0.8, y = -0.6, x' = 0, y' = 0").find("error[E3017]") != std::string::npos);
+  CHECK(with_initial("x = 0.8*l, y = -0.6*l, x' = 1, y' = 0").find("error[E3017]") != std::string::npos);
+}
