@@ -222,6 +222,7 @@ class Fit {
     if (interrupted)
       report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
                                  "go on with --resume; it ends with the bytes of an unbroken run"});
+    if (!interrupted) add(check_hierarchy(model_, result.draws, report.findings));
     add_failures(report);
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
     add_derived(*compiled_, *space_, result.draws);

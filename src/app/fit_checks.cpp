@@ -131,6 +131,37 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   return check;
 }
 
+Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found) {
+  auto const estimated = [&](NodeId argument) {
+    return model.graph.depends(argument, [&](Node const& node) {
+      return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
+             model.parameters[static_cast<std::size_t>(node.index)].prior.has_value();
+    });
+  };
+  auto const member = std::find_if(model.parameters.begin(), model.parameters.end(), [&](Parameter const& parameter) {
+    // The first argument is where the population lies, what follows is how wide it is.
+    return parameter.per_experiment && parameter.prior && !parameter.prior->arguments.empty() &&
+           std::any_of(parameter.prior->arguments.begin() + 1, parameter.prior->arguments.end(), estimated);
+  });
+  if (member == model.parameters.end()) return {};
+  if (draws.total() == 1)
+    return {{Severity::warning, "optimum_of_hierarchy",
+             fmt::format("the density may grow without bound as the spread of `{}` vanishes: an optimum says little about it",
+                         member->name),
+             "sample it with mh"}};
+  bool const unmixed = std::any_of(found.begin(), found.end(), [](Finding const& each) {
+    return each.code == "chains_disagree" || each.code == "chains_not_quite_agreed" || each.code == "ess_bulk_low" ||
+           each.code == "ess_tail_low";
+  });
+  if (!unmixed) return {};
+  return {{Severity::note, "hierarchy_narrows",
+           fmt::format("the spread of `{}` is estimated: where it is small the posterior narrows, and chains pass slowly",
+                       member->name),
+           fmt::format("write `{}` by standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
+                       "spread*z` (docs/methods.md, Hierarchies)",
+                       member->name, member->name)}};
+}
+
 Findings check_input_timing(ModelTarget const& target, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
   Model const& model = target.compiled()->model;
   Findings findings;

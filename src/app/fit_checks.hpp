@@ -18,6 +18,10 @@ struct FitCheck {
 /// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input.
 FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared);
 
+/// What an estimated spread of a population does to a result (docs/methods.md, Hierarchies): to chains, when `found` says that they
+/// have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes.
+Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found);
+
 /// A much better fit with an input of one experiment half a sample earlier or later (more than `0.2` nats per scored sample of that
 /// experiment, and 20 in all) means that the rule between input samples is not the one of the experiment. mode: the best one.
 Findings check_input_timing(ModelTarget const& target, Mode const& mode, std::uint64_t seed, Ledger& ledger);

@@ -148,35 +148,113 @@ TEST_CASE("a hierarchy with known spread has the normal-normal posterior, shrunk
   for (int g = 0; g < 4; ++g) check(fitted, "level[group" + std::to_string(g + 1) + "]", mean(1 + g), exact.sd(1 + g));
 }
 
+namespace {
+
+// Moments of mu, tau and the levels of a normal hierarchy with known variances of the groups' means: given tau all is normal in
+// closed form, tau by the midpoint rule.
+struct Quadrature {
+  double mass = 0;
+  std::vector<double> mean, square;  // of mu, tau, then the levels
+
+  template <class LogPrior>
+  Quadrature(std::vector<double> const& y, std::vector<double> const& variance, double prior_sd, LogPrior const& log_prior,
+             double most, double h)
+      : mean(y.size() + 2, 0.0), square(mean) {
+    for (double tau = 0.5 * h; tau < most; tau += h) {
+      double precision = 1 / (prior_sd * prior_sd), information = 0, squares = 0, log_density = log_prior(tau);
+      for (std::size_t g = 0; g < y.size(); ++g) {
+        double const v = tau * tau + variance[g];
+        precision += 1 / v;
+        information += y[g] / v;
+        squares += y[g] * y[g] / v;
+        log_density -= 0.5 * std::log(v);
+      }
+      double const centre = information / precision;
+      log_density += -0.5 * std::log(precision) - 0.5 * (squares - information * centre);
+      double const weight = std::exp(log_density) * h;
+      mass += weight;
+      add(0, weight, centre, 1 / precision);
+      add(1, weight, tau, 0);
+      for (std::size_t g = 0; g < y.size(); ++g) {
+        double const own = 1 / variance[g] + 1 / (tau * tau), pull = 1 / (tau * tau) / own;
+        add(2 + g, weight, y[g] / variance[g] / own + pull * centre, 1 / own + pull * pull / precision);
+      }
+    }
+  }
+  double mean_of(std::size_t i) const { return mean[i] / mass; }
+  double sd_of(std::size_t i) const { return std::sqrt(square[i] / mass - mean_of(i) * mean_of(i)); }
+
+ private:
+  void add(std::size_t i, double weight, double m, double v) {
+    mean[i] += weight * m;
+    square[i] += weight * (m * m + v);
+  }
+};
+
+}  // namespace
+
 TEST_CASE("mean and spread of a population agree with quadrature over the spread") {
   Groups const groups;
-  // Given tau the groups' means are normal around mu with variance tau^2 + s_g^2: mu integrates out in closed form.
-  double mass = 0, mu_mean = 0, mu_square = 0, tau_mean = 0, tau_square = 0;
-  double const h = 1e-3;
-  for (double tau = 0.5 * h; tau < 12; tau += h) {
-    double precision = 1 / 9.0, information = 0, log_density = -0.5 * tau * tau / 4;  // half-normal of sd 2
-    double square = 0;
-    for (std::size_t g = 0; g < groups.rows.size(); ++g) {
-      double const v = tau * tau + groups.variance(g);
-      precision += 1 / v;
-      information += groups.mean[g] / v;
-      square += groups.mean[g] * groups.mean[g] / v;
-      log_density -= 0.5 * std::log(v);
-    }
-    double const centre = information / precision;
-    log_density += -0.5 * std::log(precision) - 0.5 * (square - information * centre);
-    double const weight = std::exp(log_density) * h;
-    mass += weight;
-    mu_mean += weight * centre;
-    mu_square += weight * (centre * centre + 1 / precision);
-    tau_mean += weight * tau;
-    tau_square += weight * tau * tau;
-  }
-  mu_mean /= mass;
-  tau_mean /= mass;
+  std::vector<double> variance;
+  for (std::size_t g = 0; g < groups.rows.size(); ++g) variance.push_back(groups.variance(g));
+  Quadrature const exact(
+      groups.mean, variance, 3, [](double tau) { return -0.5 * tau * tau / 4; }, 12, 1e-3);
   Fitted const fitted = run_file(groups.text("~ half_normal(2)", "samples = 120000, burn_in = 20000, thin = 10"), {}, groups.files);
   CHECK(fitted.exit == 0);
-  check(fitted, "mu", mu_mean, std::sqrt(mu_square / mass - mu_mean * mu_mean));
-  check(fitted, "tau", tau_mean, std::sqrt(tau_square / mass - tau_mean * tau_mean));
+  check(fitted, "mu", exact.mean_of(0), exact.sd_of(0));
+  check(fitted, "tau", exact.mean_of(1), exact.sd_of(1));
+  check(fitted, "level[group2]", exact.mean_of(3), exact.sd_of(3));
   CHECK(fitted.of("posterior", "tau").at("rhat").get<double>() < 1.01);
+}
+
+namespace {
+
+// Rubin 1981, table 1: effects of coaching in eight schools and their standard errors.
+std::vector<double> const effects = {28, 8, -3, 7, -1, 1, 18, 12}, standard_errors = {15, 10, 16, 11, 9, 11, 10, 18};
+
+Fitted eight_schools(std::string const& members, std::string const& task) {
+  std::string text =
+      "model schools {\n  input x\n  state y\n  initial y = effect\n  parameter mu ~ normal(0, sd = 5)\n"
+      "  parameter tau ~ half_cauchy(scale = 5)\n  parameter error per experiment\n" +
+      members + "  y' = x\n  observe result ~ normal(y, sd = error)\n}\n";
+  std::map<std::string, std::string> files;
+  std::string names;
+  for (std::size_t s = 0; s < effects.size(); ++s) {
+    std::string const name(1, static_cast<char>('A' + s));
+    files[name + ".csv"] = "t,x,y\n0,0," + shortest(effects[s]) + "\n1,0,NA\n";
+    text +=
+        "data " + name + " { file \"" + name +
+        ".csv\"; time t [s]; input x = x hold zero_order; measure result = y; constant error = " + shortest(standard_errors[s]) +
+        " }\n";
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return run_file(text + "posterior = fit schools to " + names + " with " + task + ", seed = 1\n", {}, files);
+}
+
+std::string const chains = "mh(samples = 120000, burn_in = 20000, thin = 20)";
+
+}  // namespace
+
+TEST_CASE("the eight schools by standardised members agree with quadrature") {
+  std::vector<double> variance;
+  for (double const e : standard_errors) variance.push_back(e * e);
+  // The half-Cauchy tail beyond 1000 is cut by a likelihood that falls as tau^-7.
+  Quadrature const exact(
+      effects, variance, 5, [](double tau) { return -std::log1p(tau * tau / 25); }, 1000, 2e-3);
+  Fitted const fitted = eight_schools("  parameter z per experiment ~ normal(0, sd = 1)\n  derive effect = mu + tau*z\n", chains);
+  CHECK(fitted.exit == 0);
+  check(fitted, "mu", exact.mean_of(0), exact.sd_of(0));
+  check(fitted, "tau", exact.mean_of(1), exact.sd_of(1));
+  for (std::size_t s = 0; s < 8; ++s)
+    check(fitted, "effect[" + std::string(1, static_cast<char>('A' + s)) + "]", exact.mean_of(2 + s), exact.sd_of(2 + s));
+  CHECK_FALSE(fitted.found("posterior", "hierarchy_narrows"));
+}
+
+TEST_CASE("the eight schools as they stand are refused by R-hat, with the way out; their optimum comes with a warning") {
+  std::string const members = "  parameter effect per experiment ~ normal(mu, sd = tau)\n";
+  Fitted const fitted = eight_schools(members, chains);
+  CHECK(fitted.exit == 1);
+  CHECK(fitted.found("posterior", "chains_disagree"));
+  CHECK(fitted.found("posterior", "hierarchy_narrows"));
+  CHECK(eight_schools(members, "map").found("posterior", "optimum_of_hierarchy"));
 }
