@@ -30,7 +30,6 @@ class Folded {
       if (node.leaf_kind == LeafKind::previous) return graph.leaf(LeafKind::state, state);  // a memory: it is kept behind the states
       if (node.leaf_kind == LeafKind::unknown && unknowns_are_states_)
         return graph.leaf(LeafKind::state, state + static_cast<int>(model_.memories.size()));
-        return graph.leaf(LeafKind::state, static_cast<int>(model_.states.size()) + node.index);
       if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())
         return std::nullopt;
       Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];

@@ -209,7 +209,7 @@ TEST_CASE("wrong units planted in the shipped models are found where they are") 
     Diagnostics diagnostics;
     auto const tree = parse(source, diagnostics);
     REQUIRE(tree);
-    auto const clean = load(source, diagnostics);
+    load(source, diagnostics);
     CHECK_MESSAGE(diagnostics.all().empty(), render(diagnostics, source));
     Planter planter{text, {}};
     for (ast::Item const& item : tree->items)
