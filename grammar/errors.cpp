@@ -127,7 +127,12 @@ Diagnostic stray_byte(Span where, unsigned char byte) {
     return error("E1115", where, fmt::format("the byte 0x{:02x} is not valid UTF-8", byte), "save the file as UTF-8");
   std::string const name =
       byte > 0x20U && byte < 0x7FU ? fmt::format("`{}`", static_cast<char>(byte)) : fmt::format("0x{:02x}", byte);
-  return error("E1115", where, fmt::format("the character {} has no meaning here", name), "remove it");
+  std::string_view const help = byte == '|'    ? "an absolute value is written `abs(y)`; arguments are separated by commas"
+                                : byte == '?'  ? "a choice is written `if condition then value else value`"
+                                : byte == ':'  ? "a range is written `1..500`, a definition `let a = b`"
+                                : byte == '\\' ? "formulas are plain text: `y''` for a second derivative, `sqrt(a)` for a root"
+                                               : "remove it";
+  return error("E1115", where, fmt::format("the character {} has no meaning here", name), std::string(help));
 }
 
 Diagnostic look_alike(Span where, std::string_view found, std::string_view meant) {
@@ -137,6 +142,12 @@ Diagnostic look_alike(Span where, std::string_view found, std::string_view meant
 
 Diagnostic foreign_operator(Span where, std::string_view found, std::string_view help) {
   return error("E1117", where, fmt::format("`{}` is not an operator", found), std::string(help));
+}
+
+Diagnostic left_arrow(Span where) { return foreign_operator(where, "<-", "an equation or a definition is written with `=`"); }
+
+Diagnostic list_in_brackets(Span where) {
+  return error("E1118", where, "a list does not stand in brackets", "write it in parentheses: `(1, 2)`");
 }
 
 Diagnostic bracket_out_of_place(Span where) {

@@ -43,8 +43,12 @@ Diagnostic stray_byte(Span where, unsigned char byte);
 Diagnostic look_alike(Span where, std::string_view found, std::string_view meant);
 /// E1117: `**`, `:=`, `&&`: operators of other languages.
 Diagnostic foreign_operator(Span where, std::string_view found, std::string_view help);
+/// E1117: `k <- 3`.
+Diagnostic left_arrow(Span where);
 /// E1118: `[` where no unit may stand.
 Diagnostic bracket_out_of_place(Span where);
+/// E1118: `[1, 2]` where a value may stand.
+Diagnostic list_in_brackets(Span where);
 /// E1119: `if` as a name.
 Diagnostic reserved_word(Token const& word);
 /// E1120: a statement that begins with + or -.

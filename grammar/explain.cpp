@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "grammar/errors.hpp"
+#include "grammar/hints.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar {
@@ -11,6 +12,8 @@ namespace sysid::grammar {
 namespace {
 
 constexpr std::array<std::string_view, 6> comparisons{"<", "<=", ">", ">=", "==", "!="};
+/// Messages of many causes, whose help a hint may replace.
+constexpr std::array<std::string_view, 3> general{"E1105", "E1113", "E1121"};
 constexpr std::array<std::string_view, 9> unfinished{"+", "-", "*", "/", "^", ",", "=", "~", ".."};
 
 bool is_symbol(Token const& token, std::span<std::string_view const> table) {
@@ -41,8 +44,12 @@ class Failure {
   Diagnostic diagnostic() const {
     if (wanted_ == wanted::shallower_nesting) return errors::nesting_too_deep(span(), deepest_nesting);
     if (auto incomplete = unfinished_line()) return *incomplete;
-    if (auto specific = at_end_ ? at_end() : at_token()) return *specific;
-    return errors::expected(span(), noun_phrase(), found_phrase(), misspelt());
+    auto specific = at_end_ ? at_end() : at_token();
+    std::string const help = hint(gap());
+    if (specific && !help.empty() && words::contains(general, specific->code)) specific->help = help;
+    if (specific) return *specific;
+    std::string const guess = misspelt();
+    return errors::expected(span(), noun_phrase(), found_phrase(), guess.empty() ? help : guess);
   }
 
  private:
@@ -57,6 +64,15 @@ class Failure {
     return first_ < tokens_.size() && tokens_[first_].statement == statement_ ? &tokens_[first_] : nullptr;
   }
   bool begins_with(std::string_view keyword) const { return first() != nullptr && first()->is(keyword); }
+
+  Gap gap() const {
+    std::size_t last = first_;
+    while (last < tokens_.size() && tokens_[last].statement == statement_) ++last;
+    return {wanted_,
+            at_end_ || found_ == tokens_.size() ? nullptr : &found(),
+            {tokens_.data() + first_, last - first_},
+            found_ - first_};
+  }
 
   Span span() const {
     if (!at_end_) return found().span;
@@ -111,6 +127,11 @@ class Failure {
 
   std::optional<Diagnostic> at_end() const {
     if (wanted_ != wanted::equals) return std::nullopt;
+    if (found_ == first_ + 1 && is_word(tokens_[first_]) && in_model())
+      return errors::unknown_statement(tokens_[first_], "a model", words::model_statements);
+    for (std::size_t i = first_; i + 1 < found_; ++i)
+      if (tokens_[i].is("<") && tokens_[i + 1].is("-") && tokens_[i].span.end == tokens_[i + 1].span.begin)
+        return errors::left_arrow(cover(tokens_[i].span, tokens_[i + 1].span));
     for (std::size_t i = first_; i < found_; ++i)
       if (tokens_[i].is("==")) return errors::double_equals(tokens_[i].span);
     return std::nullopt;
@@ -173,7 +194,7 @@ class Failure {
   }
 
   bool in_model() const {
-    std::size_t i = found_;
+    std::size_t i = first_;
     while (i > 0 && !tokens_[i].is("{") && !tokens_[i].is("}")) --i;
     if (!tokens_[i].is("{")) return false;
     int const header = tokens_[i].statement;

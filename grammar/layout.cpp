@@ -13,8 +13,9 @@ namespace {
 /// A tree as deep as this is still safe to walk and destroy recursively; left-associated operators deepen it by one each.
 constexpr int most_operators = 4000;
 
-constexpr std::array<std::string_view, 15> binary_operators{"+",  "-",  "*",  "/",  "^",  "<",   "<=", ">",
-                                                            ">=", "==", "!=", "..", "or", "and", "**"};
+/// With those of other languages, so that a line goes on behind them and is refused once.
+constexpr std::array<std::string_view, 21> binary_operators{
+    "+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!=", "..", "or", "and", "...", "**", ".^", ".*", "./", "~=", "<>"};
 
 bool is_binary_operator(Token const& token) {
   return token.kind != TokenKind::text && words::contains(binary_operators, token.text);
@@ -32,6 +33,7 @@ class LayoutPass {
     refuse_long_statements();
     report(diagnostics, limit);
     out_.tokens = std::move(scan_.tokens);
+    out_.comments = std::move(scan_.comments);
     return std::move(out_);
   }
 
@@ -80,6 +82,11 @@ class LayoutPass {
         match_bracket(i);
       else if (begins_declaration(i))
         close_unclosed(i);
+      // To the rules all that follows stands in the block.
+      if (!open_.empty() && tokens_[open_.back()].is("{") && begins_task(i)) {
+        leave_block(i);
+        for (std::size_t j = i; j < tokens_.size(); ++j) spoilt_.push_back(j);
+      }
     }
     close_unclosed(tokens_.size());
     if (!open_.empty()) unclosed_block(open_.back(), tokens_.size());
@@ -93,6 +100,19 @@ class LayoutPass {
     out_.reported_at_end = true;
   }
 
+  void leave_block(std::size_t found) {
+    unclosed_block(open_.front(), found);
+    open_.clear();
+  }
+
+  /// `fit duffing`, `posterior = fit duffing`: two words that no statement of a block may have there.
+  bool begins_task(std::size_t i) const {
+    std::size_t const verb = i + 1 < tokens_.size() && tokens_[i + 1].is("=") ? i + 2 : i;
+    return tokens_[i].newline_before && tokens_[i].kind == TokenKind::word && verb + 1 < tokens_.size() &&
+           words::contains(words::verbs, tokens_[verb].text) && tokens_[verb + 1].kind == TokenKind::word &&
+           !tokens_[verb + 1].newline_before && !words::contains(words::reserved, tokens_[verb + 1].text);
+  }
+
   void match_bracket(std::size_t i) {
     Token const& token = tokens_[i];
     if (is_opener(i)) {
@@ -100,15 +120,14 @@ class LayoutPass {
     } else if ((token.is("~") || token.is("=") || (token.is(",") && !opens_index(open_))) && !open_.empty() &&
                tokens_[open_.back()].is("[")) {
       // None of these stands in a unit.
-      mistake(open_.back(), errors::unclosed(tokens_[open_.back()], token.span));
+      std::size_t const opener = open_.back();
+      bool const list = token.is(",") && opener > 0 && (is_opener(opener - 1) || continues_after(tokens_[opener - 1], true));
+      mistake(opener, list ? errors::list_in_brackets(tokens_[opener].span) : errors::unclosed(tokens_[opener], token.span));
       open_.pop_back();
     } else if (token.is("{")) {
       close_unclosed(i);
       // Blocks do not nest: a block that begins while another is open means that the other was never closed.
-      if (!open_.empty() && (tokens_[line_].is("model") || tokens_[line_].is("data"))) {
-        unclosed_block(open_.front(), line_);
-        open_.clear();
-      }
+      if (!open_.empty() && (tokens_[line_].is("model") || tokens_[line_].is("data"))) leave_block(line_);
       open_.push_back(i);
     } else if (token.is("}")) {
       close_unclosed(i);
@@ -134,6 +153,11 @@ class LayoutPass {
     return is_binary_operator(token) || token.is("then") || token.is("else") || (!in_block && token.is("with") && !names_task);
   }
 
+  /// A newline between these two, neighbours but for `;`, would not end a statement.
+  bool joins(std::size_t before, std::size_t i, bool in_block) const {
+    return !tokens_[i].is("}") && (inside_[i] > 0 || continues_after(tokens_[before], in_block) || continues_before(i, in_block));
+  }
+
   void decide_newlines() {
     out_.text = std::string(source_.text());
     auto const blank = [&](std::size_t begin, std::size_t end) {
@@ -148,8 +172,7 @@ class LayoutPass {
       bool const both = i > 0 && i < tokens_.size();
       bool const separator = both && tokens_[i - 1].kind == TokenKind::symbol &&
                              std::string_view(";{}").find(tokens_[i - 1].text) != std::string_view::npos;
-      bool const joined = both && !separator && !tokens_[i].is("}") &&
-                          (inside_[i] > 0 || continues_after(tokens_[i - 1], in_block) || continues_before(i, in_block));
+      bool const joined = both && !separator && joins(i - 1, i, in_block);
       // Between tokens stand blanks and newlines only, once comments are gone.
       for (std::uint32_t at = end; at < begin; ++at)
         if (out_.text[at] != '\n' || joined) out_.text[at] = ' ';
@@ -157,6 +180,10 @@ class LayoutPass {
       Token& token = tokens_[i];
       if (separator || (token.newline_before && !joined) || token.is("}")) ++statement;
       token.statement = statement;
+      std::size_t before = i;
+      while (before > 0 && tokens_[before - 1].is(";")) --before;
+      token.joins_before =
+          before > 0 && !tokens_[before - 1].is("{") && !tokens_[before - 1].is("}") && joins(before - 1, i, in_block);
       if (token.is("{") || token.is("}")) in_block = token.is("{");
       end = token.span.end;
     }

@@ -11,6 +11,7 @@ namespace sysid::grammar {
 struct Layout {
   std::string text;
   std::vector<Token> tokens;
+  std::vector<Span> comments;
   /// Statements in which a mistake is already reported, and whether one is reported at the end of the file: what the rules find
   /// there merely follows from it.
   std::set<int> reported;

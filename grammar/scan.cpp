@@ -15,19 +15,30 @@ namespace {
 struct LookAlike {
   std::string_view bytes, meant;
 };
-constexpr std::array<LookAlike, 22> look_alikes{{
-    {"−", "`-`"},          {"–", "`-`"},          {"—", "`-`"},          {"×", "`*`"},          {"·", "`*`"},  {"⋅", "`*`"},
-    {"÷", "`/`"},          {"²", "`^2`"},         {"³", "`^3`"},         {"≤", "`<=`"},         {"≥", "`>=`"}, {"≠", "`!=`"},
-    {"′", "`'`"},          {"’", "`'`"},          {"‘", "`'`"},          {"“", "`\"`"},         {"”", "`\"`"}, {"″", "`''`"},
-    {"\u00a0", "a blank"}, {"\u202f", "a blank"}, {"\u2009", "a blank"}, {"\u200b", "nothing"},
+constexpr std::array<LookAlike, 26> look_alikes{{
+    {"−", "`-`"},          {"–", "`-`"},          {"—", "`-`"},  {"×", "`*`"},  {"·", "`*`"},          {"⋅", "`*`"},
+    {"÷", "`/`"},          {"²", "`^2`"},         {"³", "`^3`"}, {"≤", "`<=`"}, {"≥", "`>=`"},         {"≠", "`!=`"},
+    {"′", "`'`"},          {"’", "`'`"},          {"‘", "`'`"},  {"“", "`\"`"}, {"”", "`\"`"},         {"″", "`''`"},
+    {"√", "`sqrt(...)`"},  {"∞", "`inf`"},        {"∙", "`*`"},  {"∗", "`*`"},  {"\u00a0", "a blank"}, {"\u202f", "a blank"},
+    {"\u2009", "a blank"}, {"\u200b", "nothing"},
 }};
 
 /// Operators of other languages.
 struct Foreign {
   std::string_view symbol, help;
 };
-constexpr std::array<Foreign, 6> foreign_operators{{
+constexpr std::array<Foreign, 16> foreign_operators{{
+    {"...", "leave it out: a line that ends in an operator or a comma goes on, and so does one inside of parentheses"},
     {"**", "a power is written with `^`"},
+    {".^", "powers are written with `^`"},
+    {".*", "products are written with `*`"},
+    {"./", "quotients are written with `/`"},
+    {"~=", "write `!=`"},
+    {"<>", "write `!=`"},
+    {"+=", "a name has one value for good: give the new value a name of its own"},
+    {"-=", "a name has one value for good: give the new value a name of its own"},
+    {"*=", "a name has one value for good: give the new value a name of its own"},
+    {"/*", "a comment begins with `#` or `//` and ends with its line"},
     {"->", "an equation or a definition is written with `=`"},
     {":=", "an equation or a definition is written with `=`"},
     {"&&", "write `and`"},
@@ -189,16 +200,16 @@ class Scanner {
 
   void symbol_token() {
     std::size_t const begin = at_;
+    for (Foreign const& foreign : foreign_operators) {
+      if (follows(foreign.symbol) && !(foreign.symbol == "!" && follows("!="))) {
+        at_ += foreign.symbol.size();
+        return mistake(errors::foreign_operator(from(begin), foreign.symbol, foreign.help));
+      }
+    }
     for (std::string_view const symbol : two_character_operators) {
       if (follows(symbol)) {
         at_ += symbol.size();
         return;
-      }
-    }
-    for (Foreign const& foreign : foreign_operators) {
-      if (follows(foreign.symbol)) {
-        at_ += foreign.symbol.size();
-        return mistake(errors::foreign_operator(from(begin), foreign.symbol, foreign.help));
       }
     }
     char const symbol = text_[at_++];

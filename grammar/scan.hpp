@@ -17,6 +17,9 @@ struct Token {
   bool newline_before = false;
   /// Counts the statements of the file; filled by the layout.
   int statement = 0;
+  /// A newline before this token would not end a statement (for the first behind `;`: would not end the one before). Filled by the
+  /// layout.
+  bool joins_before = false;
 
   bool is(std::string_view symbol_or_word) const { return kind != TokenKind::text && text == symbol_or_word; }
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "check/consequences.hpp"
 #include "check/data.hpp"
 #include "check/errors.hpp"
 #include "check/model.hpp"
@@ -74,6 +75,7 @@ std::optional<CheckedFile> check(ast::File const& tree, std::span<BackendSetting
                                           [](Model const& model) { return model.dynamics != Dynamics::continuous; });
   for (DataBlock const& block : file.data)
     if (!other_dynamics && !mentioned(tasks, block.name)) check_between_samples(block, nullptr, diagnostics);
+  remove_consequences(tree, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
   return file;
 }

@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "distribution/distribution.hpp"
+
 namespace sysid::errors {
 namespace {
 
@@ -63,6 +65,16 @@ constexpr Synonym distribution_synonyms[] = {
     {"lognormal", "log_normal"},   {"jeffreys", "log_uniform"}, {"invgamma", "inverse_gamma"}, {"halfnormal", "half_normal"},
     {"halfcauchy", "half_cauchy"}, {"t", "student_t"},          {"cauchy", "student_t"},
 };
+// Help in place of a guess.
+constexpr Synonym name_synonyms[] = {
+    {"time", "time is declared where it is used: `time t [s]`"},
+    {"t", "time is declared where it is used: `time t [s]`"},
+    {"π", "write `pi`"},
+    {"ẏ", "a derivative is written with primes: `y'`"},
+    {"ÿ", "a derivative is written with primes: `y''`"},
+    {"ẋ", "a derivative is written with primes: `x'`"},
+    {"ẍ", "a derivative is written with primes: `x''`"},
+};
 constexpr Synonym argument_synonyms[] = {
     {"sigma", "sd"},
     {"std", "sd"},
@@ -98,6 +110,15 @@ std::string guess_or(std::span<Synonym const> table, std::string const& text, Na
 }  // namespace
 
 Diagnostic unknown_name(ast::Name const& name, Names const& known) {
+  for (Synonym const& each : name_synonyms)
+    if (name.text == each.foreign)
+      return error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text), std::string(each.ours));
+  // ydot, dydt, dy of a y that there is.
+  for (std::string const& each : known)
+    for (char const* pattern : {"{}dot", "{}_dot", "d{}", "d{}dt", "{}ddot", "d2{}", "{}dotdot"})
+      if (name.text == fmt::format(fmt::runtime(pattern), each))
+        return error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
+                     fmt::format("a derivative is written with primes: `{0}'`, `{0}''`", each));
   return error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
                guess_or(name.text, known, "declare it as state, input, parameter, constant or local definition (let)"));
 }
@@ -109,6 +130,13 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
   if (is_quantity)
     return error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
                  fmt::format("multiplication is written with *: `{}*(...)`", name.text));
+  for (std::string_view const derivative : {"der", "diff", "d", "ddt", "dt", "derivative", "D"})
+    if (name.text == derivative)
+      return error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
+                   "a derivative is written with primes: `y'`, `y''`");
+  if (find_distribution(name.text) != nullptr)
+    return error("E2003", name.span, fmt::format("`{}` is a distribution, not a function", name.text),
+                 fmt::format("a prior is written with `~`: `parameter k ~ {}(...)`", name.text));
   if (name.text == "pow" || name.text == "power")
     return error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`");
   return error(
@@ -157,6 +185,7 @@ Diagnostic constant_needed(Span span, std::string const& what) {
                "use numbers, constants and functions of them only");
 }
 Diagnostic unknown_unit(ast::Name const& name) {
+  if (name.text == "per") return error("E2011", name.span, "`per` is not a unit", "division is written with `/`: [N s/m]");
   return error(
       "E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
       guess_or(name.text, common_unit_names(), "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));
@@ -275,9 +304,11 @@ Diagnostic initial_of_highest(ast::Reference const& reference, std::string const
   return error("E3006", reference.span, fmt::format("`{}` follows from the equations: it has no initial value", primed(reference)),
                fmt::format("`{}` is of order {}: give {}", state, order, quoted(components)));
 }
-Diagnostic initial_missing(Span declaration, std::string const& component) {
-  return error("E3007", declaration, fmt::format("`{}` has no initial value", component),
-               fmt::format("write `initial {} = 0`", component));
+Diagnostic initial_missing(Span declaration, Names const& components) {
+  bool const one = components.size() == 1;
+  return error("E3007", declaration,
+               fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
+               fmt::format("write `initial {} = 0`", fmt::join(components, " = 0, ")));
 }
 Diagnostic initial_twice(Span second, Span first, std::string const& component) {
   return conflict("E3008", second, "again here", first, "first given here",
@@ -366,6 +397,9 @@ Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& 
 }
 
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known) {
+  if (kind == "fit" && known.empty())
+    return error("E6001", name.span, fmt::format("there is no fit `{}` in this file", name.text),
+                 "a fit is a task with a name: `posterior = fit MODEL to DATA with mh(samples = 1000)`");
   return error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text),
                guess_or(name.text, known, choose(known, kind)));
 }
@@ -386,7 +420,7 @@ Diagnostic option_kind(Span span, std::string const& option, std::string const& 
   return error("E6004", span, fmt::format("`{}` must be {}", option, wanted), fmt::format("for example `{}`", example));
 }
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most) {
-  std::string const range = most < 1e16     ? fmt::format("lie between {} and {}", least, most)
+  std::string const range = most < 1e9      ? fmt::format("lie between {} and {}", least, most)
                             : least > 1e-15 ? fmt::format("be at least {}", least)
                             : least == 0    ? std::string("not be negative")
                             : least > 0     ? std::string("be positive")

@@ -61,7 +61,7 @@ Diagnostic start_off_constraint(Span equation, Span initial);
 Diagnostic estimated_start_of_constraint(Span start, Span equation);
 Diagnostic undetermined(Span declaration, std::string const& unknown);
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order);
-Diagnostic initial_missing(Span declaration, std::string const& component);
+Diagnostic initial_missing(Span declaration, Names const& components);
 Diagnostic initial_twice(Span second, Span first, std::string const& component);
 Diagnostic initial_moves(Span span);
 Diagnostic not_a_state(ast::Name const& name, Names const& states);

@@ -579,9 +579,13 @@ class ModelChecker {
         state.initial_given = true;
       }
     });
-    for (std::size_t i = 0; i < model_.states.size() && !orders_doubtful_; ++i)
-      if (!given.contains(static_cast<int>(i)))
-        diagnostics_.add(errors::initial_missing(model_.states[i].span, model_.states[i].name));
+    for (std::size_t i = 0; i < model_.states.size() && !orders_doubtful_;) {
+      Span const declaration = model_.states[i].span;
+      std::vector<std::string> missing;
+      for (; i < model_.states.size() && model_.states[i].span == declaration; ++i)
+        if (!given.contains(static_cast<int>(i))) missing.push_back(model_.states[i].name);
+      if (!missing.empty()) diagnostics_.add(errors::initial_missing(declaration, missing));
+    }
   }
 
   // Where the search for an unknown's first value begins.

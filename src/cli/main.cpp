@@ -16,23 +16,26 @@
 #include "core/instruction_set.hpp"
 #include "core/interrupt.hpp"
 #include "core/progress_terminal.hpp"
-#include "syntax/parse.hpp"
-#include "syntax/unparse.hpp"
+#include "syntax/format.hpp"
 
 namespace sysid {
 namespace {
 
 struct CommandLine {
   std::string file, dump, error_format = "text", instruction_set, topic, code;
+  std::vector<std::string> files;
   RunOptions run;
-  bool quiet = false;
+  bool quiet = false, only_check = false;
 };
 
 int code(ExitCode exit) { return static_cast<int>(exit); }
 
 bool colour() {
-  char const* refused = std::getenv("NO_COLOR");
-  return (refused == nullptr || *refused == '\0') && isatty(STDERR_FILENO) != 0;
+  auto const variable = [](char const* name) {
+    char const* value = std::getenv(name);
+    return std::string_view(value == nullptr ? "" : value);
+  };
+  return variable("NO_COLOR").empty() && variable("TERM") != "dumb" && isatty(STDERR_FILENO) != 0;
 }
 
 void show(Diagnostics const& diagnostics, Source const& source, CommandLine const& line) {
@@ -43,6 +46,18 @@ void show(Diagnostics const& diagnostics, Source const& source, CommandLine cons
 }
 
 Source read_source(std::string const& path) { return Source(path, read_file(path)); }
+
+/// What concerns no place in a text: "sysid: cannot read ...", or the same as JSON with `severity` error and no code.
+void complain(CommandLine const& line, std::string const& message, std::string const& help = "") {
+  if (line.error_format == "json") {
+    Diagnostic diagnostic;
+    diagnostic.message = message;
+    diagnostic.help = help;
+    std::cerr << render_json(diagnostic, Source(line.file, ""));
+  } else {
+    std::cerr << "sysid: " << message << '\n' << help << (help.empty() ? "" : "\n");
+  }
+}
 
 // Runs a verb; every way out of it has its exit code here.
 template <class Verb>
@@ -61,15 +76,13 @@ int guarded(CommandLine const& line, Source const& source, Verb const& verb) {
     show(error.diagnostics(), source, line);
     return code(ExitCode::io);
   } catch (IoError const& error) {
-    Diagnostics diagnostics;
-    diagnostics.add({Severity::error, "", error.what(), std::nullopt, {}, error.help()});
-    show(diagnostics, Source("sysid", ""), line);
+    complain(line, error.what(), error.help());
     return code(ExitCode::io);
   } catch (std::bad_alloc const&) {
-    std::cerr << "sysid: out of memory\n";
+    complain(line, "out of memory");
     return code(ExitCode::internal);
   } catch (std::exception const& error) {
-    std::cerr << "sysid: this is our fault, not yours: " << error.what() << "\nplease send the file that shows it\n";
+    complain(line, fmt::format("this is our fault, not yours: {}", error.what()), "please send the file that shows it");
     return code(ExitCode::internal);
   }
 }
@@ -120,16 +133,38 @@ int check(CommandLine const& line) {
   });
 }
 
-int format(CommandLine const& line) {
-  return guarded(line, Source("", ""), [&] {
-    Source const source = read_source(line.file);
-    Diagnostics diagnostics;
-    auto const tree = parse(source, diagnostics);
-    show(diagnostics, source, line);
-    if (!tree) return code(ExitCode::user_error);
-    std::cout << unparse(*tree);
-    return code(ExitCode::success);
+std::string read_standard_input() { return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()}; }
+
+int format_one(CommandLine const& line, std::string const& path) {
+  bool const stream = path == "-";
+  return guarded(line, Source(path, ""), [&] {
+    Source const source = stream ? Source("standard input", read_standard_input()) : read_source(path);
+    return guarded(line, source, [&] {
+      Diagnostics diagnostics;
+      auto const text = formatted(source, diagnostics);
+      show(diagnostics, source, line);
+      if (!text) return code(ExitCode::user_error);
+      bool const same = *text == source.text();
+      if (line.only_check) {
+        if (!same) std::cout << source.name() << ": not in canonical layout\n";
+        return code(same ? ExitCode::success : ExitCode::doubtful);
+      }
+      if (stream) {
+        std::cout << *text;
+      } else if (!same) {
+        write_file(path, *text);
+        std::cout << path << ": rewritten\n";
+      }
+      return code(ExitCode::success);
+    });
   });
+}
+
+/// Every file is looked at; the exit code is of the worst.
+int format(CommandLine const& line) {
+  int exit = code(ExitCode::success);
+  for (std::string const& path : line.files) exit = std::max(exit, format_one(line, path));
+  return exit;
 }
 
 int explain(CommandLine const& line) {
@@ -197,8 +232,9 @@ int main(int argument_count, char** arguments) {
   checking->add_option("-o,--output", line.run.output, "folder for results, where simulate tasks leave data (default: results)");
   checking->add_option("--seed", line.run.seed, "seed of the prior draws, in place of the file's");
   checking->callback([&] { exit = check(line); });
-  CLI::App* formatting = app.add_subcommand("fmt", "print a file in canonical layout (comments are not kept)");
-  formatting->add_option("file", line.file, "the .sysid file")->required();
+  CLI::App* formatting = app.add_subcommand("fmt", "rewrite files in canonical layout");
+  formatting->add_option("files", line.files, "the .sysid files; - reads standard input and writes standard output")->required();
+  formatting->add_flag("--check", line.only_check, "change nothing; name the files that would change and exit with 1");
   formatting->callback([&] { exit = format(line); });
   CLI::App* listing = app.add_subcommand("list", "list functions, distributions, backends or solvers");
   listing->add_option("what", line.topic, "functions, distributions, backends or solvers")

@@ -34,6 +34,7 @@ class Diagnostics {
   /// Among those added after the first `from`.
   bool has_errors(std::size_t from = 0) const;
   std::vector<Diagnostic> const& all() const { return all_; }
+  void replace(std::vector<Diagnostic> all) { all_ = std::move(all); }
 
  private:
   std::vector<Diagnostic> all_;

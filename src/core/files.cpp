@@ -100,7 +100,8 @@ std::string read_file(std::filesystem::path const& path) {
 void write_file(std::filesystem::path const& path, std::string_view bytes) {
   std::filesystem::path target = path;
   struct stat facts = {};
-  if (::stat(path.c_str(), &facts) == 0) {
+  bool const there = ::stat(path.c_str(), &facts) == 0;
+  if (there) {
     if (!S_ISREG(facts.st_mode) && !S_ISDIR(facts.st_mode)) {
       // A device or pipe keeps its name: renaming over /dev/null would replace it.
       int const descriptor = open_file(path, O_WRONLY);
@@ -116,6 +117,8 @@ void write_file(std::filesystem::path const& path, std::string_view bytes) {
   partial += ".partial";
   int const descriptor = open_file(partial, O_WRONLY | O_CREAT | O_TRUNC);
   if (descriptor < 0) fail("write", path, errno);
+  if (there)
+    (void)::fchmod(descriptor, facts.st_mode & 07777U);  // whoever could read the old bytes can read the new, and no one else
   int error = write_and_close(descriptor, bytes, true);
   if (error == 0 && ::rename(partial.c_str(), target.c_str()) != 0) error = errno;
   if (error != 0) {

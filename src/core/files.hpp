@@ -15,7 +15,7 @@ std::string read_file(std::filesystem::path const& path);
 
 /// Writes `bytes` under a temporary name in the same folder (PATH.partial), flushes them to the disk and renames: `path` holds
 /// either the old bytes or all of the new. On failure the temporary file is removed and IoError "cannot write `PATH`: reason" is
-/// thrown. A symbolic link is followed; a device or pipe is written directly.
+/// thrown. A symbolic link is followed, permissions are kept; a device or pipe is written directly.
 void write_file(std::filesystem::path const& path, std::string_view bytes);
 
 /// The folder with all above it; nothing when it is there. IoError otherwise.

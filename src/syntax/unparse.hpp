@@ -1,4 +1,4 @@
-// Syntax tree to canonical text: parse(unparse(tree)) == tree. Serves `sysid fmt`, `--dump ast` and messages.
+// Syntax tree to canonical text: parse(unparse(tree)) == tree. Serves `--dump ast` and messages.
 #pragma once
 #include <string>
 

@@ -40,7 +40,7 @@ TEST_CASE("two records made in one run with one seed differ, and neither is over
   auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
   std::string const text = read_file(name);
   auto const line = text.find("truth     = simulate");
-  std::string const second = with(text.substr(line, text.find('\n', line) - line), "truth ", "other ");
+  std::string const second = with(text.substr(line, text.find("\nposterior", line) - line), "truth ", "other ");
   TemporaryFolder folder;
   RunOptions options;
   options.output = folder.path() / "results";

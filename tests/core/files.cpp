@@ -91,6 +91,14 @@ TEST_CASE("a symbolic link is followed, not replaced") {
   CHECK(read_file(folder.path / "real") == "new");
 }
 
+TEST_CASE("permissions are kept") {
+  Folder const folder;
+  write_file(folder.path / "x", "old");
+  fs::permissions(folder.path / "x", fs::perms::owner_read | fs::perms::owner_write);
+  write_file(folder.path / "x", "new");
+  CHECK(fs::status(folder.path / "x").permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+}
+
 TEST_CASE("a folder is made with those above it; a file in its place is an error") {
   Folder const folder;
   make_folder(folder.path / "a" / "b");
