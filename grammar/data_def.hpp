@@ -48,12 +48,12 @@ auto const data_file_def = located[word("file") > text[to(&ast::DataFile::path)]
 auto const data_time_def = located[word("time") > column[to(&ast::DataTime::column)]];
 auto const data_rate_def =
     located[(word("rate") | word("step")[set(&ast::DataRate::step, true)]) > expression[to(&ast::DataRate::value)]];
-auto const data_input_def = located[word("input") > name[to(&ast::DataInput::input)] > equals >
+auto const data_input_def = located[word("input") > element[to(&ast::DataInput::input)] > equals >
                                     column[to(&ast::DataInput::column)] > -(word("hold") > name[to(&ast::DataInput::rule)])];
 auto const data_measure_def =
-    located[word("measure") > name[to(&ast::DataMeasure::channel)] > equals > column[to(&ast::DataMeasure::column)]];
+    located[word("measure") > element[to(&ast::DataMeasure::channel)] > equals > column[to(&ast::DataMeasure::column)]];
 auto const data_constant_def =
-    located[word("constant") > name[to(&ast::DataConstant::parameter)] > equals > expression[to(&ast::DataConstant::value)]];
+    located[word("constant") > element[to(&ast::DataConstant::parameter)] > equals > expression[to(&ast::DataConstant::value)]];
 auto const data_split_def =
     located[word("split") > split_part[append(&ast::DataSplit::parts)] > *(',' > split_part[append(&ast::DataSplit::parts)])];
 auto const split_part_def = located[name[to(&ast::SplitPart::name)] > equals > rows_word > expression[to(&ast::SplitPart::first)] >

@@ -117,7 +117,7 @@ auto const group_def =
 auto const call_def = located[name[to(&ast::Call::function)] >> '(' >>
                               -(argument[append(&ast::Call::arguments)] >> *(',' > argument[append(&ast::Call::arguments)])) > ')'];
 auto const distribution_def = located[call[take]];
-auto const argument_def = located[-(name >> equals)[to(&ast::Argument::name)] >> nested[expression][to(&ast::Argument::value)] >>
+auto const argument_def = located[-(element >> equals)[to(&ast::Argument::name)] >> nested[expression][to(&ast::Argument::value)] >>
                                   -(x3::lit("..") > nested[expression][end_of_range])];
 
 auto const reference_def =

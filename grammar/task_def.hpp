@@ -42,8 +42,8 @@ auto const settings_def = word("with") > option[push] > *(',' > option[push]);
 auto const verb_def = located[name[take_one_of<words::verbs>]];
 auto const preposition_def = located[name[take_one_of<words::prepositions>]];
 auto const data_reference_def = located[name[to(&ast::DataReference::data)] >> -('.' > name[to(&ast::DataReference::part)])];
-auto const option_def = located[((word("input") >> &name)[set(&ast::Option::input, true)] > name[to(&ast::Option::key)] > equals >
-                                 expression[to(&ast::Option::value)]) |
+auto const option_def = located[((word("input") >> &name)[set(&ast::Option::input, true)] > element[to(&ast::Option::key)] >
+                                 equals > expression[to(&ast::Option::value)]) |
                                 (-(name >> equals)[to(&ast::Option::key)] >> expression[to(&ast::Option::value)])];
 auto const preposition_or_end_def = &end_of_statement;
 auto const with_or_end_def = &end_of_statement;

@@ -10,6 +10,7 @@ struct name_tag {};
 struct text_tag {};
 struct plain_number_tag {};
 struct path_tag {};
+struct element_tag {};
 struct equals_tag {};
 struct tilde_tag {};
 struct opening_brace_tag {};
@@ -18,6 +19,8 @@ struct end_of_statement_tag {};
 inline constexpr x3::rule<name_tag, ast::Name> name = wanted::name;
 /// A name behind those of the parts it lies in: `spring.force`.
 inline constexpr x3::rule<path_tag, ast::Name> path = wanted::name;
+/// A number that is declared under a path, perhaps as an element of a vector or matrix: `spring.k`, `q[2]`, `M[1, 2]`.
+inline constexpr x3::rule<element_tag, ast::Name> element = wanted::name;
 inline constexpr x3::rule<text_tag, ast::Text> text = "a text in quotes";
 /// Without a unit.
 inline constexpr x3::rule<plain_number_tag, ast::Number> plain_number = "a number";
@@ -26,8 +29,8 @@ inline constexpr x3::rule<tilde_tag> tilde = wanted::tilde;
 inline constexpr x3::rule<opening_brace_tag> opening_brace = wanted::opening_brace;
 inline constexpr x3::rule<end_of_statement_tag> end_of_statement = wanted::end_of_statement;
 
-BOOST_SPIRIT_DECLARE(decltype(name), decltype(path), decltype(text), decltype(plain_number), decltype(equals), decltype(tilde),
-                     decltype(opening_brace), decltype(end_of_statement))
+BOOST_SPIRIT_DECLARE(decltype(name), decltype(path), decltype(element), decltype(text), decltype(plain_number), decltype(equals),
+                     decltype(tilde), decltype(opening_brace), decltype(end_of_statement))
 
 /// One byte of a class, by the language's own tables: X3's character classes abort on UTF-8 or depend on the signedness of char.
 template <bool (*Test)(char)>

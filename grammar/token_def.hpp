@@ -19,6 +19,15 @@ inline constexpr auto take_name = [](auto& context) {
   x3::_pass(context) = !words::contains(words::reserved, spelling);
   x3::_val(context).text = spelling;
 };
+/// `M[ 1,2 ]` is `M[1, 2]`.
+inline constexpr auto take_element = [](auto& context) {
+  std::string& text = x3::_val(context).text;
+  for (char const each : bytes(context)) {
+    if (each == ' ' || each == '\t') continue;
+    text += each;
+    if (each == ',') text += ' ';
+  }
+};
 /// Correctly rounded, which X3's own real parsers are not.
 inline constexpr auto take_value = [](auto& context) {
   std::string_view const digits = bytes(context);
@@ -32,6 +41,10 @@ inline constexpr auto take_escape = [](auto& context) {
 auto const name_def = located[x3::lexeme[x3::raw[name_begin >> *name_byte][take_name]]];
 // `a..b` is a range: behind the dot of a path a name follows.
 auto const path_def = located[x3::lexeme[x3::raw[name_begin >> *name_byte >> *('.' >> name_begin >> *name_byte)][take_name]]];
+auto const blanks = *(x3::lit(' ') | '\t');
+auto const whole = blanks >> +digit >> blanks;
+auto const element_def = located[x3::lexeme[x3::raw[name_begin >> *name_byte >> *('.' >> name_begin >> *name_byte) >>
+                                                    -('[' >> whole >> -(',' >> whole) >> ']')][take_element]]];
 auto const text_def = located[x3::lexeme['"' >> *(('\\' >> x3::char_[take_escape]) | (x3::char_ - '"' - '\n')[take_byte]) >> '"']];
 // The dot needs a digit behind it, so `1..500` is a range; `inf` and `nan` are names.
 auto const fraction = '.' >> +digit;
@@ -42,6 +55,6 @@ auto const tilde_def = x3::lit('~');
 auto const opening_brace_def = x3::lit('{');
 auto const end_of_statement_def = &(x3::lit('\n') | ';' | '}' | x3::eoi);
 
-BOOST_SPIRIT_DEFINE(name, path, text, plain_number, equals, tilde, opening_brace, end_of_statement)
+BOOST_SPIRIT_DEFINE(name, path, element, text, plain_number, equals, tilde, opening_brace, end_of_statement)
 
 }  // namespace sysid::grammar

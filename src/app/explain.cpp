@@ -34,8 +34,8 @@ std::string indented(std::string_view text, std::string_view by) {
 }
 
 std::string shown(Example const& example) {
-  std::string const name = example.kind.starts_with("csv ") ? fmt::format("    {}:\n", example.kind.substr(4)) : std::string();
-  return name + indented(example.text, "    ");
+  std::string const name = example.file_name();
+  return (name.empty() ? name : fmt::format("    {}:\n", name)) + indented(example.text, "    ");
 }
 
 // Markdown without its fences.
@@ -113,6 +113,12 @@ class PageReader {
 };
 
 }  // namespace
+
+std::string Example::file_name() const {
+  for (std::string_view const word : {"csv ", "module "})
+    if (kind.starts_with(word)) return kind.substr(word.size());
+  return {};
+}
 
 std::string ErrorSection::complete(std::vector<Example> const& examples) const {
   std::string own;

@@ -15,13 +15,16 @@ std::span<std::string_view const> error_pages();
 struct Example {
   std::string kind;
   std::string text;
+
+  /// Of "csv NAME" and "module NAME": the file that the text is, beside the example; empty for others.
+  std::string file_name() const;
 };
 
 /// A section `## E2001: title`.
 ///
 /// Examples stand behind a line `Bad:` or `Mended:`. A block "sysid file" is a whole file; a block "sysid" continues the frame, the
 /// last block outside sections that is a "sysid inside" (its model takes the statements) or a "sysid above" (the lines follow it).
-/// Blocks "csv NAME" are files beside it, of the section or of the frame.
+/// Blocks "csv NAME" and "module NAME" are files beside it, of the section or of the frame.
 struct ErrorSection {
   std::string code;
   std::string title;

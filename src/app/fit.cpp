@@ -167,7 +167,7 @@ class Fit {
   json who() const {
     json digests = json::array();
     for (ExperimentData const& each : data_) digests.push_back({each.experiment.name, each.record.digest});
-    return {{"model", std::string(session_.source.text())}, {"data", digests}, {"task", task_.name}, {"seed", seed_}};
+    return {{"model", session_.source.all_text()}, {"data", digests}, {"task", task_.name}, {"seed", seed_}};
   }
 
   void save(json const& state) const {

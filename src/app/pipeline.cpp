@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/modules.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/results.hpp"
@@ -49,17 +50,22 @@ std::string nothing_to_do(Source const& source, CheckedFile const& file, std::ve
 
 }  // namespace
 
-std::optional<CheckedFile> load(Source const& source, Diagnostics& diagnostics) {
+std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics) {
   auto const tree = parse(source, diagnostics);
-  return tree ? check(*tree, backend_settings(), diagnostics) : std::nullopt;
+  if (!tree) return std::nullopt;
+  auto const modules = load_modules(*tree, source, diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
+  return check(elaborate(*tree, modules, diagnostics), backend_settings(), diagnostics);
 }
 
-std::string dump_stage(Source const& source, std::string const& stage, Diagnostics& diagnostics) {
-  auto const tree = parse(source, diagnostics);
-  if (!tree) return {};
-  if (stage == "ast") return unparse(*tree);
-  auto const file = check(*tree, backend_settings(), diagnostics);
+std::string dump_stage(Source& source, std::string const& stage, Diagnostics& diagnostics) {
+  if (stage == "ast") {
+    auto const tree = parse(source, diagnostics);
+    return tree ? unparse(*tree) : std::string();
+  }
+  auto const file = load(source, diagnostics);
   if (!file) return {};
+  if (stage == "flat") return unparse(file->tree);
   std::string text;
   for (Model const& model : file->models)
     text += stage == "model" ? dump(model) : dump_program(*compile(model, false, model.implicit ? "ida" : SolverSettings{}.method));

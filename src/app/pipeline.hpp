@@ -17,11 +17,12 @@ struct Loaded {
   CheckedFile file;
 };
 
-/// Reads, parses, checks. Nothing when there are errors in `diagnostics`, which refer to `source`. IoError when unreadable.
-std::optional<CheckedFile> load(Source const& source, Diagnostics& diagnostics);
+/// Parses, puts modules and parts in, checks. Nothing when there are errors in `diagnostics`, which refer to `source`; the texts of
+/// modules join it. IoError when a module cannot be read.
+std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics);
 
-/// What `--dump STAGE` prints: ast, model or program.
-std::string dump_stage(Source const& source, std::string const& stage, Diagnostics& diagnostics);
+/// What `--dump STAGE` prints: ast, flat, model or program.
+std::string dump_stage(Source& source, std::string const& stage, Diagnostics& diagnostics);
 
 /// Runs the tasks of a file in order; verbs: which kinds ("simulate", "fit", "predict"); empty: all. Summaries go to `out`,
 /// progress to `progress`, notices to `notices`. UserError, IoError and InternalError leave through the caller.

@@ -20,6 +20,15 @@ ast::Model const* find_model(ast::File const& tree, std::string const& name) {
   return nullptr;
 }
 
+bool within(Span inner, Span outer) { return inner.begin >= outer.begin && inner.end <= outer.end; }
+
+// The model as the user wrote it; null when it stands in a module.
+ast::Model const* as_written(ast::File const& tree, Span span) {
+  for (ast::Item const& item : tree.items)
+    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->span == span) return model;
+  return nullptr;
+}
+
 // The density of a prior whose arguments are numbers, per declared unit.
 std::function<double(double)> prior_density(Parameter const& parameter, Model const& model) {
   auto graph = std::make_shared<Graph>(model.graph);
@@ -57,15 +66,23 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   report.model_title = model.title;
   report.versions = {{"sysid", std::string(SYSID_VERSION)},
                      {"random_numbers", std::string("Philox4x64-10")},
-                     {"model_sha256", model_digest(session.source, model.name)}};
+                     {"model_sha256", model_digest(session, model.name)}};
+  ast::Model const* flat = find_model(session.file.tree, model.name);
+  if (flat == nullptr) return report;
+  report.model_text = std::string(session.source.text(flat->span));
   Diagnostics ignored;
   auto const tree = parse(session.source, ignored);
-  ast::Model const* text = tree ? find_model(*tree, model.name) : nullptr;
-  if (text == nullptr) return report;
-  report.model_text = std::string(session.source.text(text->span));
-  for (ast::ModelStatement const& statement : text->statements) {
+  ast::Model const* written = tree ? as_written(*tree, flat->span) : nullptr;
+  auto const add = [&](ast::Equation const& equation) {
+    report.equations.push_back(unparse(equation.left) + " = " + unparse(equation.right));
+  };
+  // The user's own equations as they stand there, those of parts with their names in the whole.
+  if (written != nullptr)
+    for (ast::ModelStatement const& statement : written->statements)
+      if (auto const* equation = std::get_if<ast::Equation>(&statement)) add(*equation);
+  for (ast::ModelStatement const& statement : flat->statements) {
     if (auto const* equation = std::get_if<ast::Equation>(&statement))
-      report.equations.push_back(unparse(equation->left) + " = " + unparse(equation->right));
+      if (written == nullptr || !within(equation->span, flat->span)) add(*equation);
     auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement);
     if (parameter == nullptr || !parameter->prior) continue;
     for (Parameter const& checked : model.parameters)
@@ -77,11 +94,16 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   return report;
 }
 
-std::string model_digest(Source const& source, std::string const& model) {
+std::string model_digest(Session const& session, std::string const& model) {
+  ast::Model const* flat = find_model(session.file.tree, model);
+  if (flat == nullptr) return {};
+  std::string text(session.source.text(flat->span));
+  // What the text alone does not say: arguments, parts, modules.
   Diagnostics ignored;
-  auto const tree = parse(source, ignored);
-  ast::Model const* found = tree ? find_model(*tree, model) : nullptr;
-  return found == nullptr ? std::string() : sha256(source.text(found->span));
+  auto const tree = parse(session.source, ignored);
+  ast::Model const* written = tree ? as_written(*tree, flat->span) : nullptr;
+  if (written == nullptr || !(*written == *flat)) text += unparse(ast::File{{*flat}});
+  return sha256(text);
 }
 
 std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, int model, std::optional<std::uint64_t> seed) {
@@ -93,8 +115,7 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   };
   if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
   std::string const& name = session.file.models[static_cast<std::size_t>(model)].name;
-  if (summary["versions"].value("model_sha256", "") != model_digest(session.source, name))
-    return refuse("text of model `" + name + "`");
+  if (summary["versions"].value("model_sha256", "") != model_digest(session, name)) return refuse("text of model `" + name + "`");
   std::vector<ExperimentUse> const& experiments = experiments_of(task);
   auto const stored = summary.value("data", nlohmann::json::array());
   if (stored.size() != experiments.size()) return refuse("set of experiments");

@@ -12,7 +12,7 @@ namespace sysid {
 Report begin_report(Session const& session, Task const& task, int model, std::string what, std::uint64_t seed);
 
 /// SHA-256 of a model's text: what stored results are compared by.
-std::string model_digest(Source const& source, std::string const& model);
+std::string model_digest(Session const& session, std::string const& model);
 
 /// What is wrong with taking up stored results of a task: they are of another text of the model, of other experiments, of other
 /// contents of their files, or of another seed (when one is stated); nothing when they fit.

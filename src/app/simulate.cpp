@@ -10,6 +10,7 @@
 #include "app/signals.hpp"
 #include "core/files.hpp"
 #include "likelihood/trajectory.hpp"
+#include "report/csv.hpp"
 #include "report/number.hpp"
 
 namespace sysid {
@@ -164,7 +165,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
                               unit_suffix(model.parameters[p].unit_text()));
   std::vector<std::vector<double>> columns = {experiment.time};
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    header += "," + model.inputs[i].name;
+    header += "," + csv_field(model.inputs[i].name);
     comments +=
         fmt::format("# column {}{}{}\n", model.inputs[i].name, unit_suffix(model.inputs[i].unit_text()),
                     model.dynamics == Dynamics::continuous ? fmt::format(": {} between samples", rule_name(what.inputs[i].rule))
@@ -184,7 +185,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
       for (std::size_t i = 0; i < clean.size(); ++i) noisy[i] = clean[i] + sd * stream.normal();
       comments += fmt::format("# noise sd of {}: {}{}\n", quantity.name, shortest(sd), unit_suffix(quantity.unit));
     }
-    header += fmt::format(",{},{}_clean", quantity.name, quantity.name);
+    header += fmt::format(",{},{}", csv_field(quantity.name), csv_field(quantity.name + "_clean"));
     comments += fmt::format("# column {}{}: measured; {}_clean: without {}noise\n", quantity.name, unit_suffix(quantity.unit),
                             quantity.name, feeds_back ? "the sample's own " : "");
     columns.push_back(std::move(noisy));

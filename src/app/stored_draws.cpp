@@ -14,6 +14,7 @@
 #include "app/solver_record.hpp"
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
+#include "report/csv.hpp"
 
 namespace sysid {
 namespace {
@@ -67,7 +68,7 @@ Chain read_chain(std::string const& text, std::vector<std::string> const& parame
       accept = find("accept_stat__");
       prior = find("log_prior__");
       likelihood = find("log_likelihood__");
-      for (std::string const& name : parameters) columns.push_back(find(name, 4));
+      for (std::string const& name : parameters) columns.push_back(find(stan_name(name), 4));
       continue;
     }
     if (cells.size() <= std::max({lp, accept, prior, likelihood})) continue;  // a row cut short

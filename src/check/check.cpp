@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "check/consequences.hpp"
 #include "check/data.hpp"
@@ -40,9 +41,15 @@ bool mentioned(std::vector<ast::Task const*> const& tasks, std::string const& bl
 
 }  // namespace
 
-std::optional<CheckedFile> check(ast::File const& tree, std::span<BackendSettings const> backends, Diagnostics& diagnostics) {
+std::optional<CheckedFile> check(Elaborated const& elaborated, std::span<BackendSettings const> backends,
+                                 Diagnostics& diagnostics) {
+  ast::File const& tree = elaborated.tree;
+  Lineage const& lineage = elaborated.lineage;
   CheckedFile file;
+  file.tree = tree;
   TaskNames names;
+  for (std::string const& failed : lineage.failed) names.models[failed] = std::nullopt;
+  std::set<std::string> unsound = lineage.failed;  // what is made of them is not looked at: it has the same mistakes
   std::vector<ast::FunctionDefinition const*> functions;
   std::vector<ast::Task const*> tasks;
   Unique unique_model("model", diagnostics), unique_data("data block", diagnostics), unique_task("task", diagnostics),
@@ -56,7 +63,13 @@ std::optional<CheckedFile> check(ast::File const& tree, std::span<BackendSetting
   for (ast::Item const& item : tree.items) {
     if (auto const* model = std::get_if<ast::Model>(&item)) {
       if (!unique_model(model->name, model->name.text)) continue;
-      auto checked = check_model(*model, functions, diagnostics);
+      auto const made_of = lineage.made_of.find(model->name.text);
+      bool const sound =
+          made_of == lineage.made_of.end() || std::none_of(made_of->second.begin(), made_of->second.end(),
+                                                           [&](std::string const& each) { return unsound.contains(each); });
+      auto checked = sound ? check_model(*model, functions, diagnostics) : std::nullopt;
+      if (!checked) unsound.insert(model->name.text);
+      if (checked && lineage.only_checked.contains(model->name.text)) continue;
       names.models[model->name.text] = checked ? std::optional(static_cast<int>(file.models.size())) : std::nullopt;
       if (checked) file.models.push_back(std::move(*checked));
     } else if (auto const* data = std::get_if<ast::Data>(&item)) {

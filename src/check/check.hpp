@@ -1,9 +1,10 @@
-// Syntax tree to checked file: names, kinds, units of literals, distributions, structure of the equations, data blocks, tasks.
+// Flat syntax tree to checked file: names, kinds, units of literals, distributions, structure of the equations, data blocks, tasks.
 #pragma once
 #include <optional>
 #include <span>
 
 #include "check/checked.hpp"
+#include "check/elaborate/elaborate.hpp"
 #include "core/diagnostic.hpp"
 #include "syntax/ast.hpp"
 
@@ -16,6 +17,6 @@ struct BackendSettings {
 };
 
 /// The checked file, or nothing when an error was reported. Warnings do not prevent a result.
-std::optional<CheckedFile> check(ast::File const& file, std::span<BackendSettings const> backends, Diagnostics& diagnostics);
+std::optional<CheckedFile> check(Elaborated const& file, std::span<BackendSettings const> backends, Diagnostics& diagnostics);
 
 }  // namespace sysid

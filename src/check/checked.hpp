@@ -11,6 +11,7 @@
 #include "core/solver.hpp"
 #include "data/experiment.hpp"
 #include "model/past.hpp"
+#include "syntax/ast.hpp"
 
 namespace sysid {
 
@@ -130,6 +131,7 @@ struct Task {
 };
 
 struct CheckedFile {
+  ast::File tree;  // flat, for texts of models in reports
   std::vector<Model> models;
   std::vector<DataBlock> data;
   std::vector<Task> tasks;

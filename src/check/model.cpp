@@ -691,9 +691,7 @@ class ModelChecker {
 
   void channels() {
     std::map<std::string, Span> seen;
-    bool any = false;
     each<ast::Observation>([&](ast::Observation const& observation) {
-      any = true;
       ast::Name const& name = observation.channel.name;
       if (auto const [place, fresh] = seen.emplace(name.text, name.span); !fresh) {
         diagnostics_.add(errors::channel_twice(name, place->second));
@@ -725,7 +723,6 @@ class ModelChecker {
       channel.noise = std::move(*use);
       model_.channels.push_back(std::move(channel));
     });
-    if (!any) diagnostics_.add(errors::nothing_observed(tree_.name));
   }
 
   // The unit of what the noise is centred on, when it is known; a failing expression is reported by the caller's second look.

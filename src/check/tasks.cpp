@@ -136,6 +136,10 @@ class TaskChecker {
     for (BackendSettings const& backend : backends_) names.emplace_back(backend.name);
     auto const model = item(tree_.subject, names_.models, "model");
     if (model) task.model = *model;
+    if (model && file_.models[static_cast<std::size_t>(*model)].channels.empty()) {
+      diagnostics_.add(errors::nothing_observed(tree_.subject));
+      return task;
+    }
     task.experiments = experiments(model ? &file_.models[static_cast<std::size_t>(*model)] : nullptr, "to");
     for (ast::Option const& option : tree_.options) {
       std::string const key = key_of(option);
@@ -296,6 +300,10 @@ class TaskChecker {
     if (!found) return task;
     task.model = *found;
     Model const& model = file_.models[static_cast<std::size_t>(*found)];
+    if (model.channels.empty()) {
+      diagnostics_.add(errors::nothing_observed(tree_.subject));
+      return task;
+    }
     for (Parameter const& parameter : model.parameters)
       task.values.push_back(parameter.per_experiment && parameter.value ? model.graph.constant_value(*parameter.value)
                                                                         : std::nullopt);

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "app/module_page.hpp"
+#include "app/modules.hpp"
+#include "check/elaborate/array_functions.hpp"
 #include "core/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
@@ -34,9 +37,12 @@ std::string list(std::string const& topic) {
   std::string text;
   if (topic == "functions") {
     for (FunctionRow const& row : functions()) text += fmt::format("{:<12} {}\n", row.name, row.summary);
+    for (ArrayFunctionRow const& row : array_functions()) text += fmt::format("{:<12} {}: {}\n", row.name, row.usage, row.summary);
   } else if (topic == "distributions") {
     for (DistributionRow const& row : distributions())
       text += fmt::format("{:<68} {}{}\n", signature(row), row.summary, row.noise ? "; also as noise" : "");
+  } else if (topic == "modules") {
+    for (LibraryModule const& module : library_modules()) text += fmt::format("{:<14} {}\n", module.name, module_summary(module));
   } else if (topic == "solvers") {
     for (SolverRow const& row : solvers()) text += with_settings(row.name, row.summary, row.settings);
   } else {

@@ -10,6 +10,7 @@
 #include "app/check_file.hpp"
 #include "app/experiments.hpp"
 #include "app/explain.hpp"
+#include "app/module_page.hpp"
 #include "app/pipeline.hpp"
 #include "cli/lists.hpp"
 #include "core/files.hpp"
@@ -115,7 +116,7 @@ int run(CommandLine& line, std::vector<std::string> const& verbs) {
 
 int check(CommandLine const& line) {
   return guarded(line, Source("", ""), [&] {
-    Source const source = read_source(line.file);
+    Source source = read_source(line.file);
     Diagnostics diagnostics;
     auto const file = load(source, diagnostics);
     show(diagnostics, source, line);
@@ -181,6 +182,16 @@ int explain(CommandLine const& line) {
   return code(ExitCode::success);
 }
 
+int document(CommandLine const& line) {
+  auto const page = module_page(line.topic);
+  if (!page) {
+    std::cerr << fmt::format("sysid: there is no module {}; `sysid list modules` lists all\n", line.topic);
+    return code(ExitCode::usage);
+  }
+  std::cout << *page;
+  return code(ExitCode::success);
+}
+
 void add_run_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("file", line.file, "the .sysid file")->required();
   verb.add_option("-o,--output", line.run.output, "folder for results (default: results)");
@@ -194,8 +205,8 @@ void add_run_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("--instruction-set", line.instruction_set,
                   "avx2 or avx512 (default: the best there is); results do not depend on it")
       ->check(CLI::IsMember({"avx2", "avx512"}));
-  verb.add_option("--dump", line.dump, "print a stage instead of running: ast, model or program")
-      ->check(CLI::IsMember({"ast", "model", "program"}));
+  verb.add_option("--dump", line.dump, "print a stage instead of running: ast, flat, model or program")
+      ->check(CLI::IsMember({"ast", "flat", "model", "program"}));
   verb.add_option("--checkpoint-interval", line.run.checkpoint_interval, "seconds between checkpoints")->check(CLI::PositiveNumber);
   verb.add_option("--interrupt-after", line.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
   verb.add_flag("!--no-figures", line.run.figures, "leave figures as scripts");
@@ -236,14 +247,17 @@ int main(int argument_count, char** arguments) {
   formatting->add_option("files", line.files, "the .sysid files; - reads standard input and writes standard output")->required();
   formatting->add_flag("--check", line.only_check, "change nothing; name the files that would change and exit with 1");
   formatting->callback([&] { exit = format(line); });
-  CLI::App* listing = app.add_subcommand("list", "list functions, distributions, backends or solvers");
-  listing->add_option("what", line.topic, "functions, distributions, backends or solvers")
+  CLI::App* listing = app.add_subcommand("list", "list functions, distributions, backends, solvers or modules");
+  listing->add_option("what", line.topic, "functions, distributions, backends, solvers or modules")
       ->required()
-      ->check(CLI::IsMember({"functions", "distributions", "backends", "solvers"}));
+      ->check(CLI::IsMember({"functions", "distributions", "backends", "solvers", "modules"}));
   listing->callback([&] { std::cout << list(line.topic); });
   CLI::App* explaining = app.add_subcommand("explain", "what an error code means, with an example and its mended twin");
   explaining->add_option("code", line.code, "a code such as E2001; none: list all");
   explaining->callback([&] { exit = explain(line); });
+  CLI::App* documenting = app.add_subcommand("document", "print a module of the standard library as a page");
+  documenting->add_option("module", line.topic, "a name of `sysid list modules`")->required();
+  documenting->callback([&] { exit = document(line); });
   CLI::App* version = app.add_subcommand("version", "print the version and the instruction set in use");
   version->callback([] { std::cout << fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())); });
   if (argument_count > 1 && arguments[1][0] != '-') {

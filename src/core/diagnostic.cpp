@@ -79,8 +79,7 @@ struct Mark {
   std::string text;
 };
 
-Mark mark_on(Label const& label, bool primary, Source const& source, int line_number, ShownLine const& line) {
-  std::uint32_t const line_begin = source.line_begin(line_number);
+Mark mark_on(Label const& label, bool primary, std::uint32_t line_begin, ShownLine const& line) {
   std::size_t const last = line.column.size() - 1;
   std::size_t const begin = std::min<std::size_t>(label.span.begin - line_begin, last);
   // A span that runs on into later lines is underlined to the end of its first.
@@ -134,23 +133,42 @@ std::vector<std::string> mark_rows(std::vector<Mark> marks, Severity severity, P
 }
 
 std::string excerpt(Diagnostic const& diagnostic, Source const& source, Paint paint) {
-  std::map<int, std::vector<std::pair<Label const*, bool>>> by_line;
-  by_line[source.place(diagnostic.primary->span.begin).line].emplace_back(&*diagnostic.primary, true);
-  for (Label const& label : diagnostic.secondary) by_line[source.place(label.span.begin).line].emplace_back(&label, false);
-  int const digits = std::max(4, static_cast<int>(std::to_string(by_line.rbegin()->first).size()));
+  // Lines by file, that of the message first.
+  int const own_file = source.place(diagnostic.primary->span.begin).file;
+  std::map<std::pair<int, int>, std::vector<std::pair<Label const*, bool>>> by_line;
+  int last_line = 0;
+  auto const take = [&](Label const& label, bool primary) {
+    Place const place = source.place(label.span.begin);
+    by_line[{place.file == own_file ? -1 : place.file, place.line}].emplace_back(&label, primary);
+    last_line = std::max(last_line, place.line);
+  };
+  take(*diagnostic.primary, true);
+  for (Label const& label : diagnostic.secondary) take(label, false);
+  int const digits = std::max(4, static_cast<int>(std::to_string(last_line).size()));
   std::string out;
-  int previous = 0;
-  for (auto const& [number, labels] : by_line) {
-    if (previous != 0 && number > previous + 1) out += paint.gutter("...") + "\n";
+  int previous = 0, previous_file = -1;
+  for (auto const& [place, labels] : by_line) {
+    auto const [file_key, number] = place;
+    int const file = file_key < 0 ? own_file : file_key;
+    if (file_key != previous_file)
+      out += fmt::format("{} in {}\n", paint.gutter(fmt::format("{:>{}} |", "", digits)), source.name(file));
+    else if (previous != 0 && number > previous + 1)
+      out += paint.gutter("...") + "\n";
     previous = number;
-    ShownLine const line = shown(source.line(number));
+    previous_file = file_key;
+    ShownLine const line = shown(source.line(number, file));
     out += fmt::format("{} {}\n", paint.gutter(fmt::format("{:>{}} |", number, digits)), line.text);
     std::vector<Mark> marks;
-    for (auto const& [label, primary] : labels) marks.push_back(mark_on(*label, primary, source, number, line));
+    for (auto const& [label, primary] : labels) marks.push_back(mark_on(*label, primary, source.line_begin(number, file), line));
     for (std::string const& row : mark_rows(std::move(marks), diagnostic.severity, paint))
       out += fmt::format("{} {}\n", paint.gutter(fmt::format("{:>{}} |", "", digits)), row);
   }
   return out;
+}
+
+bool same(Diagnostic const& a, Diagnostic const& b) {
+  return a.code == b.code && a.message == b.message && a.primary.has_value() && b.primary.has_value() &&
+         a.primary->span == b.primary->span;
 }
 
 /// In the order in which they are shown.
@@ -161,7 +179,16 @@ std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
     if (!a->primary || !b->primary) return a->primary.has_value() && !b->primary.has_value();
     return a->primary->span.begin < b->primary->span.begin;
   });
-  return out;
+  // A statement that stands for several (the elements of a vector, the uses of a model) may be found wrong several times.
+  std::vector<Diagnostic const*> once;
+  for (Diagnostic const* each : out) {
+    auto said = once.rbegin();  // those of one place stand together
+    while (said != once.rend() && (*said)->primary && each->primary && (*said)->primary->span.begin == each->primary->span.begin &&
+           !same(**said, *each))
+      ++said;
+    if (said == once.rend() || !same(**said, *each)) once.push_back(each);
+  }
+  return once;
 }
 
 }  // namespace
@@ -176,6 +203,7 @@ std::string render(Diagnostic const& diagnostic, Source const& source, bool colo
   std::string where = source.name();
   if (diagnostic.primary) {
     Place const place = source.place(diagnostic.primary->span.begin);
+    where = source.name(place.file);
     where += fmt::format("{}{}:{}", where.empty() ? "" : ":", place.line, place.column);
   }
   std::string kind(word(diagnostic.severity));
@@ -201,15 +229,23 @@ std::string render(Diagnostics const& diagnostics, Source const& source, bool co
 }
 
 std::string render_json(Diagnostic const& diagnostic, Source const& source) {
+  int const file = diagnostic.primary ? source.place(diagnostic.primary->span.begin).file : 0;
   auto const place_of = [&](Label const& label) {
     Place const begin = source.place(label.span.begin);
     Place const end = source.place(label.span.end);
-    return nlohmann::ordered_json{{"line", begin.line},       {"column", begin.column},    {"end_line", end.line},
-                                  {"end_column", end.column}, {"begin", label.span.begin}, {"end", label.span.end},
-                                  {"label", label.text}};
+    std::uint32_t const file_begin = source.line_begin(1, begin.file);
+    nlohmann::ordered_json place = {{"line", begin.line},
+                                    {"column", begin.column},
+                                    {"end_line", end.line},
+                                    {"end_column", end.column},
+                                    {"begin", label.span.begin - file_begin},
+                                    {"end", label.span.end - file_begin},
+                                    {"label", label.text}};
+    if (begin.file != file) place["file"] = source.name(begin.file);
+    return place;
   };
   nlohmann::ordered_json out;
-  out["file"] = source.name();
+  out["file"] = source.name(file);
   out["severity"] = word(diagnostic.severity);
   out["code"] = diagnostic.code;
   out["message"] = diagnostic.message;

@@ -257,7 +257,7 @@ std::string dump_program(CompiledModel const& compiled) {
 std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {
   if (auto const span = graph.span(node)) {
     Place const place = source.place(span->begin);
-    return fmt::format("`{}` ({}:{}:{})", source.text(*span), source.name(), place.line, place.column);
+    return fmt::format("`{}` ({}:{}:{})", source.text(*span), source.name(place.file), place.line, place.column);
   }
   std::string text = graph.format(node, [&](NodeId leaf) -> std::string {
     Node what = graph[leaf];

@@ -9,9 +9,7 @@
 
 namespace sysid {
 
-namespace {
-
-std::string field(std::string const& text) {
+std::string csv_field(std::string const& text) {
   if (text.find_first_of(",\"\n\r#") == std::string::npos) return text;
   std::string out = "\"";
   for (char const c : text) {
@@ -20,6 +18,18 @@ std::string field(std::string const& text) {
   }
   return out + '"';
 }
+
+std::string stan_name(std::string const& name) {
+  std::string out;
+  for (char const c : name) {
+    if (c == '.') out += ':';
+    if (c == '[' || c == ',') out += '.';
+    if (c != '.' && c != '[' && c != ',' && c != ']' && c != ' ') out += c;
+  }
+  return out;
+}
+
+namespace {
 
 std::string one_line(std::string text) {
   for (char& c : text)
@@ -68,7 +78,7 @@ std::string draws_csv(Report const& report, int chain) {
   out += fmt::format("# id = {}\n# num_samples = {}\n", chain + 1, draws.values.size());
   out += units(report.draws.names, report.draws.units);
   out += "lp__,accept_stat__,log_prior__,log_likelihood__";
-  for (std::string const& name : report.draws.names) out += "," + field(name);
+  for (std::string const& name : report.draws.names) out += "," + csv_field(stan_name(name));
   out += '\n';
   for (std::size_t d = 0; d < draws.values.size(); ++d) {
     out += fmt::format("{},{},{},{}", shortest(value_at(draws.log_density, d)), shortest(value_at(draws.acceptance, d)),
@@ -86,7 +96,7 @@ std::string predict_csv(Report const& report, Prediction const& prediction) {
   std::vector<std::vector<double> const*> columns;
   std::string header = prediction.rows ? "row" : "t";
   auto const add_column = [&](std::string const& name, std::vector<double> const& values) {
-    header += "," + field(name);
+    header += "," + csv_field(name);
     columns.push_back(&values);
   };
   auto const add_band = [&](std::string const& name, Band const& band) {

@@ -6,6 +6,13 @@
 
 namespace sysid {
 
+/// As a field of CSV: in quotes where it must be.
+std::string csv_field(std::string const& text);
+
+/// A name as Stan's CSV writes it, so that CmdStan's tools, posterior and ArviZ read vectors and parts: `k.1` for k[1], `M.1.2`
+/// for M[1, 2], and Stan's sign for a member of a tuple, `joint:k`, for joint.k, since a dot means an index there.
+std::string stan_name(std::string const& name);
+
 /// A chain in the form of Stan's CSV: lp__, accept_stat__, log_prior__, log_likelihood__, then the user's names. `chain` from 0.
 std::string draws_csv(Report const& report, int chain);
 

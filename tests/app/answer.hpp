@@ -74,7 +74,7 @@ struct Answer {
 /// Exit codes and messages as the command line gives them. output: stands as OUT in messages.
 inline Answer answer(std::string const& name, std::string const& text, Depth depth, std::filesystem::path const& output,
                      RunOptions options = {}, std::vector<std::string> const& verbs = {}) {
-  Source const source(name, text);
+  Source source(name, text);
   Diagnostics diagnostics;
   Answer answer;
   auto const failed = [&](Diagnostic const& diagnostic, ExitCode exit) {

@@ -69,7 +69,7 @@ void check_snippet(Page const& page, Fence const& block) {
   }
   auto const text = framed(kind, block.joined());
   REQUIRE_MESSAGE(text, page.name << ":" << block.line << ": a snippet of no known kind: `" << kind << "`");
-  Source const source(page.name + ":" + std::to_string(block.line), *text);
+  Source source(page.name + ":" + std::to_string(block.line), *text);
   Diagnostics diagnostics;
   bool const passed = load(source, diagnostics).has_value();
   std::string const said = render(diagnostics, source, false);
@@ -123,7 +123,7 @@ void check_command(Page const& page, std::string const& command) {
         continue;
       }
       REQUIRE_MESSAGE(fs::exists(root / words[i]), where << "no file " << words[i]);
-      Source const source(words[i], read_file(root / words[i]));
+      Source source(words[i], read_file(root / words[i]));
       Diagnostics diagnostics;
       CHECK_MESSAGE(load(source, diagnostics), render(diagnostics, source, false));
     }
@@ -138,7 +138,7 @@ std::string const& printed_by(std::string const& command) {
   std::vector<std::string> const words = words_of(command);
   REQUIRE_MESSAGE((words.size() == 3 && words[0] == "./sysid"), "cannot run `" << command << "` for its output");
   fs::path const folder = fs::temp_directory_path() / ("sysid_documentation_" + std::to_string(std::rand()));
-  Source const source((root / words[2]).string(), read_file(root / words[2]));
+  Source source((root / words[2]).string(), read_file(root / words[2]));
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   REQUIRE_MESSAGE(file, render(diagnostics, source, false));

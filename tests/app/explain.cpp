@@ -17,7 +17,7 @@ namespace {
 void write_files(ErrorSection const& section, std::vector<Example> const& examples, std::filesystem::path const& folder) {
   for (std::vector<Example> const* blocks : {&section.frame, &examples})
     for (Example const& block : *blocks)
-      if (block.kind.starts_with("csv ")) write(folder / block.kind.substr(4), block.text);
+      if (std::string const name = block.file_name(); !name.empty()) write(folder / name, block.text);
 }
 
 Answer answer_to(ErrorSection const& section, std::vector<Example> const& examples, Depth depth) {

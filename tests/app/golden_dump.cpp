@@ -10,7 +10,7 @@ using namespace sysid;
 
 TEST_CASE("the stages of the Duffing case print what is recorded") {
   std::filesystem::path const root(SYSID_SOURCE_DIR);
-  Source const source("duffing.sysid", read_file(root / "models/duffing/duffing.sysid"));
+  Source source("duffing.sysid", read_file(root / "models/duffing/duffing.sysid"));
   for (std::string const stage : {"ast", "model", "program"}) {
     CAPTURE(stage);
     Diagnostics diagnostics;

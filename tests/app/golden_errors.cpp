@@ -18,7 +18,9 @@ namespace {
 std::vector<std::filesystem::path> examples() {
   std::vector<std::filesystem::path> out;
   for (auto const& entry : std::filesystem::directory_iterator(error_examples))
-    if (entry.path().extension() == ".sysid" && !entry.path().filename().string().starts_with("E1")) out.push_back(entry.path());
+    if (std::string const name = entry.path().filename().string();
+        entry.path().extension() == ".sysid" && name.starts_with("E") && !name.starts_with("E1"))
+      out.push_back(entry.path());
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -70,7 +72,10 @@ TEST_CASE("one mistake gives one message, of the code in the example's name, wit
     }
     CHECK(count(shown, "error[") + count(shown, "warning[") == 1);
     CHECK(count(shown, (is_warning(name) ? "warning[" : "error[") + name.substr(0, 5) + "]") == 1);
-    CHECK(shown.starts_with(name + ":"));
+    // A mistake in a module is shown there: beside_e2904_laws.sysid.
+    std::string beside = "beside_" + name.substr(0, 5);
+    beside[7] = 'e';
+    CHECK((shown.starts_with(name + ":") || shown.starts_with(beside)));
     CHECK(count(shown, "\n     | ") >= 1);
     CHECK(count(shown, "\nhelp: ") == 1);
   }

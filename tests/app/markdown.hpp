@@ -20,8 +20,9 @@ inline fs::path const root = SYSID_SOURCE_DIR;
 
 inline std::vector<fs::path> pages() {
   std::vector<fs::path> found = {root / "README.md"};
-  for (auto const& entry : fs::directory_iterator(root / "docs"))
-    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  for (char const* folder : {"docs", "docs/stdlib"})
+    for (auto const& entry : fs::directory_iterator(root / folder))
+      if (entry.path().extension() == ".md") found.push_back(entry.path());
   for (auto const& entry : fs::directory_iterator(root / "models"))
     if (fs::exists(entry.path() / "README.md")) found.push_back(entry.path() / "README.md");
   std::sort(found.begin() + 1, found.end());

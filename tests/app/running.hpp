@@ -39,7 +39,7 @@ struct RunResult {
 inline RunResult run_text(std::filesystem::path const& name, std::string const& text, RunOptions options,
                           std::vector<std::string> const& verbs = {}) {
   options.figures = false;
-  Source const source(name.string(), text);
+  Source source(name.string(), text);
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   if (!file) throw UserError(diagnostics.all().front());

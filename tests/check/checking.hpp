@@ -12,14 +12,14 @@ namespace sysid::test {
 
 /// What the front end says; empty when there is nothing to say.
 inline std::string messages(std::string const& text) {
-  Source const source("test.sysid", text);
+  Source source("test.sysid", text);
   Diagnostics diagnostics;
   load(source, diagnostics);
   return render(diagnostics, source);
 }
 
 inline CheckedFile checked(std::string const& text) {
-  Source const source("test.sysid", text);
+  Source source("test.sysid", text);
   Diagnostics diagnostics;
   auto file = load(source, diagnostics);
   REQUIRE_MESSAGE(file.has_value(), render(diagnostics, source));

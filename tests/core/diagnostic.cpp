@@ -148,7 +148,7 @@ TEST_CASE("JSON has one object per line with places from one, for every diagnost
                       "ab\n\xFF"
                       "cd");
   Diagnostics all;
-  for (std::uint32_t i = 0; i < 25; ++i) all.add(at(4, "wrong \"quote\""));
+  for (std::uint32_t i = 0; i < 25; ++i) all.add(at(4, "wrong \"quote\"" + std::string(i, '!')));
   std::string const text = render_json(all, source);
   CHECK(std::count(text.begin(), text.end(), '\n') == 25);
   auto const object = nlohmann::json::parse(text.substr(0, text.find('\n')));
@@ -186,4 +186,45 @@ TEST_CASE("did you mean lists names as a sentence") {
   CHECK(did_you_mean("k5", {"k1", "k2"}) == "did you mean `k1` or `k2`?");
   CHECK(did_you_mean("k5", {"k1", "k2", "k3", "k4"}) == "did you mean `k1`, `k2` or `k3`?");
   CHECK(did_you_mean("zzz", {"alpha"}).empty());
+}
+
+TEST_CASE("a message about two files shows both, and each place in its own file") {
+  Source source("main.sysid", "use laws\nk = 1\n");
+  CHECK(source.next_begin() == 16);
+  source.include("laws.sysid", "# laws\n  k = 2");
+  CHECK(source.files() == 2);
+  Span const own{9, 10}, other{source.line_begin(2, 1) + 2, source.line_begin(2, 1) + 3};
+  CHECK(source.text(own) == "k");
+  CHECK(source.text(other) == "k");
+  CHECK(source.place(other.begin).line == 2);
+  CHECK(source.place(other.begin).column == 3);
+  CHECK(source.place(15).file == 0);
+  CHECK(source.place(16).file == 1);
+  CHECK(source.line(2, 0) == "k = 1");
+  CHECK(source.line(3, 0).empty());
+  CHECK(source.line(9, 1).empty());
+  Diagnostic const diagnostic{Severity::error, "E2903", "two", Label{other, "this one"}, {{own, "and this one"}}, ""};
+  CHECK(render(diagnostic, source) ==
+        "laws.sysid:2:3: error[E2903]: two\n"
+        "   2 |   k = 2\n"
+        "     |   ^ this one\n"
+        "     | in main.sysid\n"
+        "   2 | k = 1\n"
+        "     | - and this one\n"
+        "more: sysid explain E2903\n");
+  auto const object = nlohmann::json::parse(render_json(diagnostic, source));
+  CHECK(object["file"] == "laws.sysid");
+  CHECK(object["primary"]["begin"] == 9);
+  CHECK(object["secondary"][0]["file"] == "main.sysid");
+  CHECK(object["secondary"][0]["begin"] == 9);
+}
+
+TEST_CASE("what is found twice at one place is said once") {
+  Source const source("a", "abcdef");
+  Diagnostics all;
+  for (int i = 0; i < 3; ++i) all.add(at(2, "wrong"));
+  all.add(at(2, "worse"));
+  std::string const text = render(all, source);
+  CHECK(text.find("wrong") == text.rfind("wrong"));
+  CHECK(text.find("worse") != std::string::npos);
 }

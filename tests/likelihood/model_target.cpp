@@ -13,7 +13,7 @@ using namespace sysid;
 namespace {
 
 CheckedFile checked(std::string const& text) {
-  Source const source("case.sysid", text);
+  Source source("case.sysid", text);
   Diagnostics diagnostics;
   auto file = load(source, diagnostics);
   REQUIRE_MESSAGE(file, render(diagnostics, source));

@@ -14,8 +14,8 @@ using namespace sysid;
 namespace {
 
 Model model_of(std::string const& parameters) {
-  Source const source("case.sysid", "model m {\ninput x\nstate y\ninitial y = 0\n" + parameters +
-                                        "\ny' = x\nobserve level ~ normal(y, sd = 1)\n}\n");
+  Source source("case.sysid",
+                "model m {\ninput x\nstate y\ninitial y = 0\n" + parameters + "\ny' = x\nobserve level ~ normal(y, sd = 1)\n}\n");
   Diagnostics diagnostics;
   auto file = load(source, diagnostics);
   REQUIRE_MESSAGE(file, render(diagnostics, source));

@@ -11,7 +11,7 @@ using namespace sysid;
 namespace {
 
 Model oscillator() {
-  Source const source("case.sysid", R"(
+  Source source("case.sysid", R"(
 model oscillator {
   input x
   state y
@@ -156,7 +156,7 @@ TEST_CASE("threads and lanes change no byte of a target over several experiments
 }
 
 TEST_CASE("a failure names the experiment, and is the whole vector's") {
-  Source const source("case.sysid", R"(
+  Source source("case.sysid", R"(
 model runaway {
   input x
   state y

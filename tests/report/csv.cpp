@@ -80,10 +80,11 @@ TEST_CASE("a line break in a task's text cannot end the comment") {
   CHECK(read(draws_csv(report, 0)).header[0] == "lp__");
 }
 
-TEST_CASE("a name with a comma is quoted") {
+TEST_CASE("a name with a comma is quoted where Stan has no other name for it") {
   Report report = example::duffing(2);
-  report.draws.names[0] = "m[1,2]";
-  CHECK(draws_csv(report, 0).find(",\"m[1,2]\",c,") != std::string::npos);
+  report.draws.names[0] = "m[1, 2]";
+  CHECK(draws_csv(report, 0).find(",m.1.2,c,") != std::string::npos);
+  CHECK(csv_field("m[1, 2]") == "\"m[1, 2]\"");
 }
 
 TEST_CASE("a prediction has bands with and without noise, what was measured, and which rows are scored") {
@@ -101,4 +102,11 @@ TEST_CASE("a prediction has bands with and without noise, what was measured, and
   CHECK(table.rows[4][9] == "NaN");
   CHECK(std::stod(table.rows[7][0]) == report.predictions[0].time[7]);
   CHECK(std::stod(table.rows[7][3]) == report.predictions[0].quantities[0].response.lower[7]);
+}
+
+TEST_CASE("elements and parts go by Stan's names in draws") {
+  CHECK(stan_name("sigma") == "sigma");
+  CHECK(stan_name("k[2]") == "k.2");
+  CHECK(stan_name("M[1, 2]") == "M.1.2");
+  CHECK(stan_name("rig.joint.k[3]") == "rig:joint:k.3");
 }

@@ -145,6 +145,8 @@ void Ebnf::write(Node const& node, int depth, Random& random, std::string& out) 
         out += ' ' + std::string(random.pick(names));
       else if (node.text.find("quotes") != std::string::npos)
         out += ' ' + std::string(random.pick(texts));
+      else if (node.text.find("digits") == 1 && node.text.size() < 10)
+        out += random.chance(2) ? " 1" : " 12";
       else if (node.text.find("digits") != std::string::npos)
         out += ' ' + std::string(random.pick(numbers));
       else
@@ -186,6 +188,8 @@ void Ebnf::write_rule(std::string const& rule, int depth, Random& random, std::s
   // Neither does a blank stand inside a path or before an index.
   if (rule == "path") out.erase(std::remove(out.begin() + static_cast<std::ptrdiff_t>(begin) + 1, out.end(), ' '), out.end());
   if (rule == "index") out.erase(begin, 1);
+  if (std::size_t const bracket = rule == "element" ? out.find(" [", begin) : std::string::npos; bracket != std::string::npos)
+    out.erase(bracket, 1);
 }
 
 std::string Ebnf::sentence(std::string const& rule, int depth, Random& random) const {

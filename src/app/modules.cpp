@@ -1,0 +1,90 @@
+// Finds, reads and parses modules, each once.
+#include "app/modules.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "check/elaborate/errors.hpp"
+#include "core/files.hpp"
+#include "syntax/parse.hpp"
+
+namespace sysid {
+namespace {
+
+class Loader {
+ public:
+  Loader(Source& source, Diagnostics& diagnostics)
+      : source_(source), diagnostics_(diagnostics), folder_(std::filesystem::path(source.name()).parent_path()) {
+    path_.push_back(std::filesystem::path(source.name()).stem().string());
+  }
+
+  void load(ast::File const& file, bool from_library) {
+    for (ast::Item const& item : file.items)
+      if (auto const* use = std::get_if<ast::Use>(&item)) load(use->module, from_library);
+  }
+  std::vector<Module> take() { return std::move(modules_); }
+
+ private:
+  void load(ast::Name const& name, bool from_library) {
+    if (auto const begin = std::find(path_.begin() + (from_library ? 1 : 0), path_.end(), name.text); begin != path_.end()) {
+      errors::Names loop(begin, path_.end());
+      loop.push_back(name.text);
+      diagnostics_.add(errors::module_cycle(name.span, loop));
+      return;
+    }
+    if (!seen_.insert(name.text).second) return;
+    std::string file = (folder_ / (name.text + ".sysid")).string();
+    std::optional<std::string> text;
+    if (!from_library && std::filesystem::exists(file)) text = read_file(file);
+    bool const in_library = !text.has_value();
+    if (in_library) {
+      auto const module = std::find_if(library_modules().begin(), library_modules().end(),
+                                       [&](LibraryModule const& each) { return each.name == name.text; });
+      if (module == library_modules().end()) {
+        diagnostics_.add(errors::module_not_found(name, folder_.empty() ? "this folder" : "`" + folder_.string() + "`", known()));
+        return;
+      }
+      text = std::string(module->text);
+      file = "stdlib/" + name.text + ".sysid";
+    }
+    // Behind blanks as long as all texts before it, so that the parser's offsets are those in `source`.
+    Source const padded(file, std::string(source_.next_begin(), ' ') + *text);
+    source_.include(file, *text);
+    auto tree = parse(padded, diagnostics_);
+    if (!tree) return;
+    path_.push_back(name.text);
+    load(*tree, in_library);
+    path_.pop_back();
+    modules_.push_back({name.text, std::move(*tree), in_library});
+  }
+
+  errors::Names known() const {
+    errors::Names names;
+    for (LibraryModule const& module : library_modules()) names.emplace_back(module.name);
+    std::error_code nothing_there;
+    for (auto const& entry : std::filesystem::directory_iterator(folder_.empty() ? "." : folder_, nothing_there))
+      if (entry.path().extension() == ".sysid" && entry.path().stem() != path_.front())
+        names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  Source& source_;
+  Diagnostics& diagnostics_;
+  std::filesystem::path folder_;
+  std::vector<std::string> path_;  // of the files that are open
+  std::set<std::string> seen_;
+  std::vector<Module> modules_;
+};
+
+}  // namespace
+
+std::vector<Module> load_modules(ast::File const& file, Source& source, Diagnostics& diagnostics) {
+  Loader loader(source, diagnostics);
+  loader.load(file, false);
+  return loader.take();
+}
+
+}  // namespace sysid

@@ -1,0 +1,73 @@
+// Differentiation on the syntax tree; zeros and ones are left out as soon as they arise.
+#include "check/elaborate/derivative.hpp"
+
+#include "check/elaborate/tree.hpp"
+
+namespace sysid {
+namespace {
+
+using Expression = ast::Expression;
+
+Expression plus(Expression a, Expression b, std::string const& symbol, Span span) {
+  if (tree::is_number(b, 0)) return a;
+  if (tree::is_number(a, 0)) return symbol == "+" ? b : tree::unary("-", std::move(b), span);
+  return tree::binary(symbol, std::move(a), std::move(b), span);
+}
+Expression times(Expression a, Expression b, Span span) {
+  if (tree::is_number(a, 0) || tree::is_number(b, 0)) return tree::number(0, span);
+  if (tree::is_number(a, 1)) return b;
+  if (tree::is_number(b, 1)) return a;
+  return tree::binary("*", std::move(a), std::move(b), span);
+}
+
+}  // namespace
+
+std::optional<Expression> time_derivative(Expression const& expression,
+                                          std::function<std::optional<Motion>(std::string const&)> const& motion_of) {
+  Span const span = expression.span;
+  auto const derivative = [&](Expression const& of) { return time_derivative(of, motion_of); };
+  if (std::holds_alternative<ast::Number>(expression.node)) return tree::number(0, span);
+  if (auto const* reference = std::get_if<ast::Reference>(&expression.node)) {
+    auto const motion = motion_of(reference->name.text);
+    if (!motion) return std::nullopt;
+    switch (motion->kind) {
+      case Motion::Kind::moving:
+        return tree::reference(reference->name.text, reference->primes + 1, span);
+      case Motion::Kind::still:
+        return tree::number(0, span);
+      case Motion::Kind::time:
+        return tree::number(1, span);
+      case Motion::Kind::defined:
+        return reference->primes == 0 ? derivative(*motion->definition) : std::nullopt;
+    }
+  }
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&expression.node)) {
+    if ((*unary)->symbol != "-") return std::nullopt;
+    auto operand = derivative(*(*unary)->operand);
+    if (!operand || tree::is_number(*operand, 0)) return operand;
+    return tree::unary("-", std::move(*operand), span);
+  }
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&expression.node);
+  if (binary == nullptr) return std::nullopt;
+  std::string const& symbol = (*binary)->symbol;
+  Expression const &left = *(*binary)->left, &right = *(*binary)->right;
+  auto a = derivative(left), b = derivative(right);
+  if (!a || !b) return std::nullopt;
+  if (symbol == "+" || symbol == "-") return plus(std::move(*a), std::move(*b), symbol, span);
+  if (symbol == "*") return plus(times(std::move(*a), right, span), times(left, std::move(*b), span), "+", span);
+  if (symbol == "/") {
+    Expression first = tree::is_number(*a, 0) ? tree::number(0, span) : tree::binary("/", std::move(*a), right, span);
+    Expression second = tree::is_number(*b, 0) ? tree::number(0, span)
+                                               : tree::binary("/", times(left, std::move(*b), span),
+                                                              tree::binary("^", right, tree::number(2, span), span), span);
+    return plus(std::move(first), std::move(second), "-", span);
+  }
+  if (symbol == "^" && tree::is_number(*b, 0)) {
+    if (tree::is_number(*a, 0)) return a;
+    Expression power = tree::binary("^", left, tree::binary("-", right, tree::number(1, span), span), span);
+    return times(tree::binary("*", right, std::move(power), span), std::move(*a), span);
+  }
+  return std::nullopt;
+}
+
+}  // namespace sysid

@@ -1,0 +1,195 @@
+// Which models a file needs and with which arguments: those of tasks, of parts, and some of each model for its own check.
+#include "check/elaborate/elaborate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/elaborate/errors.hpp"
+#include "check/elaborate/flatten.hpp"
+#include "check/elaborate/frame.hpp"
+#include "check/elaborate/tree.hpp"
+
+namespace sysid {
+namespace {
+
+class Elaborator {
+ public:
+  Elaborator(ast::File const& file, std::vector<Module> const& modules, Diagnostics& diagnostics)
+      : file_(file), diagnostics_(diagnostics), environments_(file, modules, diagnostics) {}
+
+  Elaborated run() {
+    for (ast::Item const& item : file_.items)
+      if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->arguments.empty() && is_first(*model))
+        request({{model, &environments_.main()}, {}}, false);
+    std::vector<ast::Item> others;
+    for (ast::Item const& item : file_.items) {
+      if (auto const* task = std::get_if<ast::Task>(&item))
+        others.push_back(elaborated(*task));
+      else if (!std::holds_alternative<ast::Model>(item) && !std::holds_alternative<ast::Use>(item))
+        others.push_back(item);
+    }
+    for (auto const& [module, environment] : environments_.all())
+      if (!environment.from_library)
+        for (auto const& [name, model] : environment.models)
+          if (model.home == &environment) check_alone(model);
+    result_.tree.items.insert(result_.tree.items.end(), std::make_move_iterator(others.begin()),
+                              std::make_move_iterator(others.end()));
+    return std::move(result_);
+  }
+
+ private:
+  bool is_first(ast::Model const& model) const { return environments_.main().models.at(model.name.text).tree == &model; }
+
+  // As the file knows it, else with the module before it.
+  std::string name_of(Instance const& instance) const {
+    auto const& visible = environments_.main().models;
+    auto const place = visible.find(instance.model.tree->name.text);
+    bool const known = place != visible.end() && place->second.tree == instance.model.tree;
+    return known ? instance.display() : instance.model.home->module + "." + instance.display();
+  }
+
+  /// The name under which tasks find it; made on the first request.
+  std::string request(Instance const& instance, bool only_checked) {
+    std::string const name = name_of(instance);
+    if (made_.contains(name)) {
+      if (!only_checked) result_.lineage.only_checked.erase(name);
+      return name;
+    }
+    made_.insert(name);
+    std::vector<std::string>& made_of = result_.lineage.made_of[name];
+    // With other arguments the same text has the same mistakes.
+    auto const [first, fresh] = first_instance_.emplace(instance.model.tree, name);
+    if (!fresh) made_of.push_back(first->second);
+    for (Instance const& part : parts_of(instance))
+      if (!part.model.home->from_library) made_of.push_back(request(part, true));
+    bool const sound = std::none_of(made_of.begin(), made_of.end(),
+                                    [&](std::string const& each) { return result_.lineage.failed.contains(each); });
+    auto flat = sound ? flatten(instance, diagnostics_) : std::nullopt;
+    if (flat) {
+      flat->tree.name.text = name;
+      result_.tree.items.emplace_back(std::move(flat->tree));
+      shapes_[name] = std::move(flat->shapes);
+    } else {
+      result_.lineage.failed.insert(name);
+    }
+    if (only_checked) result_.lineage.only_checked.insert(name);
+    return name;
+  }
+
+  // A model that nothing uses: with the defaults of its arguments, else with 1, 2 and 3 for each.
+  void check_alone(ModelEntry const& model) {
+    if (first_instance_.contains(model.tree)) return;
+    std::vector<ast::Argument> given;
+    Diagnostics none;
+    if (model_arguments(*model.tree, given, model.tree->name.span, {}, none)) {
+      request({model, *model_arguments(*model.tree, given, model.tree->name.span, {}, none)}, true);
+      return;
+    }
+    for (int const value : {1, 2, 3}) {
+      given.clear();
+      for (ast::ModelArgument const& argument : model.tree->arguments)
+        if (!argument.value) given.push_back({{argument.span}, argument.name, tree::number(value, argument.span)});
+      if (auto arguments = model_arguments(*model.tree, given, model.tree->name.span, {}, diagnostics_))
+        request({model, std::move(*arguments)}, true);
+    }
+  }
+
+  // The subject becomes the model with its arguments; what is given for a vector is given for each of its numbers.
+  ast::Task elaborated(ast::Task task) {
+    auto const model = environments_.main().models.find(task.subject.text);
+    if (task.verb.text == "predict" || model == environments_.main().models.end()) return task;
+    std::size_t const before = diagnostics_.all().size();
+    auto const arguments = model_arguments(*model->second.tree, task.arguments, task.subject.span, {}, diagnostics_);
+    check_names(*model->second.tree, task);
+    if (diagnostics_.all().size() > before || !arguments) {
+      result_.lineage.failed.insert(task.subject.text);
+      return task;
+    }
+    std::string const plain = task.subject.text;
+    task.subject.text = request({model->second, *arguments}, false);
+    task.arguments.clear();
+    if (!task.name && task.subject.text != plain) {
+      std::string name = task.verb.text + "_" + plain;  // the name of a folder: fit_bouc_wen_n2
+      for (ast::ModelArgument const& argument : model->second.tree->arguments)
+        name += fmt::format("_{}{}", argument.name.text, arguments->at(argument.name.text));
+      task.name = {{task.verb.span}, std::move(name)};
+    }
+    if (auto const shapes = shapes_.find(task.subject.text); shapes != shapes_.end()) spread(task, shapes->second);
+    return task;
+  }
+
+  void check_names(ast::Model const& model, ast::Task const& task) {
+    errors::Names known;
+    for (ast::ModelArgument const& argument : model.arguments) known.push_back(argument.name.text);
+    std::map<std::string, Span> given;
+    for (ast::Argument const& argument : task.arguments) {
+      if (!argument.name) {
+        diagnostics_.add(errors::model_argument_by_position(argument.span, model.name.text, known));
+      } else if (std::find(known.begin(), known.end(), argument.name->text) == known.end()) {
+        diagnostics_.add(errors::unknown_model_argument(*argument.name, model.name.text, known));
+      } else if (auto const [first, fresh] = given.emplace(argument.name->text, argument.name->span); !fresh) {
+        diagnostics_.add(errors::model_argument_twice(argument.name->span, first->second, argument.name->text));
+      }
+    }
+  }
+
+  // `input u = gaussian(sd = 1)` and `values(k = (1, 2, 3))` for vectors.
+  void spread(ast::Task& task, std::map<std::string, Shape> const& shapes) {
+    std::vector<ast::Option> options;
+    for (ast::Option& option : task.options) {
+      auto const shape = option.input && option.key ? shapes.find(option.key->text) : shapes.end();
+      if (shape != shapes.end()) {
+        for (std::size_t i = 0; i < shape->second.count(); ++i) {
+          options.push_back(option);
+          options.back().key->text = element_name(option.key->text, shape->second, i);
+        }
+        continue;
+      }
+      auto* call = std::get_if<ast::Box<ast::Call>>(&option.value.node);
+      if (call != nullptr && (*call)->function.text == "values") spread(**call, shapes);
+      options.push_back(std::move(option));
+    }
+    task.options = std::move(options);
+  }
+  void spread(ast::Call& values, std::map<std::string, Shape> const& shapes) {
+    static ast::Model const nothing;
+    Frame frame;
+    frame.instance.model = {&nothing, &environments_.main()};
+    Evaluator evaluator(diagnostics_, 100'000);
+    std::vector<ast::Argument> arguments;
+    for (ast::Argument& argument : values.arguments) {
+      auto const shape = argument.name ? shapes.find(argument.name->text) : shapes.end();
+      if (shape == shapes.end()) {
+        arguments.push_back(std::move(argument));
+        continue;
+      }
+      auto value = evaluator.evaluate(argument.value, frame);
+      if (value)
+        value = evaluator.algebra().fill(std::move(*value), shape->second, true, fmt::format("the value of `{}`", shape->first),
+                                         argument.value.span);
+      if (!value) continue;
+      for (std::size_t i = 0; i < value->items.size(); ++i)
+        arguments.push_back({{argument.span},
+                             ast::Name{{argument.name->span}, element_name(argument.name->text, shape->second, i)},
+                             std::move(value->items[i])});
+    }
+    values.arguments = std::move(arguments);
+  }
+
+  ast::File const& file_;
+  Diagnostics& diagnostics_;
+  Environments environments_;
+  Elaborated result_;
+  std::set<std::string> made_;
+  std::map<ast::Model const*, std::string> first_instance_;
+  std::map<std::string, std::map<std::string, Shape>> shapes_;
+};
+
+}  // namespace
+
+Elaborated elaborate(ast::File const& file, std::vector<Module> const& modules, Diagnostics& diagnostics) {
+  return Elaborator(file, modules, diagnostics).run();
+}
+
+}  // namespace sysid
