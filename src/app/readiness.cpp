@@ -15,7 +15,8 @@
 namespace sysid {
 
 std::optional<TaskData> data_of(CheckedFile const& file, Task const& task) {
-  if (auto const* fit = std::get_if<FitTask>(&task.what)) return TaskData{fit->model, &fit->experiments, fit->start, fit->prediction};
+  if (auto const* fit = std::get_if<FitTask>(&task.what))
+    return TaskData{fit->model, &fit->experiments, fit->start, fit->prediction};
   auto const* prediction = std::get_if<PredictTask>(&task.what);
   if (prediction == nullptr) return std::nullopt;
   int const model = std::get<FitTask>(file.tasks[static_cast<std::size_t>(prediction->fit)].what).model;

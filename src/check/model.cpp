@@ -772,9 +772,9 @@ class ModelChecker {
   Scope scope_;
   std::vector<std::pair<std::string, StateInfo>> states_;
   std::vector<ast::ParameterDeclaration const*> parameter_trees_;
-  std::vector<NodeId> highest_;         // solutions for the unknowns; none for an implicit model
-  std::vector<Invariant> constraints_;  // of every differentiation
-  bool orders_doubtful_ = false;        // after a mistake in the units of an equation: a prime may be missing there
+  std::vector<NodeId> highest_;                       // solutions for the unknowns; none for an implicit model
+  std::vector<Invariant> constraints_;                // of every differentiation
+  bool orders_doubtful_ = false;                      // after a mistake in the units of an equation: a prime may be missing there
   std::vector<std::optional<NodeId>> initial_pasts_;  // of each state of a discrete-time model
 };
 

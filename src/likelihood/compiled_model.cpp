@@ -27,7 +27,8 @@ class Folded {
     NodeId const result = graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
       Node const node = graph[leaf];
       auto const state = static_cast<int>(model_.states.size()) + node.index;
-      if (node.leaf_kind == LeafKind::previous) return graph.leaf(LeafKind::state, state);  // a memory: it is kept behind the states
+      if (node.leaf_kind == LeafKind::previous)
+        return graph.leaf(LeafKind::state, state);  // a memory: it is kept behind the states
       if (node.leaf_kind == LeafKind::unknown && unknowns_are_states_)
         return graph.leaf(LeafKind::state, state + static_cast<int>(model_.memories.size()));
       if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())

@@ -25,8 +25,8 @@ struct SimulationSource {
   Graph graph;
   int parameters = 0;  // parameter leaves 0 ... parameters - 1
   int inputs = 0;
-  std::vector<NodeId> initial;     // one per state: expressions of parameters, and of data at the first sample; of an algebraic one:
-                                   // where its iteration begins
+  std::vector<NodeId> initial;  // one per state: expressions of parameters, and of data at the first sample; of an algebraic one:
+                                // where its iteration begins
   std::vector<NodeId> derivative;  // one per differential state: expressions of state, input, input_rate, parameter, time
   /// The derivatives are no derivatives but the states at the next sample, which read data at this one: no integrator.
   bool map = false;
@@ -77,11 +77,11 @@ struct SimulationProgram {
   RegisterLayout registers;
   int hot_registers = 0;  // rows that a step and the observations touch: they should stay in the first-level cache
   std::vector<double> constants;
-  int uniforms = 0;              // constants and the widest row
-  Section prologue;              // parameters -> hoisted values
-  Section start;                 // parameters, hoisted values, data of the first sample -> initial states
-  Section carry;                 // what is to be remembered of a sample -> the last states
-  Section step;                  // one integrator step, or the map from sample to sample; empty for solvers that choose their own steps
+  int uniforms = 0;  // constants and the widest row
+  Section prologue;  // parameters -> hoisted values
+  Section start;     // parameters, hoisted values, data of the first sample -> initial states
+  Section carry;     // what is to be remembered of a sample -> the last states
+  Section step;      // one integrator step, or the map from sample to sample; empty for solvers that choose their own steps
   EquationKernels equations;     // for those
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
   Section record;                // one sample into the record registers

@@ -18,7 +18,7 @@ std::filesystem::path const golden = std::filesystem::path(SYSID_SOURCE_DIR) / "
 
 /// name: as if the text stood there, so that data beside it are found.
 CheckResult checked(std::filesystem::path const& name, std::string const& text, RunOptions options = {}) {
-  Source const source(name.string(), text);
+  Source source(name.string(), text);
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   if (!file) throw UserError(diagnostics.all().front());

@@ -26,20 +26,22 @@ struct Mutant {
 
 /// Everything the front end says, and what reading the data of each fit says.
 std::vector<Diagnostic> diagnostics_of(std::string const& text) {
-  Source const source("mutant.sysid", text);
+  Source source("mutant.sysid", text);
   Diagnostics diagnostics;
   try {
     auto const file = load(source, diagnostics);
     if (!file) return diagnostics.all();
-    for (Task const& task : file->tasks)
-      if (auto const* fit = std::get_if<FitTask>(&task.what))
-        load_experiments(*file, fit->experiments, file->models[static_cast<std::size_t>(fit->model)], {}, fit->start);
+    SilentProgress progress;
+    std::ostringstream ignored;
+    RunOptions const options;
+    Session session(source, *file, options, progress, ignored, ignored);
+    check_readiness(session, [](Task const& task) { return std::holds_alternative<FitTask>(task.what); }).require();
   } catch (UnusableData const& error) {
     return error.diagnostics().all();
   } catch (UserError const& error) {
     return {error.diagnostic()};
   } catch (UnreadableData const& error) {
-    return {error.diagnostic()};
+    return error.diagnostics().all();
   }
   std::vector<Diagnostic> errors;
   for (Diagnostic const& each : diagnostics.all())
@@ -219,7 +221,7 @@ TEST_CASE("mistakes planted in the shipped models are refused where they stand")
       tally.token += token ? 1 : 0;
       tally.alone += found.size() == 1 ? 1 : 0;
       if (!print || (statement && found.size() == 1)) continue;
-      Source const source(path.filename().string(), mutant.text);
+      Source source(path.filename().string(), mutant.text);
       Place const place = source.place(mutant.token.begin);
       fmt::print("--- {} {} {}:{} `{}`\n",
                  found.empty() ? "ACCEPTED"

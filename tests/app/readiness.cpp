@@ -56,7 +56,7 @@ TEST_CASE("old results outlive a forced run whose data cannot be read") {
 
 TEST_CASE("a file without tasks says which it could have") {
   WorkingFolder const here(error_examples);
-  Source const source("example.sysid", model + dish);
+  Source source("example.sysid", model + dish);
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   REQUIRE(file);

@@ -173,7 +173,7 @@ Finding look(std::string const& name, std::string const& text, Mutant const& mut
   Span const term{mutant.term.begin, std::max(moved(mutant.term.end), mutant.term.begin + 1)};
   Span const site{mutant.place.begin,
                   mutant.place.begin + std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mutant.text.size()))};
-  Source const source(name, mutated);
+  Source source(name, mutated);
   Diagnostics diagnostics;
   load(source, diagnostics);
   Finding finding;
@@ -205,7 +205,7 @@ TEST_CASE("wrong units planted in the shipped models are found where they are") 
   for (std::filesystem::path const& path : shipped_models()) {
     CAPTURE(path.string());
     std::string const text = file_text(path);
-    Source const source(path.string(), text);
+    Source source(path.string(), text);
     Diagnostics diagnostics;
     auto const tree = parse(source, diagnostics);
     REQUIRE(tree);

@@ -18,7 +18,7 @@ struct Said {
   std::size_t count = 0;
 };
 Said said_of(std::string const& text) {
-  Source const source("test.sysid", text);
+  Source source("test.sysid", text);
   Diagnostics diagnostics;
   load(source, diagnostics);
   if (diagnostics.all().empty()) return {};

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "app/modules.hpp"
 #include "check/check.hpp"
+#include "check/elaborate/elaborate.hpp"
 #include "core/diagnostic.hpp"
 #include "core/unit.hpp"
 #include "data/record.hpp"
@@ -65,7 +67,7 @@ inline void simulate_one_step(Model const& model) {
 
 /// Text to tree to models to programs; the canonical layout on the way.
 inline void text(std::string const& bytes) {
-  Source const source("fuzz.sysid", bytes);
+  Source source("fuzz.sysid", bytes);
   Diagnostics diagnostics;
   auto const tree = parse(source, diagnostics);
   if (tree.has_value() != diagnostics.all().empty()) fault("a tree and messages, or neither");
@@ -76,7 +78,10 @@ inline void text(std::string const& bytes) {
   if (parse(Source("canonical", canonical), none) != tree) fault("the printed tree reads as another");
   std::string const layout = formatted(source, none).value();
   if (formatted(Source("layout", layout), none) != layout) fault("the canonical layout is not its own layout");
-  auto const file = check(*tree, backends, diagnostics);
+  auto const modules = load_modules(*tree, source, diagnostics);
+  look_at(diagnostics, source);
+  if (diagnostics.has_errors()) return;
+  auto const file = check(elaborate(*tree, modules, diagnostics), backends, diagnostics);
   if (!file && !diagnostics.has_errors()) fault("a refusal without a message");
   look_at(diagnostics, source);
   if (!file) return;

@@ -17,7 +17,7 @@ namespace {
 double const missing = std::nan("");
 
 Model model_of(std::string const& statements) {
-  Source const source("case.sysid", "model case {\n" + statements + "}\n");
+  Source source("case.sysid", "model case {\n" + statements + "}\n");
   Diagnostics diagnostics;
   auto file = load(source, diagnostics);
   REQUIRE_MESSAGE(file, render(diagnostics, source));

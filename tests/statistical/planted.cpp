@@ -68,7 +68,8 @@ TEST_CASE("a model without the cubic spring leaves coloured residuals") {
   text = with(text, "+ k3*y^3 = x", "= x + 0*k3*y^3");
   // The data still come from the full model, which a second model of the file makes.
   std::string const full =
-      "model full {\n input x [N]\n state y [m]\n initial y = 0, y' = 0\n 1 [kg]*y'' + 20 [N s/m]*y' + 1e4 [N/m]*y + 5e10 [N/m^3]*y^3 = x\n"
+      "model full {\n input x [N]\n state y [m]\n initial y = 0, y' = 0\n 1 [kg]*y'' + 20 [N s/m]*y' + 1e4 [N/m]*y + 5e10 "
+      "[N/m^3]*y^3 = x\n"
       " observe displacement ~ normal(y, sd = 1e-9)\n}\n";
   text = with(full + text, "simulate duffing with values(m = 1, c = 20, k = 1e4, k3 = 5e9),", "simulate full with");
   Fitted const fitted = run_file(text, seeded(7));

@@ -73,7 +73,8 @@ class Scatter {
   std::string blanks() { return std::string(random_.below(4), ' ') + (random_.chance(5) ? "\t" : ""); }
   /// What may stand before a newline.
   std::string comments() {
-    constexpr std::array<char const*, 8> texts{"# one", "// two", "#", "# ends in blanks  ", "# {", "# \"text", "// × ; }", "#input x"};
+    constexpr std::array<char const*, 8> texts{"# one", "// two",   "#",        "# ends in blanks  ",
+                                               "# {",   "# \"text", "// × ; }", "#input x"};
     std::string out;
     while (with_comments_ && random_.chance(3)) out += (out.empty() ? " " : "\n" + blanks()) + random_.pick(texts);
     return out;
