@@ -35,6 +35,8 @@ std::span<SolverRow const> solvers() {
       {"rk4", Stepping::fixed, "the classical Runge-Kutta method of order 4", fixed_settings},
       {"heun", Stepping::fixed, "Heun's method of order 2 (explicit trapezoidal rule)", fixed_settings},
       {"euler", Stepping::fixed, "Euler's explicit method of order 1", fixed_settings},
+      {"dopri5", Stepping::lanes, "the adaptive method of Dormand and Prince of order 5, each lane with its own steps",
+       adaptive_settings},
       {"cvode", Stepping::cvode, "backward differentiation of order 1 to 5, for stiff equations", adaptive_settings},
       {"ida", Stepping::ida, "backward differentiation for implicit and differential-algebraic equations", adaptive_settings},
   };

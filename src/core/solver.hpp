@@ -12,6 +12,7 @@ namespace sysid {
 /// What brings the states from one sample to the next.
 enum class Stepping {
   fixed,  // a one-step method expanded into the program: `substeps` equal steps in every interval, all lanes together
+  lanes,  // an embedded method in the program's own lanes, each with its own steps
   cvode,  // variable-order BDF for stiff equations, lane by lane (simulate/sundials_cvode.cpp)
   ida,    // the same for implicit and differential-algebraic equations (simulate/sundials_ida.cpp)
 };

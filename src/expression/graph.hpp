@@ -57,7 +57,10 @@ enum class LeafKind : std::uint8_t {
   measured,   // the channel's sample at the current time
   previous,   // a remembered value, `index` says which, as it was at the sample before
   unknown,    // a highest derivative still to be solved for, or a place holder of a symbolic pass
-  step_size,  // h of the integrator
+  step_size,    // h of the integrator
+  control,      // a lane's step control: program/embedded.hpp
+  interval,     // what step control reads of the data between two samples
+  coefficient,  // of an input's polynomial there
 };
 
 /// Place within one integrator step where an input or time leaf is read: its begin, middle or end. Equations use `begin`.

@@ -35,6 +35,10 @@ std::string present_name(Model const& model, Node const& leaf) {
       return index < model.unknowns.size() ? model.unknowns[index].name : fmt::format("unknown({})", index);
     case LeafKind::step_size:
       return "h";
+    case LeafKind::control:
+    case LeafKind::interval:
+    case LeafKind::coefficient:
+      break;  // of the program alone
   }
   return "?";
 }

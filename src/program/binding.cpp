@@ -13,6 +13,8 @@ Binding of_leaf(LeafKind kind) {
     case LeafKind::time:
     case LeafKind::measured:
     case LeafKind::step_size:
+    case LeafKind::interval:
+    case LeafKind::coefficient:
       return Binding::data;
     default:
       return Binding::step;

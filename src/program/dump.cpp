@@ -4,6 +4,7 @@
 #include <functional>
 #include <iterator>
 
+#include "program/embedded.hpp"
 #include "program/simulation_program.hpp"
 
 namespace sysid {
@@ -99,9 +100,25 @@ class Dump {
     if (r >= layout.first_sum()) return fmt::format("sum{}", r - layout.first_sum());
     if (r >= layout.first_record()) return fmt::format("record{}", r - layout.first_record());
     if (r >= layout.first_accumulator()) return fmt::format("total{}", r - layout.first_accumulator());
+    if (r >= layout.first_control()) return control_name(r - layout.first_control());
     if (r >= layout.first_state()) return at(names_.states, r - layout.first_state());
     if (r >= layout.first_hoisted()) return fmt::format("${}", r - layout.first_hoisted());
     return at(names_.parameters, r);
+  }
+
+  std::string control_name(int index) const {
+    switch (static_cast<Control>(index)) {
+      case Control::position:
+        return "position";
+      case Control::step:
+        return "step";
+      case Control::aim:
+        return "aim";
+      case Control::hunts:
+        return "hunts";
+      default:
+        return fmt::format("reached({})", at(names_.states, index - static_cast<int>(Control::reached)));
+    }
   }
 
   std::string leaf_name(UniformLeaf const& leaf) const {
@@ -120,6 +137,13 @@ class Dump {
         return "time" + stage;
       case LeafKind::measured:
         return fmt::format("measured({})", at(names_.channels, leaf.index));
+      case LeafKind::coefficient:
+        return fmt::format("{}.{}", at(names_.inputs, leaf.index / (largest_input_degree + 1)),
+                           leaf.index % (largest_input_degree + 1));
+      case LeafKind::interval: {
+        constexpr std::string_view names[] = {"begin", "length", "relative", "absolute"};
+        return std::string(names[leaf.index]);
+      }
       default:
         return "h";
     }

@@ -9,6 +9,7 @@
 #include "core/diagnostic.hpp"
 #include "core/solver.hpp"
 #include "program/algebra.hpp"
+#include "program/embedded.hpp"
 #include "program/emit.hpp"
 #include "program/interpreter/executor.hpp"
 
@@ -30,6 +31,7 @@ enum Bank : std::uint32_t {
   temporary_bank = 6u << 24,
   constant_bank = 7u << 24,
   row_bank = 8u << 24,
+  control_bank = 9u << 24,
 };
 constexpr std::uint32_t bank_of(std::uint32_t index) { return index & 0xff000000u; }
 constexpr std::uint32_t position_of(std::uint32_t index) { return index & 0x00ffffffu; }
@@ -79,6 +81,13 @@ class Compilation {
       program_.next = program_.source.derivative;
       return;
     }
+    if (EmbeddedMethod const* method = find_embedded(program_.source.integrator)) {
+      Attempt const values = attempt(program_.graph, *method, program_.source.derivative, program_.source.surfaces);
+      program_.next = values.states;
+      control_ = values.control;
+      program_.registers.control = control_registers(program_.source.states());
+      return;
+    }
     IntegratorRow const* integrator = find_integrator(program_.source.integrator);
     Graph& graph = program_.graph;
     std::vector<NodeId> states;
@@ -89,12 +98,16 @@ class Compilation {
   }
 
   void compile_step() {
-    Algebra algebra(graph_, program_.next);
+    std::vector<NodeId> roots = program_.next;
+    roots.insert(roots.end(), control_.begin(), control_.end());
+    Algebra algebra(graph_, roots);
     std::vector<Goal> goals;
     for (std::size_t i = 0; i < program_.next.size(); ++i) {
       if (is_state(program_.next[i], i)) continue;  // what is remembered stays as it is
       goals.push_back({algebra.rewrite(program_.next[i]), state_bank + static_cast<std::uint32_t>(i)});
     }
+    for (std::size_t i = 0; i < control_.size(); ++i)
+      goals.push_back({algebra.rewrite(control_[i]), control_bank + static_cast<std::uint32_t>(i)});
     program_.step = section(goals);
   }
 
@@ -206,6 +219,7 @@ class Compilation {
         auto const index = static_cast<std::uint32_t>(node.index);
         if (node.leaf_kind == LeafKind::parameter) return Operand{OperandPlace::lane, parameter_bank + index};
         if (node.leaf_kind == LeafKind::state) return Operand{OperandPlace::lane, state_bank + index};
+        if (node.leaf_kind == LeafKind::control) return Operand{OperandPlace::lane, control_bank + index};
         if (node.leaf_kind == LeafKind::unknown && node.index >= epilogue_uniform_leaf)
           return Operand{OperandPlace::uniform, row_bank + index - epilogue_uniform_leaf};
         if (node.leaf_kind == LeafKind::unknown && node.index >= accumulator_leaf)
@@ -299,6 +313,9 @@ class Compilation {
       case state_bank:
         first = layout.first_state();
         break;
+      case control_bank:
+        first = layout.first_control();
+        break;
       case accumulator_bank:
         first = layout.first_accumulator();
         break;
@@ -323,6 +340,7 @@ class Compilation {
 
   SimulationProgram program_;
   Graph graph_;                  // grows by algebra
+  std::vector<NodeId> control_;  // step control after an attempt
   std::vector<NodeId> hoisted_;  // values of the prologue
   std::map<NodeId, std::uint32_t> hoisted_rows_;
   bool hoisting_ = true;

@@ -36,6 +36,7 @@ struct SimulationSource {
   std::vector<NodeId> constraints;  // one per algebraic state, which come last: expressions that are zero
   std::vector<ChannelSource> channels;
   std::vector<NodeId> records;     // written out at every sample: expressions of the same leaves (measured as well)
+  std::vector<NodeId> surfaces;  // zero where a derivative has a kink: expressions of the same leaves as the derivatives
   std::string integrator = "rk4";  // a solver's name
 
   int states() const { return static_cast<int>(derivative.size() + constraints.size()); }
@@ -61,10 +62,11 @@ struct Section {
 
 /// Registers of the file, in this order; uniforms are constants, then one row of the running section's table.
 struct RegisterLayout {
-  int parameters = 0, hoisted = 0, states = 0, accumulators = 0, records = 0, sums = 0, temporaries = 0;
+  int parameters = 0, hoisted = 0, states = 0, control = 0, accumulators = 0, records = 0, sums = 0, temporaries = 0;
   int first_hoisted() const { return parameters; }
   int first_state() const { return first_hoisted() + hoisted; }
-  int first_accumulator() const { return first_state() + states; }
+  int first_control() const { return first_state() + states; }
+  int first_accumulator() const { return first_control() + control; }
   int first_record() const { return first_accumulator() + accumulators; }
   int first_sum() const { return first_record() + records; }
   int first_temporary() const { return first_sum() + sums; }
@@ -81,7 +83,7 @@ struct SimulationProgram {
   Section prologue;  // parameters -> hoisted values
   Section start;     // parameters, hoisted values, data of the first sample -> initial states
   Section carry;     // what is to be remembered of a sample -> the last states
-  Section step;      // one integrator step, or the map from sample to sample; empty for solvers that choose their own steps
+  Section step;      // one integrator step, one attempt at one, or the map from sample to sample; empty for SUNDIALS' solvers
   EquationKernels equations;     // for those
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
   Section record;                // one sample into the record registers

@@ -5,6 +5,7 @@
 
 #include "core/diagnostic.hpp"
 #include "core/lanes.hpp"
+#include "program/embedded.hpp"
 
 namespace sysid {
 
@@ -32,7 +33,9 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
 
   start_ = tabulate(program.start.uniforms, 1, false);
   carry_ = tabulate(program.carry.uniforms, samples(), false);
-  if (solver.fixed_step()) steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
+  // An embedded method finds its own steps: its rows belong to whole intervals.
+  if (solver.row().stepping == Stepping::fixed || solver.row().stepping == Stepping::lanes)
+    steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
   records_ = tabulate(program.record.uniforms, samples(), false);
   for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
 
@@ -75,6 +78,25 @@ double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const
       return time(sample) + s * interval;
     case LeafKind::step_size:
       return interval / solver_.substeps;
+    case LeafKind::coefficient: {
+      InputSignal const& input = experiment_.inputs[static_cast<std::size_t>(leaf.index / (largest_input_degree + 1))];
+      auto const power = static_cast<std::size_t>(leaf.index % (largest_input_degree + 1));
+      std::span<double const> const coefficients = input.coefficients(sample);
+      if (coefficients.size() > largest_input_degree + 1) throw InternalError("an input's polynomial is of too high a degree");
+      return power < coefficients.size() ? coefficients[power] : 0;
+    }
+    case LeafKind::interval:
+      switch (static_cast<IntervalData>(leaf.index)) {
+        case IntervalData::begin:
+          return time(sample);
+        case IntervalData::length:
+          return interval;
+        case IntervalData::relative:
+          return solver_.relative;
+        case IntervalData::absolute:
+          return solver_.absolute;
+      }
+      throw InternalError("step control reads what there is not");
     default:
       throw InternalError("a step reads what only a sample has");
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/diagnostic.hpp"
+#include "simulate/adaptive_lanes.hpp"
 #include "simulate/lane_solver.hpp"
 
 namespace sysid {
@@ -34,6 +35,8 @@ std::unique_ptr<Stepper> make_stepper(LaneFile const& file) {
   switch (file.schedule.solver().row().stepping) {
     case Stepping::fixed:
       return std::make_unique<FixedSteps>(file);
+    case Stepping::lanes:
+      return make_adaptive_lanes(file);
     case Stepping::cvode:
       return make_cvode_steps(file);
     case Stepping::ida:

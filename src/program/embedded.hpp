@@ -1,0 +1,57 @@
+// Embedded Runge-Kutta methods with step control, written as expressions: one attempt at a step is one pass of straight-line code,
+// in which every lane has its own step. A lane that has reached the end of the interval, or whose attempt is rejected, keeps its
+// states by selection, so lanes never wait for data of one another.
+#pragma once
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "expression/graph.hpp"
+
+namespace sysid {
+
+/// Coefficients of a method: stage i is evaluated at c_i with states y + h sum_j a_ij k_j; the step is y + h sum b_i k_i, its error
+/// estimate h sum e_i k_i.
+struct EmbeddedMethod {
+  std::string_view name;
+  int order;  // of the step; the error estimate is of order `order`, too
+  std::vector<double> c;
+  std::vector<std::vector<double>> a;
+  std::vector<double> b, e;
+};
+
+/// nullptr when there is none of that name.
+EmbeddedMethod const* find_embedded(std::string_view name);
+
+/// The inputs' polynomials have at most this degree.
+constexpr int largest_input_degree = 7;
+
+/// Registers of step control, one value per lane: leaves of kind `control`. `reached` begins the largest magnitudes of the states.
+enum class Control { position, step, aim, hunts, reached };
+/// What a lane's attempts read of the data, the same for all lanes: leaves of kind `interval`.
+enum class IntervalData { begin, length, relative, absolute };
+
+constexpr int control_registers(int states) { return static_cast<int>(Control::reached) + states; }
+
+/// The values after one attempt.
+///
+///   position   of the lane in the interval, 0 to 1; 1: arrived, nothing changes any more
+///   step       [s] that the next step would like to take
+///   aim        [s] a shorter step that ends at a kink; infinite: none
+///   hunts      attempts made to end this step at a kink
+struct Attempt {
+  std::vector<NodeId> states;
+  std::vector<NodeId> control;  // in the order of Control, `reached` one per state
+};
+
+/// One attempt. derivative: expressions of state, input, input_rate, time and parameter leaves. surfaces: expressions of the same
+/// leaves that are zero where the derivative has a kink or a jump: a step that one of them changes sign in is shortened to end
+/// there.
+///
+///   r_i = error_i / (near_zero_i + relative max(|y_i|, |y_i new|)),  accepted when  mean r_i^2 <= 1,
+///   next step = step * min(5, max(0.2, 0.9 (mean r^2)^(-1/(2 order))))               Hairer, Norsett & Wanner 1993, II.4
+///
+/// near_zero_i: the absolute tolerance where it is above 0, else relative * max(reached_i / 1000, 1e-9).
+Attempt attempt(Graph& graph, EmbeddedMethod const& method, std::span<NodeId const> derivative, std::span<NodeId const> surfaces);
+
+}  // namespace sysid
