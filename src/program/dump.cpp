@@ -117,8 +117,10 @@ class Dump {
       case Control::hunts:
         return "hunts";
       default:
-        return fmt::format("reached({})", at(names_.states, index - static_cast<int>(Control::reached)));
+        break;
     }
+    int const rest = index - static_cast<int>(Control::rest), states = static_cast<int>(names_.states.size());
+    return rest < states ? fmt::format("reached({})", at(names_.states, rest)) : fmt::format("side{}", rest - states);
   }
 
   std::string leaf_name(UniformLeaf const& leaf) const {

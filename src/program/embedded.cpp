@@ -3,6 +3,9 @@
 
 #include <limits>
 
+#include "expression/switching.hpp"
+#include "program/frozen.hpp"
+
 namespace sysid {
 
 EmbeddedMethod const& dopri5();  // dopri5.cpp
@@ -12,31 +15,36 @@ EmbeddedMethod const* find_embedded(std::string_view name) { return name == dopr
 namespace {
 
 // A kink this near the beginning or the end of a step, as a part of it, needs no step of its own.
-constexpr double near_an_end = 1e-6;
-constexpr double most_hunts = 6;
+constexpr double near_an_end = 1e-9;
+constexpr double most_hunts = 8;
 constexpr double no_aim = std::numeric_limits<double>::max();
 
 class Writer {
  public:
-  Writer(Graph& graph, std::span<NodeId const> derivative, std::span<NodeId const> surfaces)
-      : graph_(graph), derivative_(derivative), surfaces_(surfaces) {
+  Writer(Graph& graph, std::span<NodeId const> derivative) : graph_(graph) {
     for (std::size_t i = 0; i < derivative.size(); ++i) states_.push_back(graph.leaf(LeafKind::state, static_cast<int>(i)));
+    for (SwitchingSurface const& surface : switching_surfaces(graph, derivative))
+      if (!surface.at_integers) surfaces_.push_back(surface);
+    if (surfaces_.size() > most_surfaces) surfaces_.clear();
+    std::vector<NodeId> place_holders;
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) place_holders.push_back(stored_side(k));
+    derivative_ = frozen(graph, derivative, surfaces_, place_holders);
   }
 
   Attempt write(EmbeddedMethod const& method) {
     NodeId const zero = number(0), one = number(1);
     NodeId const position = control(Control::position), step = control(Control::step), aim = control(Control::aim),
                  hunts = control(Control::hunts);
-    NodeId const active = graph_.binary(Operation::less, position, one);
+    NodeId const active = less(position, one);
     NodeId const length = data(IntervalData::length);
-    NodeId const wanted = graph_.binary(Operation::minimum, step, aim);
     NodeId const left = graph_.subtract(one, position);
-    NodeId const part = graph_.divide(wanted, length);
+    NodeId const part = graph_.divide(graph_.binary(Operation::minimum, step, aim), length);
     NodeId const last = graph_.binary(Operation::less_equal, left, part);
     NodeId const taken = graph_.select(last, left, part);  // as a part of the interval
     NodeId const h = graph_.multiply(taken, length);
     NodeId const arrived = graph_.select(last, one, graph_.add(position, taken));
 
+    find_sides(position);
     std::vector<std::vector<NodeId>> slopes;
     for (std::size_t i = 0; i < method.c.size(); ++i)
       slopes.push_back(evaluate(derivative_, advanced(slopes, method.a[i], h), along(position, taken, method.c[i], arrived)));
@@ -48,41 +56,49 @@ class Writer {
     NodeId const root = graph_.power(graph_.binary(Operation::maximum, badness, number(1e-20)), number(-0.5 / method.order));
     NodeId const grown = graph_.binary(Operation::minimum, number(5),
                                        graph_.binary(Operation::maximum, number(0.2), graph_.multiply(number(0.9), root)));
-    NodeId const finite = graph_.binary(Operation::less, badness, number(1e300));
-    NodeId const proposed = graph_.multiply(h, graph_.select(finite, grown, number(0.2)));
+    NodeId const proposed = graph_.multiply(h, graph_.select(less(badness, number(1e300)), grown, number(0.2)));
 
-    // The first kink inside the step, as a part of it; 2: none.
-    NodeId const crossing = first_crossing(next, position, arrived);
-    NodeId const inside = both(graph_.binary(Operation::less, crossing, number(1 - near_an_end)),
-                               graph_.binary(Operation::less, hunts, number(most_hunts)));
-    NodeId const accepted = both(active, both(good, graph_.unary(Operation::negation, inside)));
-    NodeId const hunting = both(active, both(good, inside));
+    // The first surface that the step crosses, as a part of the step. At its beginning: the lane was on the wrong side and nothing
+    // moves; inside: the step is tried again up to there; at its end, or not: the step is taken.
+    Crossing const crossing = find_crossing(next, arrived);
+    NodeId const at_once = both(crossing.any, graph_.binary(Operation::less_equal, crossing.place, number(near_an_end)));
+    NodeId const inside = both(both(crossing.any, graph_.unary(Operation::negation, at_once)),
+                               both(less(crossing.place, number(1 - near_an_end)), less(hunts, number(most_hunts))));
+    NodeId const trusted = both(active, good);
+    NodeId const turning = both(trusted, at_once);
+    NodeId const hunting = both(trusted, inside);
+    NodeId const accepted =
+        both(trusted, graph_.unary(Operation::negation, graph_.binary(Operation::disjunction, at_once, inside)));
 
     Attempt result;
     for (std::size_t i = 0; i < states_.size(); ++i) result.states.push_back(graph_.select(accepted, next[i], states_[i]));
     // A step cut short by the end of the interval or by a kink says nothing against the longer one.
-    NodeId const cut = graph_.binary(Operation::less, h, step);
-    NodeId const kept = graph_.select(cut, graph_.binary(Operation::maximum, step, proposed), proposed);
-    NodeId const retried = graph_.select(hunting, step, proposed);
+    NodeId const kept = graph_.select(less(h, step), graph_.binary(Operation::maximum, step, proposed), proposed);
+    NodeId const retried = graph_.select(trusted, step, proposed);
+    // A little too far: on the other side for certain.
+    NodeId const aimed = graph_.multiply(graph_.multiply(crossing.place, number(1 + near_an_end / 2)), h);
     result.control = {graph_.select(accepted, arrived, position),
                       graph_.select(active, graph_.select(accepted, kept, retried), step),
-                      graph_.select(hunting, graph_.multiply(crossing, h), graph_.select(accepted, number(no_aim), aim)),
-                      graph_.select(hunting, graph_.add(hunts, one), graph_.select(accepted, zero, hunts))};
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-      NodeId const reached = control_of_state(i);
-      NodeId const size = graph_.unary(Operation::absolute, result.states[i]);
-      result.control.push_back(graph_.binary(Operation::maximum, reached, size));
-    }
+                      graph_.select(hunting, aimed, graph_.select(accepted, number(no_aim), aim)),
+                      graph_.select(graph_.binary(Operation::disjunction, hunting, turning), graph_.add(hunts, one),
+                                    graph_.select(accepted, zero, hunts))};
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      result.control.push_back(graph_.binary(Operation::maximum, reached(i), graph_.unary(Operation::absolute, result.states[i])));
+    NodeId const changes = graph_.binary(Operation::disjunction, turning, accepted);
+    for (std::size_t k = 0; k < surfaces_.size(); ++k)
+      result.control.push_back(graph_.select(
+          active, graph_.select(both(changes, crossing.each[k]), graph_.negate(sides_[k]), sides_[k]), stored_side(k)));
     return result;
   }
 
  private:
   NodeId number(double value) { return graph_.constant(value); }
   NodeId control(Control which) { return graph_.leaf(LeafKind::control, static_cast<int>(which)); }
-  NodeId control_of_state(std::size_t i) {
-    return graph_.leaf(LeafKind::control, static_cast<int>(Control::reached) + static_cast<int>(i));
-  }
+  NodeId rest(std::size_t i) { return graph_.leaf(LeafKind::control, static_cast<int>(Control::rest) + static_cast<int>(i)); }
+  NodeId reached(std::size_t state) { return rest(state); }
+  NodeId stored_side(std::size_t surface) { return rest(states_.size() + surface); }
   NodeId data(IntervalData which) { return graph_.leaf(LeafKind::interval, static_cast<int>(which)); }
+  NodeId less(NodeId a, NodeId b) { return graph_.binary(Operation::less, a, b); }
   NodeId both(NodeId a, NodeId b) { return graph_.binary(Operation::conjunction, a, b); }
 
   // The position c of the way through the step.
@@ -116,9 +132,8 @@ class Writer {
     NodeId const relative = data(IntervalData::relative), absolute = data(IntervalData::absolute);
     NodeId sum = number(0);
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      NodeId const reached = graph_.binary(Operation::maximum, graph_.multiply(number(1e-3), control_of_state(i)), number(1e-9));
-      NodeId const near_zero =
-          graph_.select(graph_.binary(Operation::less, number(0), absolute), absolute, graph_.multiply(relative, reached));
+      NodeId const typical = graph_.binary(Operation::maximum, graph_.multiply(number(1e-3), reached(i)), number(1e-9));
+      NodeId const near_zero = graph_.select(less(number(0), absolute), absolute, graph_.multiply(relative, typical));
       NodeId const size = graph_.binary(Operation::maximum, graph_.unary(Operation::absolute, states_[i]),
                                         graph_.unary(Operation::absolute, next[i]));
       NodeId const ratio = graph_.divide(errors[i], graph_.add(near_zero, graph_.multiply(relative, size)));
@@ -127,17 +142,38 @@ class Writer {
     return graph_.multiply(number(1.0 / static_cast<double>(std::max<std::size_t>(1, errors.size()))), sum);
   }
 
-  NodeId first_crossing(std::vector<NodeId> const& next, NodeId position, NodeId arrived) {
-    NodeId first = number(2);
-    if (surfaces_.empty()) return first;
-    std::vector<NodeId> const before = evaluate(surfaces_, states_, position), after = evaluate(surfaces_, next, arrived);
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      NodeId const changes = graph_.binary(Operation::less, graph_.multiply(before[k], after[k]), number(0));
-      NodeId const place = graph_.divide(before[k], graph_.subtract(before[k], after[k]));
-      NodeId const counts = both(changes, graph_.binary(Operation::less, number(near_an_end), place));
-      first = graph_.binary(Operation::minimum, first, graph_.select(counts, place, number(2)));
+  struct Crossing {
+    NodeId any, place;
+    std::vector<NodeId> each;
+  };
+
+  // At the beginning of an interval, where an input may have jumped, a lane is where its values say; else where it was left.
+  void find_sides(NodeId position) {
+    std::vector<NodeId> values;
+    for (SwitchingSurface const& surface : surfaces_) values.push_back(surface.value);
+    before_ = evaluate(values, states_, position);
+    NodeId const beginning =
+        both(graph_.binary(Operation::less_equal, position, number(0)), less(control(Control::hunts), number(1)));
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      NodeId const decided = both(beginning, less(number(0), graph_.unary(Operation::absolute, before_[k])));
+      sides_.push_back(graph_.select(decided, graph_.unary(Operation::sign, before_[k]), stored_side(k)));
     }
-    return first;
+  }
+
+  Crossing find_crossing(std::vector<NodeId> const& next, NodeId arrived) {
+    Crossing crossing{number(0), number(2), {}};
+    std::vector<NodeId> values;
+    for (SwitchingSurface const& surface : surfaces_) values.push_back(surface.value);
+    std::vector<NodeId> const after = evaluate(values, next, arrived);
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      NodeId const begin = graph_.multiply(sides_[k], before_[k]), end = graph_.multiply(sides_[k], after[k]);
+      NodeId const crossed = less(end, number(0));
+      NodeId const place = graph_.select(less(number(0), begin), graph_.divide(begin, graph_.subtract(begin, end)), number(0));
+      crossing.each.push_back(crossed);
+      crossing.any = graph_.binary(Operation::disjunction, crossing.any, crossed);
+      crossing.place = graph_.binary(Operation::minimum, crossing.place, graph_.select(crossed, place, number(2)));
+    }
+    return crossing;
   }
 
   // Expressions at other states and another position in the interval.
@@ -153,6 +189,9 @@ class Writer {
           return graph_.divide(polynomial(leaf.index, position, true), data(IntervalData::length));
         case LeafKind::time:
           return graph_.add(data(IntervalData::begin), graph_.multiply(data(IntervalData::length), position));
+        case LeafKind::control:  // place holders of sides
+          return leaf.index >= first_side() ? std::optional(sides_[static_cast<std::size_t>(leaf.index - first_side())])
+                                            : std::nullopt;
         default:
           return std::nullopt;
       }
@@ -170,15 +209,18 @@ class Writer {
     return sum;
   }
 
+  int first_side() const { return static_cast<int>(Control::rest) + static_cast<int>(states_.size()); }
+
   Graph& graph_;
-  std::span<NodeId const> derivative_, surfaces_;
-  std::vector<NodeId> states_;
+  std::vector<SwitchingSurface> surfaces_;
+  std::vector<NodeId> states_, derivative_;
+  std::vector<NodeId> before_, sides_;  // of the surfaces, where the attempt begins
 };
 
 }  // namespace
 
-Attempt attempt(Graph& graph, EmbeddedMethod const& method, std::span<NodeId const> derivative, std::span<NodeId const> surfaces) {
-  return Writer(graph, derivative, surfaces).write(method);
+Attempt attempt(Graph& graph, EmbeddedMethod const& method, std::span<NodeId const> derivative) {
+  return Writer(graph, derivative).write(method);
 }
 
 }  // namespace sysid

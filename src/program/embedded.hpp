@@ -25,33 +25,36 @@ EmbeddedMethod const* find_embedded(std::string_view name);
 
 /// The inputs' polynomials have at most this degree.
 constexpr int largest_input_degree = 7;
+constexpr int most_surfaces = 16;
 
-/// Registers of step control, one value per lane: leaves of kind `control`. `reached` begins the largest magnitudes of the states.
-enum class Control { position, step, aim, hunts, reached };
+/// Registers of step control, one value per lane: leaves of kind `control`. `rest` begins the largest magnitudes that the states
+/// have reached, one each, then the sides of the switching surfaces.
+enum class Control { position, step, aim, hunts, rest };
 /// What a lane's attempts read of the data, the same for all lanes: leaves of kind `interval`.
 enum class IntervalData { begin, length, relative, absolute };
-
-constexpr int control_registers(int states) { return static_cast<int>(Control::reached) + states; }
 
 /// The values after one attempt.
 ///
 ///   position   of the lane in the interval, 0 to 1; 1: arrived, nothing changes any more
 ///   step       [s] that the next step would like to take
-///   aim        [s] a shorter step that ends at a kink; infinite: none
+///   aim        [s] a shorter step that ends at a kink; the largest number: none
 ///   hunts      attempts made to end this step at a kink
+///   sides      -1 or 1: the side of each switching surface of the derivative that the lane is on
 struct Attempt {
   std::vector<NodeId> states;
-  std::vector<NodeId> control;  // in the order of Control, `reached` one per state
+  std::vector<NodeId> control;  // in the order of Control
 };
 
-/// One attempt. derivative: expressions of state, input, input_rate, time and parameter leaves. surfaces: expressions of the same
-/// leaves that are zero where the derivative has a kink or a jump: a step that one of them changes sign in is shortened to end
-/// there.
+/// One attempt. derivative: expressions of state, input, input_rate, time and parameter leaves.
+///
+/// Within a step every abs, sign, min, max and comparison is held on the side that the lane is on, so the step is smooth. A step
+/// that would end on another side is shortened until it ends there, and the side changes with it. More than `most_surfaces` of them
+/// are left to the error estimate. A solution that cannot leave a surface (dry friction that sticks) makes no progress there.
 ///
 ///   r_i = error_i / (near_zero_i + relative max(|y_i|, |y_i new|)),  accepted when  mean r_i^2 <= 1,
 ///   next step = step * min(5, max(0.2, 0.9 (mean r^2)^(-1/(2 order))))               Hairer, Norsett & Wanner 1993, II.4
 ///
 /// near_zero_i: the absolute tolerance where it is above 0, else relative * max(reached_i / 1000, 1e-9).
-Attempt attempt(Graph& graph, EmbeddedMethod const& method, std::span<NodeId const> derivative, std::span<NodeId const> surfaces);
+Attempt attempt(Graph& graph, EmbeddedMethod const& method, std::span<NodeId const> derivative);
 
 }  // namespace sysid

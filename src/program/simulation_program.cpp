@@ -82,10 +82,10 @@ class Compilation {
       return;
     }
     if (EmbeddedMethod const* method = find_embedded(program_.source.integrator)) {
-      Attempt const values = attempt(program_.graph, *method, program_.source.derivative, program_.source.surfaces);
+      Attempt const values = attempt(program_.graph, *method, program_.source.derivative);
       program_.next = values.states;
       control_ = values.control;
-      program_.registers.control = control_registers(program_.source.states());
+      program_.registers.control = static_cast<int>(control_.size());
       return;
     }
     IntegratorRow const* integrator = find_integrator(program_.source.integrator);

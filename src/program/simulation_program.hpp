@@ -36,7 +36,6 @@ struct SimulationSource {
   std::vector<NodeId> constraints;  // one per algebraic state, which come last: expressions that are zero
   std::vector<ChannelSource> channels;
   std::vector<NodeId> records;     // written out at every sample: expressions of the same leaves (measured as well)
-  std::vector<NodeId> surfaces;  // zero where a derivative has a kink: expressions of the same leaves as the derivatives
   std::string integrator = "rk4";  // a solver's name
 
   int states() const { return static_cast<int>(derivative.size() + constraints.size()); }

@@ -25,7 +25,10 @@ class AdaptiveLanes : public Stepper {
     for (int w = 0; w < file_.executor.width; ++w) {
       row(Control::step)[w] = first;
       row(Control::hunts)[w] = 0;
-      for (int i = 0; i < states.rows(); ++i) control_(static_cast<int>(Control::reached) + i, w) = std::fabs(states(i, w));
+      for (int r = static_cast<int>(Control::rest); r < control_.rows(); ++r) {
+        int const state = r - static_cast<int>(Control::rest);
+        control_(r, w) = state < states.rows() ? std::fabs(states(state, w)) : 1;  // sides are looked up before the first step
+      }
     }
   }
 

@@ -57,14 +57,13 @@ double error(double relative, double interval) {
 
 /// y'' = -sign(y) from (1/2, 0): parabolas that meet y = 0 at t = 1, 3, 5, ... with |y'| = 1; period 4. `aligned`: the kink is
 /// known.
-double parabola_error(bool aligned, double relative) {
+double parabola_error(double relative) {
   SimulationSource source;
   Graph& g = source.graph;
   NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1);
   source.initial = {g.constant(0.5), g.constant(0)};
   source.derivative = {v, g.negate(g.unary(Operation::sign, y))};
   source.records = {y, v};
-  if (aligned) source.surfaces = {y};
   source.integrator = "dopri5";
   auto const program = std::make_shared<SimulationProgram const>(compile(std::move(source)));
   Experiment const record = testing::experiment(testing::uniform_times(81, 0.25), {}, {});
@@ -89,10 +88,10 @@ TEST_CASE("the error follows the tolerance, whatever the sampling") {
   CHECK(error(1e-9, 1.0) < error(1e-6, 1.0) / 100);
 }
 
-TEST_CASE("a step ends at a kink that the program knows") {
-  double const aligned = parabola_error(true, 1e-9), blind = parabola_error(false, 1e-9);
-  MESSAGE("error after five periods: ", aligned, " aligned, ", blind, " blind");
-  CHECK(aligned < 1e-8);
+TEST_CASE("a step ends at a kink") {
+  // Parabolas are exact, and ten kinks are met within 1e-9 of a step of at most 0.25, where the slope jumps by 2. Without alignment
+  // the error is 1.4e-6.
+  CHECK(parabola_error(1e-9) < 1e-8);
 }
 
 TEST_CASE("an adaptive lane depends on its own parameters alone") {
