@@ -51,8 +51,10 @@ class Compilation {
     program_.graph = source.graph;
     program_.registers.parameters = source.parameters;
     program_.registers.states = source.states();
-    if (source.map || find_integrator(source.integrator) != nullptr) {
-      if (!source.constraints.empty()) throw InternalError("a fixed-step method for a model with algebraic states");
+    bool const embedded = find_embedded(source.integrator) != nullptr;
+    if (embedded) program_.equations = compile_equation_kernels(source);  // where a failed solve is looked into
+    if (source.map || embedded || find_integrator(source.integrator) != nullptr) {
+      if (!source.constraints.empty()) throw InternalError("an explicit method for a model with algebraic states");
       expand_step();
       graph_ = program_.graph;
       compile_step();

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "program/embedded.hpp"
+#include "simulate/lane_equations.hpp"
 
 namespace sysid {
 namespace {
@@ -16,10 +18,10 @@ class AdaptiveLanes : public Stepper {
   explicit AdaptiveLanes(LaneFile const& file)
       : file_(file),
         control_(file.rows(file.program.registers.first_control(), file.program.registers.control)),
-        failure_(static_cast<std::size_t>(file.executor.width), FailureClass::non_finite) {}
+        failure_(static_cast<std::size_t>(file.executor.width)) {}
 
   void start() override {
-    std::fill(failure_.begin(), failure_.end(), FailureClass::non_finite);
+    std::fill(failure_.begin(), failure_.end(), std::nullopt);
     double const first = file_.schedule.samples() > 1 ? file_.schedule.time(1) - file_.schedule.time(0) : 1;
     Lanes const states = file_.states();
     for (int w = 0; w < file_.executor.width; ++w) {
@@ -48,12 +50,12 @@ class AdaptiveLanes : public Stepper {
       run(*file_.program.step.linked, file_.executor, file_.file);
     for (int w = 0; w < file_.executor.width; ++w) {
       if (position[w] >= 1) continue;
-      failure_[static_cast<std::size_t>(w)] = FailureClass::step_limit;
+      failure_[static_cast<std::size_t>(w)] = look_into(sample, w);
       for (int i = 0; i < states.rows(); ++i) states(i, w) = std::numeric_limits<double>::quiet_NaN();
     }
   }
 
-  FailureClass failure(int lane) const override { return failure_[static_cast<std::size_t>(lane)]; }
+  std::optional<StepFailure> failure(int lane) const override { return failure_[static_cast<std::size_t>(lane)]; }
 
  private:
   double* row(Control which) { return &control_(static_cast<int>(which), 0); }
@@ -61,9 +63,30 @@ class AdaptiveLanes : public Stepper {
     return std::any_of(position, position + file_.executor.width, [](double p) { return p < 1; });
   }
 
+  // Where a lane got stuck: what is not finite there, else the equation of the state that moves fastest for its size.
+  StepFailure look_into(int sample, int lane) {
+    LaneEquations equations(file_.program, file_.schedule);
+    equations.set_parameters(file_.parameters(), lane);
+    equations.set_interval(sample);
+    double const begin = equations.time(sample), end = equations.time(sample + 1);
+    double const time = begin + row(Control::position)[lane] * (end - begin);
+    std::vector<double> states, rates(static_cast<std::size_t>(equations.states()));
+    for (int i = 0; i < file_.states().rows(); ++i) states.push_back(file_.states()(i, lane));
+    if (auto const node = equations.not_finite(time, states)) return {FailureClass::non_finite, time, node};
+    equations.rates(time, states.data(), rates.data());
+    int fastest = 0;
+    double most = 0;
+    for (int i = 0; i < static_cast<int>(rates.size()); ++i) {
+      double const reached = control_(static_cast<int>(Control::rest) + i, lane);
+      double const speed = std::fabs(rates[static_cast<std::size_t>(i)]) / std::max(reached, 1e-300);
+      if (speed > most) most = speed, fastest = i;
+    }
+    return {FailureClass::step_limit, time, equations.equation(fastest)};
+  }
+
   LaneFile file_;
   Lanes control_;
-  std::vector<FailureClass> failure_;
+  std::vector<std::optional<StepFailure>> failure_;
 };
 
 }  // namespace
