@@ -83,7 +83,7 @@ struct SimulationProgram {
   Section start;     // parameters, hoisted values, data of the first sample -> initial states
   Section carry;     // what is to be remembered of a sample -> the last states
   Section step;      // one integrator step, one attempt at one, or the map from sample to sample; empty for SUNDIALS' solvers
-  EquationKernels equations;  // for those, and to look into failed solves of adaptive methods
+  EquationKernels equations;     // for those, and to look into failed solves of adaptive methods
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
   Section record;                // one sample into the record registers
   Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums
