@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sysid {
 namespace {
@@ -41,10 +42,10 @@ bool AlgebraicStates::factor() {
 }
 
 void AlgebraicStates::back_substitute(std::vector<double>& x) const {
-  for (std::size_t k = 0; k < count_; ++k) {
-    std::swap(x[k], x[pivots_[k]]);
+  // `factor` exchanges whole rows, multipliers included, so that the right-hand side is put in its final order first.
+  for (std::size_t k = 0; k < count_; ++k) std::swap(x[k], x[pivots_[k]]);
+  for (std::size_t k = 0; k < count_; ++k)
     for (std::size_t i = k + 1; i < count_; ++i) x[i] -= matrix_[k * count_ + i] * x[k];
-  }
   for (std::size_t k = count_; k-- > 0;) {
     x[k] /= matrix_[k * count_ + k];
     for (std::size_t i = 0; i < k; ++i) x[i] -= matrix_[k * count_ + i] * x[k];
@@ -92,9 +93,13 @@ std::optional<StepFailure> AlgebraicStates::solve(double time, std::span<double>
 
 std::optional<StepFailure> AlgebraicStates::iterate(double time, std::span<double> states) {
   std::vector<double> step, next, trial(states.begin(), states.end());
+  double previous = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (!correction(time, states.data(), true, step)) return failed(time, states);
     double const size = weighted(step, states.data());
+    // Within the tolerances Newton's method converges quadratically; what does not shrink any more is rounding.
+    if (size <= 1 && size > previous / 2) return std::nullopt;
+    previous = size;
     double part = 1;
     bool smaller = false;
     for (int halving = 0; halving <= most_halvings && !smaller; ++halving, part /= 2) {

@@ -15,7 +15,7 @@ namespace sysid {
 ///   smaller
 ///
 /// (the natural monotonicity test: it does not depend on how equations are scaled). Ends when a full correction is below
-/// a hundredth of what the solver's tolerances allow, or below what they allow and not to be made smaller: rounding.
+/// a hundredth of what the solver's tolerances allow, or below what they allow and not halved by an iteration: rounding.
 class AlgebraicStates {
  public:
   AlgebraicStates(LaneEquations& equations, SolverSettings const& solver);

@@ -67,9 +67,10 @@ class CvodeLane : public SundialsLane {
   }
 
   StepFailure explain(int flag, double time) {
-    double internal = time;
+    double internal = time, last_step = 0;
     CVodeGetCurrentTime(memory_, &internal);
-    if (blocked(internal)) return not_finite();
+    CVodeGetLastStep(memory_, &last_step);
+    if (blocked(internal, last_step)) return not_finite();
     switch (flag) {
       case CV_FIRST_RHSFUNC_ERR:
       case CV_REPTD_RHSFUNC_ERR:

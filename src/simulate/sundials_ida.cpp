@@ -99,9 +99,10 @@ class IdaLane : public SundialsLane {
 
   StepFailure explain(int flag, double time) {
     IDAGetEstLocalErrors(memory_, errors_.get());
-    double internal = time;
+    double internal = time, last_step = 0;
     IDAGetCurrentTime(memory_, &internal);
-    if (blocked(internal)) return not_finite();
+    IDAGetLastStep(memory_, &last_step);
+    if (blocked(internal, last_step)) return not_finite();
     switch (flag) {
       case IDA_REP_RES_ERR:
       case IDA_RES_FAIL:

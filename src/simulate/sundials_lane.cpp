@@ -42,6 +42,11 @@ void SundialsLane::reset_reached() {
   for (std::size_t i = 0; i < count(); ++i) reached_[i] = std::abs(data(states_)[i]);
 }
 
+bool SundialsLane::blocked(double reached, double last_step) const {
+  double const resolved = 4 * std::numeric_limits<double>::epsilon() * std::abs(reached);
+  return bad_time_ >= reached - (std::abs(last_step) < resolved ? solver_.steps * resolved : 0);
+}
+
 StepFailure SundialsLane::not_finite() {
   return {FailureClass::non_finite, bad_time_, equations_.not_finite(bad_time_, bad_states_)};
 }

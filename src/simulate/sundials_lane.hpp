@@ -41,8 +41,9 @@ class SundialsLane : public LaneSolver {
   /// `weights` starts again from the states as they are.
   void reset_reached();
 
-  /// Whether it is a value that is not finite which keeps the solver from going beyond `reached`.
-  bool blocked(double reached) const { return bad_time_ >= reached; }
+  /// Whether it is a value that is not finite which keeps the solver from going beyond `reached`; last_step: its last step. The
+  /// value lies ahead, or the solver stands still beside it: in steps that the clock does not resolve it spent its budget.
+  bool blocked(double reached, double last_step) const;
   StepFailure not_finite();
   /// An iteration or error control that gave up: at the state whose `errors`, weighted, are largest.
   StepFailure at_worst_state(FailureClass kind, double time, N_Vector errors) const;
