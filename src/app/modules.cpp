@@ -13,6 +13,12 @@
 namespace sysid {
 namespace {
 
+LibraryModule const* in_library(std::string const& name) {
+  for (LibraryModule const& each : library_modules())
+    if (each.name == name) return &each;
+  return nullptr;
+}
+
 class Loader {
  public:
   Loader(Source& source, Diagnostics& diagnostics)
@@ -28,7 +34,10 @@ class Loader {
 
  private:
   void load(ast::Name const& name, bool from_library) {
-    if (auto const begin = std::find(path_.begin() + (from_library ? 1 : 0), path_.end(), name.text); begin != path_.end()) {
+    // A file called damping.sysid that uses damping means the library's.
+    bool const own_name = path_.size() == 1 && name.text == path_.front() && in_library(name.text) != nullptr;
+    auto const begin = std::find(path_.begin() + (from_library || own_name ? 1 : 0), path_.end(), name.text);
+    if (begin != path_.end()) {
       errors::Names loop(begin, path_.end());
       loop.push_back(name.text);
       diagnostics_.add(errors::module_cycle(name.span, loop));
@@ -37,12 +46,11 @@ class Loader {
     if (!seen_.insert(name.text).second) return;
     std::string file = (folder_ / (name.text + ".sysid")).string();
     std::optional<std::string> text;
-    if (!from_library && std::filesystem::exists(file)) text = read_file(file);
-    bool const in_library = !text.has_value();
-    if (in_library) {
-      auto const module = std::find_if(library_modules().begin(), library_modules().end(),
-                                       [&](LibraryModule const& each) { return each.name == name.text; });
-      if (module == library_modules().end()) {
+    if (!from_library && !own_name && std::filesystem::exists(file)) text = read_file(file);
+    bool const of_library = !text.has_value();
+    if (of_library) {
+      LibraryModule const* module = in_library(name.text);
+      if (module == nullptr) {
         diagnostics_.add(errors::module_not_found(name, folder_.empty() ? "this folder" : "`" + folder_.string() + "`", known()));
         return;
       }
@@ -55,9 +63,9 @@ class Loader {
     auto tree = parse(padded, diagnostics_);
     if (!tree) return;
     path_.push_back(name.text);
-    load(*tree, in_library);
+    load(*tree, of_library);
     path_.pop_back();
-    modules_.push_back({name.text, std::move(*tree), in_library});
+    modules_.push_back({name.text, std::move(*tree), of_library});
   }
 
   errors::Names known() const {

@@ -240,10 +240,10 @@ TEST_CASE("quoted C++ stands in the file it is said to be from") {
 }
 
 TEST_CASE("the reference names every distribution, function, back end, setting and statement") {
-  std::string const text = read_file(root / "docs/language.md");
+  std::string const text = read_file(root / "docs/reference.md");
   auto const named = [&](std::string_view name, std::string const& kind) {
     std::regex const word("[^A-Za-z0-9_]" + std::string(name) + "[^A-Za-z0-9_]");
-    CHECK_MESSAGE(std::regex_search(text, word), "docs/language.md does not name the " << kind << " " << name);
+    CHECK_MESSAGE(std::regex_search(text, word), "docs/reference.md does not name the " << kind << " " << name);
   };
   for (DistributionRow const& row : distributions()) {
     named(row.name, "distribution");
