@@ -74,6 +74,12 @@ class Failure {
             found_ - first_};
   }
 
+  /// At a word that begins an item: the name behind it is what is missing.
+  Gap name_missing() const {
+    Gap gap = this->gap();
+    return {wanted::name, next(), gap.statement, gap.at + 1};
+  }
+
   Span span() const {
     if (!at_end_) return found().span;
     std::uint32_t const end = found_ == 0 ? 0 : tokens_[found_ - 1].span.end;
@@ -155,7 +161,7 @@ class Failure {
     if (!is_word(found())) return std::nullopt;
     if (wanted_ == wanted::data_statement) return errors::unknown_statement(found(), "a data block", words::data_statements);
     if (wanted_ == wanted::item && words::contains(words::items, found().text) && next() != nullptr)
-      return errors::expected(next()->span, wanted::name, fmt::format("`{}`", next()->text));
+      return errors::expected(next()->span, wanted::name, fmt::format("`{}`", next()->text), hint(name_missing()));
     if (wanted_ == wanted::item) return errors::unknown_item(found());
     if (wanted_ == wanted::verb) return errors::unknown_verb(found());
     return std::nullopt;

@@ -79,9 +79,15 @@ class Walk {
 
   bool opens_unit() const {
     if (previous().kind != TokenKind::word || previous().span.end != token().span.begin) return true;
+    if (counts()) return false;
     // Directly behind a name: an index, but for the names that are being declared and for columns.
     if (!is_declaration(tokens_) || !inside_.empty() || !words::contains(declares_units, tokens_[0].text)) return false;
     return !equals_seen_ || tokens_[0].is("input") || tokens_[0].is("measure");
+  }
+
+  /// `[1]`, `[1, 2]`: an index wherever it stands, since no unit is a bare number behind a name.
+  bool counts() const {
+    return at_ + 2 < tokens_.size() && tokens_[at_ + 1].kind == TokenKind::number && is_symbol(tokens_[at_ + 2], "],");
   }
 
   Inside opened() const {

@@ -40,6 +40,13 @@ Texts texts_of(Source const& source, std::string const& model) {
   return texts;
 }
 
+/// What is said of a name; of an element, `m[1]`, what is said of all.
+std::string text_of(std::map<std::string, std::string> const& texts, std::string const& name) {
+  auto place = texts.find(name);
+  if (place == texts.end()) place = texts.find(name.substr(0, name.find('[')));
+  return place == texts.end() ? std::string() : place->second;
+}
+
 }  // namespace
 
 ModelPage describe_structure(Source const& source, Model const& model) {
@@ -60,13 +67,14 @@ ModelPage describe_structure(Source const& source, Model const& model) {
     page.states.push_back({state->name, state->unit_text(), fmt::format("order {}", order)});
     page.unknowns.push_back(state->name + std::string(static_cast<std::size_t>(order), '\''));
   }
+  for (Unchecked const& each : model.unchecked) page.unchecked.push_back(fmt::format("`{}`: {}", each.what, each.why));
   for (Quantity const& input : model.inputs) page.inputs.push_back({input.name, input.unit_text(), {}});
   for (Channel const& channel : model.channels)
-    page.channels.push_back({channel.name, channel.unit_text(), texts.channels[channel.name]});
+    page.channels.push_back({channel.name, channel.unit_text(), text_of(texts.channels, channel.name)});
   for (Parameter const& parameter : model.parameters)
-    page.parameters.push_back({parameter.name, parameter.unit_text(), texts.parameters[parameter.name]});
+    page.parameters.push_back({parameter.name, parameter.unit_text(), text_of(texts.parameters, parameter.name)});
   for (Derived const& derived : model.derived)
-    page.derived.push_back({derived.name, derived.unit_text(), texts.derived[derived.name]});
+    page.derived.push_back({derived.name, derived.unit_text(), text_of(texts.derived, derived.name)});
   return page;
 }
 

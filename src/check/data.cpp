@@ -158,7 +158,24 @@ void check_between_samples(DataBlock const& block, Model const* model, Diagnosti
   }
 }
 
-void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics) {
+namespace {
+
+/// A block stands in several tasks; what is wrong with it is said once.
+void add_once(Diagnostics& diagnostics, Diagnostic diagnostic) {
+  auto const same = [&](Diagnostic const& other) {
+    return other.code == diagnostic.code && other.primary && other.primary->span == diagnostic.primary->span;
+  };
+  if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(std::move(diagnostic));
+}
+
+bool has_channel(Model const& model, std::string const& name) {
+  return std::any_of(model.channels.begin(), model.channels.end(), [&](Channel const& each) { return each.name == name; });
+}
+
+}  // namespace
+
+void check_binding(DataBlock const& block, Model const& model, std::span<Model const> all_models, Span use,
+                   Diagnostics& diagnostics) {
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
     if (!column.unit || !declared.unit) return;
     std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
@@ -192,9 +209,16 @@ void check_binding(DataBlock const& block, Model const& model, Span use, Diagnos
   for (DataMeasureUse const& measured : block.measured) {
     auto const channel =
         std::find_if(model.channels.begin(), model.channels.end(), [&](auto const& each) { return each.name == measured.channel; });
-    if (channel == model.channels.end()) continue;  // a block may serve several models
+    // A block may serve several models.
+    bool const of_another =
+        channel == model.channels.end() &&
+        std::any_of(all_models.begin(), all_models.end(), [&](Model const& other) { return has_channel(other, measured.channel); });
+    if (of_another) continue;
     any = true;
-    compare_units(measured, *channel, "column `" + measured.column + "`");
+    if (channel != model.channels.end())
+      compare_units(measured, *channel, "column `" + measured.column + "`");
+    else
+      add_once(diagnostics, errors::unknown_channel(measured.channel_span, measured.channel, model.name, channels));
   }
   if (any) return;
   if (block.measured.empty()) {
@@ -211,13 +235,6 @@ std::vector<std::optional<double>> check_constants(DataBlock const& block, Model
   auto const place_in = [](Model const& any, std::string const& name) {
     return std::find_if(any.parameters.begin(), any.parameters.end(), [&](Parameter const& each) { return each.name == name; });
   };
-  // A block stands in several tasks; what is wrong with it is said once.
-  auto const add = [&](Diagnostic diagnostic) {
-    auto const same = [&](Diagnostic const& other) {
-      return other.code == diagnostic.code && other.primary && other.primary->span == diagnostic.primary->span;
-    };
-    if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(std::move(diagnostic));
-  };
   bool good = true;
   for (DataConstantUse const& constant : block.constants) {
     auto const place = place_in(model, constant.parameter);
@@ -229,13 +246,14 @@ std::vector<std::optional<double>> check_constants(DataBlock const& block, Model
       std::vector<std::string> known;
       for (Parameter const& parameter : model.parameters)
         if (parameter.per_experiment) known.push_back(parameter.name);
-      add(errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
+      add_once(diagnostics, errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
       good = false;
     } else if (!place->per_experiment) {
-      add(errors::constant_of_shared(constant.span, place->span, place->name));
+      add_once(diagnostics, errors::constant_of_shared(constant.span, place->span, place->name));
       good = false;
     } else if (constant.unit && place->unit && constant.unit->dimension != place->unit->dimension) {
-      add(errors::number_of_other_kind(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit));
+      add_once(diagnostics, errors::number_of_other_kind(constant.value_span, "the constant `" + place->name + "`", *constant.unit,
+                                                         *place->unit));
       good = false;
     } else {
       values[static_cast<std::size_t>(place - model.parameters.begin())] =

@@ -17,9 +17,10 @@ std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnost
 /// Without a model: as continuous time does.
 void check_between_samples(DataBlock const& block, Model const* model, Diagnostics& diagnostics);
 
-/// Whether the block serves a model: every input bound, some channel measured, no unknown channel, units of one kind, input
-/// derivatives only where they exist. use: the place of the task that brings the two together.
-void check_binding(DataBlock const& block, Model const& model, Span use, Diagnostics& diagnostics);
+/// Whether the block serves a model: every input bound, some channel measured, none that no model of the file has, units of one
+/// kind, input derivatives only where they exist. use: the place of the task that brings the two together.
+void check_binding(DataBlock const& block, Model const& model, std::span<Model const> all_models, Span use,
+                   Diagnostics& diagnostics);
 
 /// The constants of a block as values of a model's parameters, SI, [parameters]; absent where it fixes none. A constant fixes a
 /// per-experiment parameter; one that no model of the file has is an error, and so is a per-experiment parameter that has neither

@@ -428,7 +428,7 @@ Diagnostic option_range(Span span, std::string const& option, double given, doub
   return error("E6005", span, fmt::format("`{}` must {}, here it is {}", option, range, given), "correct the number");
 }
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {
-  return error("E6006", span, fmt::format("`{}` cannot be `{}`", option, given),
+  return error("E6006", span, fmt::format("`{}` cannot be {}", option, given.empty() ? "this" : "`" + given + "`"),
                guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or"))));
 }
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {

@@ -77,7 +77,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
       auto const word = as_word(argument.value);
       auto const rule = std::find(rules.begin(), rules.end(), word.value_or(""));
       if (rule == rules.end())
-        diagnostics.add(errors::option_choice(argument.value.span, name, word.value_or("this"), rules));
+        diagnostics.add(errors::option_choice(argument.value.span, name, word.value_or(""), rules));
       else
         result.rule = static_cast<InputRule>(rule - rules.begin());
     } else {

@@ -461,6 +461,9 @@ class ModelChecker {
                 [&](Node const& node) { return is_leaf(node, LeafKind::unknown) && node.index == static_cast<int>(j); }) &&
             (states_[j].second.order > 0 || scope_.samples().discrete || may_be_algebraic(states_[j].first, states_[j].second)))
           unknowns[i].push_back(j);
+    // A state whose derivative stands in an equation comes before one that an equation may be left for.
+    for (auto& each : unknowns)
+      std::stable_partition(each.begin(), each.end(), [&](std::size_t j) { return states_[j].second.order > 0; });
     // Kuhn's matching of equations to states, in the user's order, so that the surplus equation is the last one that finds no
     // place.
     std::vector<int> equation_of(n, -1);

@@ -57,7 +57,7 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
       if (word == "yes" || word == "no")
         values.set(name, word == "yes");
       else
-        diagnostics_.add(errors::option_choice(argument.value.span, name, word.value_or("this"), {"yes", "no"}));
+        diagnostics_.add(errors::option_choice(argument.value.span, name, word.value_or(""), {"yes", "no"}));
       break;
     }
     case SettingKind::word: {
@@ -68,7 +68,7 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
       if (word && std::find(choices.begin(), choices.end(), *word) != choices.end())
         values.set(name, *word);
       else
-        diagnostics_.add(errors::option_choice(argument.value.span, name, word.value_or("this"), choices));
+        diagnostics_.add(errors::option_choice(argument.value.span, name, word.value_or(""), choices));
       break;
     }
   }
@@ -137,7 +137,7 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
   } else if (word == "estimated") {
     rule = {StartRule::Kind::estimated, default_start_rows};
   } else {
-    diagnostics_.add(errors::option_choice(option.value.span, "start", word.value_or("this"), choices));
+    diagnostics_.add(errors::option_choice(option.value.span, "start", word.value_or(""), choices));
   }
 }
 
@@ -153,7 +153,7 @@ bool OptionReader::solver(ast::Option const& option, SolverSettings& place) {
     return true;
   }
   ast::Call const* call = as_call(option.value);
-  std::string const name = call != nullptr ? call->function.text : as_word(option.value).value_or("this");
+  std::string const name = call != nullptr ? call->function.text : as_word(option.value).value_or("");
   SolverRow const* row = find_solver(name);
   if (row == nullptr) {
     std::vector<std::string> names;

@@ -268,15 +268,22 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
   if (is_past_call(call)) return past_call(call);
   std::string const& name = call.function.text;
   bool good = true;
+  bool counted = true;  // unless a list of lags is wrong, or a range stands for several arguments
+  std::size_t count = 0;
   std::vector<UnitOperand> arguments;
   for (ast::Argument const& argument : call.arguments) {
     if (auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
         inner != nullptr && !argument.name && (*inner)->function.text == "lags" && is_past_call(**inner)) {
       auto const lags = lag_calls(**inner);
       good = good && lags;
+      counted = counted && lags;
+      count += lags ? lags->size() : 0;
       for (std::size_t i = 0; lags && i < lags->size(); ++i) arguments.push_back({settled((*lags)[i]), &argument.value});
       continue;
     }
+    auto const* range = std::get_if<ast::Box<ast::Binary>>(&argument.value.node);
+    counted = counted && !(range != nullptr && (*range)->symbol == "..");
+    ++count;
     if (argument.name) {
       diagnostics_.add(errors::named_argument_of_function(*argument.name, name));
       good = false;
@@ -321,14 +328,13 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     diagnostics_.add(errors::unknown_function(call.function, known, find(name) != nullptr));
     return std::nullopt;
   }
-  auto const count = good ? arguments.size() : call.arguments.size();
-  if (good &&
+  if (counted &&
       (count < static_cast<std::size_t>(row->minimum_arguments) || count > static_cast<std::size_t>(row->maximum_arguments))) {
     diagnostics_.add(errors::argument_count(call.function, count, static_cast<std::size_t>(row->minimum_arguments),
                                             static_cast<std::size_t>(row->maximum_arguments)));
     return std::nullopt;
   }
-  if (row->unit_rule == UnitRule::branches && count % 2 == 0) {
+  if (row->unit_rule == UnitRule::branches && counted && count % 2 == 0) {
     diagnostics_.add(errors::piecewise_without_otherwise(call));
     return std::nullopt;
   }

@@ -72,7 +72,7 @@ class TaskChecker {
       use.part = static_cast<int>(place - block.parts.begin());
     }
     if (model == nullptr) return std::nullopt;
-    check_binding(block, *model, reference.span, diagnostics_);
+    check_binding(block, *model, file_.models, reference.span, diagnostics_);
     use.constants = check_constants(block, *model, file_.models, reference.span, diagnostics_);
     return use;
   }
@@ -235,7 +235,7 @@ class TaskChecker {
         if (word == "trajectory" || word == "step")
           task.redraw_each_step = word == "step";
         else
-          diagnostics_.add(errors::option_choice(option.value.span, key, word.value_or("this"), {"trajectory", "step"}));
+          diagnostics_.add(errors::option_choice(option.value.span, key, word.value_or(""), {"trajectory", "step"}));
       } else if (option.key && key == "start") {
         options_.start(option, task.start);
       } else if (option.key && key == "prediction") {
@@ -258,7 +258,7 @@ class TaskChecker {
       if (as_word(option.value) == names.back()) chosen = each;
     }
     if (!chosen) {
-      diagnostics_.add(errors::option_choice(option.value.span, "prediction", as_word(option.value).value_or("this"), names));
+      diagnostics_.add(errors::option_choice(option.value.span, "prediction", as_word(option.value).value_or(""), names));
       return;
     }
     if (model == nullptr || *chosen == PredictionRule::as_written) return;

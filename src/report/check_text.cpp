@@ -45,8 +45,10 @@ std::string model_text(ModelPage const& model) {
   std::vector<std::string> equations = model.equations;
   std::string unknowns;
   for (std::string const& unknown : model.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + unknown;
-  if (!model.unknowns.empty())
-    equations.push_back(fmt::format("{} for {}: {}", count(static_cast<int>(model.equations.size()), "equation"),
+  if (!model.unknowns.empty())  // a model that was accepted has as many equations, of elements and of parts, as unknowns
+    equations.push_back(fmt::format("{}{} for {}: {}",
+                                    model.equations.size() == model.unknowns.size() ? "" : "with all elements and parts: ",
+                                    count(static_cast<int>(model.unknowns.size()), "equation"),
                                     count(static_cast<int>(model.unknowns.size()), "unknown"), unknowns));
   out += entry(model.equations.size() == 1 ? "equation" : "equations", equations);
   out += table(model.states.size() == 1 ? "state" : "states", rows_of(model.states), 3);

@@ -101,8 +101,7 @@ TEST_CASE("experiments are named in parameters, scores, data, draws and predicti
   CHECK(scores["two"]["level"].contains("coverage_95"));
   CHECK_FALSE(scores["two"].contains("double"));
   CHECK_FALSE(posterior["fit"].contains("nmse"));
-  CHECK(folder.file("posterior/draws_1.csv").find("__,rate,mean,start[one],start[two],speed[one],speed[two]\n") !=
-        std::string::npos);
+  CHECK(folder.file("posterior/draws_1.csv").find("__,rate,mean,start.one,start.two,speed.one,speed.two\n") != std::string::npos);
   for (char const* file : {"posterior/predict_one_early.csv", "posterior/predict_two.csv", "forecast/predict_one_late.csv",
                            "forecast/predict_new.csv", "shuffled/predict_two.csv"})
     CHECK_MESSAGE(reference().contains(file), file);

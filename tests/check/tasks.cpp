@@ -110,8 +110,8 @@ TEST_CASE("numbers outside their range or of the wrong kind are refused with wha
   CHECK(errors_in(shown) == 6);
   CHECK(refused("fit m to d with mh, solver = rk5").find("did you mean `rk4`?") != std::string::npos);
   for (char const* each :
-       {"`samples` must lie between 1 and 1000000000000, here it is 0", "`chains` must be a whole number", "`k` is not declared",
-        "help: choose `adaptive` or `spherical`", "`substeps` must lie between 1 and 10000", "`seed` must"})
+       {"`samples` must be at least 1, here it is 0", "`chains` must be a whole number", "`k` is not declared",
+        "help: choose `adaptive` or `spherical`", "`substeps` must lie between 1 and 10000", "`seed` must not be negative"})
     CHECK_MESSAGE(shown.find(each) != std::string::npos, each);
 }
 
