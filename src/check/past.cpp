@@ -41,7 +41,8 @@ bool Scope::is_past_call(ast::Call const& call) const {
 std::optional<int> Scope::lag_count(ast::Expression const& tree) {
   auto const value = expression(tree);
   if (!value) return std::nullopt;
-  auto const number = graph_.constant_value(value->node);
+  // A count: with a unit, even that of a pure number, it is not one.
+  auto const number = value->kind == Typed::Kind::literal ? graph_.constant_value(value->node) : std::nullopt;
   if (number && *number == std::floor(*number) && *number >= 0 && *number <= most_lags) return static_cast<int>(*number);
   diagnostics_.add(errors::lag_count(tree.span));
   return std::nullopt;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "check/walk.hpp"
@@ -31,6 +32,7 @@ bool inside(Span inner, Span outer) { return outer.begin <= inner.begin && inner
 
 struct Planter {
   std::string_view text;
+  std::set<std::string> pure;  // quantities declared to be pure numbers
   std::vector<Mutant> mutants;
 
   std::string at(Span span) const { return std::string(text.substr(span.begin, span.end - span.begin)); }
@@ -55,6 +57,31 @@ struct Planter {
     return bare;
   }
 
+  // A factor without which the units are as before.
+  bool is_pure(ast::Expression const& tree) const {
+    if (auto const* number = std::get_if<ast::Number>(&tree.node)) return !number->unit;
+    if (auto const* reference = std::get_if<ast::Reference>(&tree.node))
+      return reference->primes == 0 && (reference->name.text == "pi" || pure.contains(reference->name.text));
+    if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return is_pure(*(*unary)->operand);
+    if (auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node))
+      return is_pure(*(*binary)->left) && is_pure(*(*binary)->right);
+    if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
+      static std::set<std::string> const to_pure{"exp", "log", "sin", "cos", "tan", "tanh", "sign", "step"};
+      return to_pure.contains((*call)->function.text) ||
+             std::all_of((*call)->arguments.begin(), (*call)->arguments.end(),
+                         [&](ast::Argument const& argument) { return is_pure(argument.value); });
+    }
+    return false;
+  }
+
+  // `dropped` is taken out of a product of which `rest` stays.
+  void drop(ast::Expression const& dropped, Span place, ast::Expression const& rest, Context context, bool top) {
+    if (is_bare(dropped)) return;
+    if (is_pure(dropped)) context.harmless = "a pure number changes no unit";
+    if (top && is_bare(rest)) context.harmless = "a bare number is left, which adapts";
+    add("a factor dropped", place, "", context);
+  }
+
   void plant(ast::Expression const& tree, Context context, bool top = true) {
     if (auto const* number = std::get_if<ast::Number>(&tree.node)) {
       Span const tag{number->unit ? number->unit->span.begin : tree.span.end, tree.span.end};
@@ -72,6 +99,7 @@ struct Planter {
       plant_binary(**binary, context, top);
     } else if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
       std::string const& name = (*call)->function.text;
+      if (name == "measured") return;  // takes the name of a channel, not a value
       if (name == "sign" || name == "step") context.harmless = "only the sign is used";
       for (ast::Argument const& argument : (*call)->arguments) plant(argument.value, context, false);
     } else if (auto const* choice = std::get_if<ast::Box<ast::Conditional>>(&tree.node)) {
@@ -95,11 +123,10 @@ struct Planter {
     if (symbol == "^") {
       if (auto const* number = std::get_if<ast::Number>(&binary.right->node); number != nullptr && !is_bare(*binary.left))
         add("another exponent", binary.right->span, std::to_string(static_cast<int>(number->value) + 1), context);
-    } else if ((symbol == "*" || symbol == "/") && !is_bare(*binary.right)) {
-      add("a factor dropped", {binary.left->span.end, binary.right->span.end}, "", context);
+    } else if (symbol == "*" || symbol == "/") {
+      drop(*binary.right, {binary.left->span.end, binary.right->span.end}, *binary.left, context, top);
     }
-    if (symbol == "*" && !is_bare(*binary.left))
-      add("a factor dropped", {binary.left->span.begin, binary.right->span.begin}, "", context);
+    if (symbol == "*") drop(*binary.left, {binary.left->span.begin, binary.right->span.begin}, *binary.right, context, top);
   }
 
   void declared(ast::Declared const& declared, Span whole) {
@@ -107,6 +134,7 @@ struct Planter {
     // The brackets are part of the span or lie around it.
     Span span = declared.unit->span;
     if (text[span.begin] != '[') span = {span.begin - 1, span.end + 1};
+    if (at(span) == "[-]") pure.insert(declared.name.text);
     mutants.push_back({"another declared unit", span, strange, whole, declared.name.text, ""});
   }
 
@@ -179,8 +207,11 @@ Finding look(std::string const& name, std::string const& text, Mutant const& mut
   Finding finding;
   for (Diagnostic const& diagnostic : diagnostics.all()) {
     if (diagnostic.severity != Severity::error || !diagnostic.primary) continue;
-    bool const about_units = diagnostic.code == "E2103" || diagnostic.code.starts_with("E22") || diagnostic.code == "E2014" ||
-                             diagnostic.code == "E2117" || diagnostic.code == "E4113" || diagnostic.code == "E4114";
+    // A count, a shape and a whole number are refused for what they are, which a unit is a part of.
+    static std::set<std::string> const of_kinds{"E2118", "E2701", "E2704", "E3102"};
+    bool const about_units = of_kinds.contains(diagnostic.code) || diagnostic.code == "E2103" ||
+                             diagnostic.code.starts_with("E22") || diagnostic.code == "E2014" || diagnostic.code == "E2117" ||
+                             diagnostic.code == "E4113" || diagnostic.code == "E4114";
     if (!about_units) continue;
     finding.found = true;
     auto const names_it = [&](Span span) {
@@ -211,7 +242,7 @@ TEST_CASE("wrong units planted in the shipped models are found where they are") 
     REQUIRE(tree);
     load(source, diagnostics);
     CHECK_MESSAGE(diagnostics.all().empty(), render(diagnostics, source));
-    Planter planter{text, {}};
+    Planter planter{text, {}, {}};
     for (ast::Item const& item : tree->items)
       if (auto const* model = std::get_if<ast::Model>(&item))
         for (ast::ModelStatement const& statement : model->statements) planter.statement(statement);
