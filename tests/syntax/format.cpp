@@ -106,6 +106,9 @@ TEST_CASE("units stand one blank behind what they are of, without blanks but for
   CHECK(body("parameter k per experiment[kg m (s^ - 2)]") == "  parameter k per experiment [kg m (s^-2)]");
   CHECK(layout_of("data d {\nmeasure y=\"a b\"[mm]\ninput x=u[V]hold linear\n}\n") ==
         "data d {\n  measure y = \"a b\" [mm]\n  input   x = u [V] hold linear\n}\n");
+  // What is bound may be an element; what follows it is an index and no unit.
+  CHECK(layout_of("data d {\nmeasure y[1]=a[mm]\nmeasure y[10]=b [mm]\ninput u[1]=f[N] hold linear\n}\n") ==
+        "data d {\n  measure y[1]  = a [mm]\n  measure y[10] = b [mm]\n  input   u[1] = f [N] hold linear\n}\n");
 }
 
 TEST_CASE("numbers, texts and parentheses stay as they are spelt") {
