@@ -77,18 +77,12 @@ class Walk {
   Token const& previous() const { return tokens_[at_ - 1]; }
   Inside here() const { return inside_.empty() ? Inside::expression : inside_.back(); }
 
-  bool binds_a_column() const {
-    return (tokens_[0].is("input") || tokens_[0].is("measure")) &&
-           std::any_of(tokens_.begin(), tokens_.end(), [](Token const& each) { return each.is("="); });
-  }
-
   bool opens_unit() const {
     if (previous().kind != TokenKind::word || previous().span.end != token().span.begin) return true;
     if (counts()) return false;
     // Directly behind a name: an index, but for the names that are being declared and for columns.
     if (!is_declaration(tokens_) || !inside_.empty() || !words::contains(declares_units, tokens_[0].text)) return false;
-    // `input u[1] = force [N]` of a data block names an element and then a column; `input u [N]` of a model declares.
-    return binds_a_column() ? equals_seen_ : !equals_seen_;
+    return !equals_seen_ || tokens_[0].is("input") || tokens_[0].is("measure");
   }
 
   /// `[1]`, `[1, 2]`: an index wherever it stands, since no unit is a bare number behind a name.
