@@ -69,7 +69,7 @@ void check_snippet(Page const& page, Fence const& block) {
   }
   auto const text = framed(kind, block.joined());
   REQUIRE_MESSAGE(text, page.name << ":" << block.line << ": a snippet of no known kind: `" << kind << "`");
-  Source source(page.name + "/" + std::to_string(block.line), *text);  // named so that the page of a module is not the module
+  Source source(page.name + ":" + std::to_string(block.line), *text);
   Diagnostics diagnostics;
   bool const passed = load(source, diagnostics).has_value();
   std::string const said = render(diagnostics, source, false);

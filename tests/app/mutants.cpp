@@ -24,7 +24,7 @@ struct Mutant {
   std::vector<std::string> names;  // mentioning one of these is as good as pointing there: the place itself is gone
 };
 
-/// Everything the front end says, and what reading the data of each fit says.
+/// Everything the front end says, and what reading the data of each fit and prediction says.
 std::vector<Diagnostic> diagnostics_of(std::string const& text) {
   Source source("mutant.sysid", text);
   Diagnostics diagnostics;
@@ -35,7 +35,7 @@ std::vector<Diagnostic> diagnostics_of(std::string const& text) {
     std::ostringstream ignored;
     RunOptions const options;
     Session session(source, *file, options, progress, ignored, ignored);
-    check_readiness(session, [](Task const& task) { return std::holds_alternative<FitTask>(task.what); }).require();
+    check_readiness(session, [](Task const& task) { return !std::holds_alternative<SimulateTask>(task.what); }).require();
   } catch (UnusableData const& error) {
     return error.diagnostics().all();
   } catch (UserError const& error) {

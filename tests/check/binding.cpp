@@ -60,7 +60,13 @@ TEST_CASE("inputs must all be bound, channels in part") {
 }
 
 TEST_CASE("a block may serve several models: channels and inputs of another are no mistake") {
-  CHECK(fitted("time t\ninput x = x hold linear\ninput u = u hold linear\nmeasure displacement = y\nmeasure strain = s").empty());
+  std::string const shared =
+      "time t\ninput x = x hold linear\ninput u = u hold linear\nmeasure displacement = y\nmeasure strain = s";
+  CHECK(messages(model + "model n {\nparameter k ~ normal(1, sd = 1)\nobserve strain ~ normal(k, sd = 1)\n}\n" + block(shared) +
+                 "fit m to d with mh\n")
+            .empty());
+  // Of no model: a misspelt channel would else be left out of the likelihood without a word.
+  CHECK(fitted(shared).find("error[E4111]: model `m` has no channel `strain`") != std::string::npos);
   std::string const shown = fitted("time t\ninput x = x hold linear\nmeasure displacment = y");
   CHECK(errors_in(shown) == 1);
   CHECK(shown.find("error[E4111]: model `m` has no channel `displacment`") != std::string::npos);
