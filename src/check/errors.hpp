@@ -1,4 +1,4 @@
-// Every message of the checker, one named constructor per mistake; wording lives in errors.cpp alone.
+// Every message of the checker, one named constructor per mistake; wording lives in errors_*.cpp alone.
 #pragma once
 #include <span>
 #include <string>

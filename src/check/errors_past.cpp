@@ -1,16 +1,9 @@
 // The checker's wording about samples, lags and discrete time.
 #include <fmt/format.h>
 
-#include "check/errors.hpp"
+#include "check/error_words.hpp"
 
 namespace sysid::errors {
-namespace {
-
-Diagnostic error(std::string code, Span span, std::string message, std::string help) {
-  return {Severity::error, std::move(code), std::move(message), Label{span, {}}, {}, std::move(help)};
-}
-
-}  // namespace
 
 Diagnostic lag_without_discrete_time(ast::Call const& call) {
   return error("E3101", call.span, fmt::format("`{}` counts samples, and the time of this model is continuous", call.function.text),

@@ -1,5 +1,5 @@
 // What is wrong with the user's text or data, as a value: collected by the stages, rendered once at the end.
-// Wording lives in the file that owns the stage's messages (check/errors.cpp, data/errors.cpp, grammar/errors.cpp), never at the
+// Wording lives in the file that owns the stage's messages (check/errors_*.cpp, data/errors.cpp, grammar/errors.cpp), never at the
 // place of detection.
 #pragma once
 #include <optional>

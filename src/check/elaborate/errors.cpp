@@ -4,26 +4,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "check/error_words.hpp"
+
 namespace sysid::errors {
 namespace {
 
-Diagnostic error(std::string code, Span span, std::string message, std::string help, std::string label = {}) {
-  return {Severity::error, std::move(code), std::move(message), Label{span, std::move(label)}, {}, std::move(help)};
-}
 Diagnostic with(Diagnostic diagnostic, Span other, std::string label) {
   diagnostic.secondary.push_back({other, std::move(label)});
   return diagnostic;
-}
-
-std::string quoted(Names const& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += fmt::format("{}`{}`", i == 0 ? "" : i + 1 == names.size() ? " and " : ", ", names[i]);
-  return text;
-}
-std::string guess_or(std::string const& text, Names const& known, std::string fallback) {
-  std::string guess = did_you_mean(text, known);
-  return guess.empty() ? std::move(fallback) : guess;
 }
 
 }  // namespace
