@@ -10,6 +10,10 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
   Prediction prediction;
   prediction.experiment = experiment.name;
   prediction.time = experiment.time;
+  if (experiment.time_unit) {
+    prediction.time_unit = experiment.time_unit->text;
+    prediction.time_scale = experiment.time_unit->scale;
+  }
   prediction.rows = model.dynamics == Dynamics::none;
   if (prediction.rows)  // of any order: shown as they stand in the file
     for (std::size_t i = 0; i < prediction.time.size(); ++i) prediction.time[i] = experiment.first_row + static_cast<double>(i);

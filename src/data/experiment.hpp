@@ -2,9 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "core/unit.hpp"
 
 namespace sysid {
 
@@ -71,6 +74,7 @@ class InputSignal {
 struct Experiment {
   std::string name;                           // "bench", as declared
   std::vector<double> time;                   // [N] s, strictly increasing (of models without dynamics: any order)
+  std::optional<Unit> time_unit;              // in which people read them; absent: seconds
   std::vector<InputSignal> inputs;            // one per model input
   std::vector<std::vector<double>> measured;  // one per model channel, each [N]; NaN: missing; empty: channel not in this data
   std::vector<std::uint8_t> scored;           // [N], 1: in the split; simulation runs over all rows from the first one needed

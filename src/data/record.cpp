@@ -127,6 +127,7 @@ std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostic
   }
   if (!complete_record) return std::nullopt;
   record.time = std::move(*time);
+  if (request.time) record.time_unit = request.time->unit;
   return record;
 }
 
@@ -156,6 +157,7 @@ Experiment make_experiment(Record const& record, std::string name, int simulate_
   Experiment experiment;
   experiment.name = std::move(name);
   experiment.first_row = simulate_from;
+  experiment.time_unit = record.time_unit;
   experiment.time.assign(record.time.begin() + begin, record.time.begin() + last);
   for (InputSignal const& input : record.inputs) experiment.inputs.push_back(input.view(begin, last - begin));
   for (std::vector<double> const& channel : record.measured) {

@@ -39,6 +39,7 @@ struct Record {
   std::string path;
   std::string digest;                         // SHA-256 of the file
   std::vector<double> time;                   // [N] s, strictly increasing, N >= 2
+  std::optional<Unit> time_unit;              // in which people read them; absent: seconds
   std::vector<InputSignal> inputs;            // over the whole record
   std::vector<std::vector<double>> measured;  // [N] each, NaN where missing; empty: not in this data
 

@@ -47,12 +47,15 @@ std::string figure_name(std::string_view what, Prediction const& prediction, Pre
 
 Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
   Window const w = window(prediction);
-  std::vector<double> const time = cut(prediction.time, w), mean = cut(quantity.response.mean, w),
-                            lower = cut(quantity.response.lower, w), upper = cut(quantity.response.upper, w),
-                            noisy_lower = cut(quantity.noisy.lower, w), noisy_upper = cut(quantity.noisy.upper, w),
-                            measured = cut(quantity.measured, w);
+  std::vector<double> time = cut(prediction.time, w);
+  std::vector<double> const mean = cut(quantity.response.mean, w), lower = cut(quantity.response.lower, w),
+                            upper = cut(quantity.response.upper, w), noisy_lower = cut(quantity.noisy.lower, w),
+                            noisy_upper = cut(quantity.noisy.upper, w), measured = cut(quantity.measured, w);
+  if (!prediction.rows)
+    for (double& t : time) t /= prediction.time_scale;
   bool const has_noise = !noisy_lower.empty(), has_data = !measured.empty();
 
+  double const point_size = time.size() > 100 ? 0.28 : 0.5;
   int const width = 760, height = has_data ? 430 : 290;
   Axis x = axis(time.front(), time.back(), 8);
   x.reach_ticks();
@@ -81,7 +84,8 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   out.script += data_block("fit", rows);
 
   Panel top = panel_at(78, width - 14.0, has_data ? 158.0 : 44.0, height - 34.0, x, y);
-  top.x_label = has_data ? "" : axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : "s", x.exponent);
+  top.x_label =
+      has_data ? "" : axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x.exponent);
   top.x_numbers = !has_data;
   top.y_label = axis_label(quantity.name, quantity.unit, y.exponent);
   out.script += panel(top, width, height);
@@ -94,7 +98,8 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   out.script += "plot ";
   if (has_noise) out.script += fmt::format("$fit using 1:5:6 with filledcurves fc rgb '{}' fs noborder, ", noise_band);
   out.script += fmt::format("$fit using 1:3:4 with filledcurves fc rgb '{}' fs noborder, ", response_band);
-  if (has_data) out.script += fmt::format("$fit using 1:7 with points pt 7 ps 0.28 lc rgb '{}', ", data);
+  if (has_data)
+    out.script += fmt::format("$fit using 1:7 with points pt 7 ps {} lc rgb '{}', ", point_size, data);
   out.script += fmt::format("$fit using 1:2 with lines lw 1.4 lc rgb '{}'\n", model);
 
   out.script += end_legend();
@@ -105,13 +110,13 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
       for (std::size_t c = 1; c < row.size(); ++c) row[c] = r.scaled(row[c]);
     out.script += data_block("residual", residual_rows);
     Panel low = panel_at(top.left, top.right, 44, 138, x, r);
-    low.x_label = axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : "s", x.exponent);
+    low.x_label = axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x.exponent);
     low.y_label = axis_label("residual", quantity.unit, r.exponent);
     out.script += panel(low, width, height);
     out.script += fmt::format(
         "plot $residual using 1:3:4 with filledcurves fc rgb '{}' fs noborder, "
-        "0 with lines lw 1 lc rgb '{}', $residual using 1:2 with points pt 7 ps 0.28 lc rgb '{}'\n",
-        has_noise ? noise_band : response_band, model, data);
+        "0 with lines lw 1 lc rgb '{}', $residual using 1:2 with points pt 7 ps {} lc rgb '{}'\n",
+        has_noise ? noise_band : response_band, model, point_size, data);
   }
   out.script += "unset multiplot\n";
 

@@ -29,6 +29,14 @@ std::string left_out(Draws const& draws) {
                                                : "";
 }
 
+/// All draws, but for tails so long that the bulk would be one bar: then the central 98 %.
+std::pair<double, double> shown_range(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  double const low = quantile(values, 0.01), high = quantile(values, 0.99);
+  bool const long_tails = values.back() - values.front() > 8 * (high - low) && high > low;
+  return long_tails ? std::pair{low, high} : range(values);
+}
+
 /// Cells in rows of `columns`, each with room for its labels.
 struct Grid {
   int columns, rows, cell_width, cell_height, width, height;
@@ -51,18 +59,20 @@ struct Histogram {
   double low, width;
   std::vector<double> density;
 
-  explicit Histogram(std::vector<double> values) {
+  /// Of the draws in [from, to]; the density is that of all draws.
+  Histogram(std::vector<double> values, double from, double to) {
     std::sort(values.begin(), values.end());
     double const n = static_cast<double>(values.size());
-    low = values.front();
-    double const extent = values.back() - low;
+    low = from;
+    double const extent = to - low;
     double const quartiles = quantile(values, 0.75) - quantile(values, 0.25);
     // Freedman and Diaconis 1981, kept within what the eye can read.
     double const rule = quartiles > 0 ? extent / (2 * quartiles / std::cbrt(n)) : 1;
     auto const bins = static_cast<std::size_t>(std::clamp(std::ceil(rule), 12.0, 48.0));
     width = extent > 0 ? extent / static_cast<double>(bins) : 1;
     density.assign(bins, 0);
-    for (double const v : values) density[std::min(bins - 1, static_cast<std::size_t>((v - low) / width))] += 1 / (n * width);
+    for (double const v : values)
+      if (v >= from && v <= to) density[std::min(bins - 1, static_cast<std::size_t>((v - low) / width))] += 1 / (n * width);
   }
 
   /// The outline between two abscissae, as corners.
@@ -89,8 +99,8 @@ Figure posterior_figure(Report const& report) {
   for (std::size_t i = 0; i < count; ++i) {
     Summary const& summary = report.summary[i];
     std::vector<double> const values = pooled(report.draws, i);
-    Histogram const histogram(values);
-    auto const [low, high] = range(values);
+    auto const [low, high] = shown_range(values);
+    Histogram const histogram(values, low, high);
     Panel p = grid.cell(i, 14, 14, 44, 26);
     p.x = axis(low, high, 4, 0.06);
     p.x.clear_edges(0.03);

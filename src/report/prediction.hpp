@@ -26,6 +26,8 @@ struct PredictedQuantity {
 struct Prediction {
   std::string experiment;
   std::vector<double> time;          // [N] s, or row numbers
+  std::string time_unit = "s";       // in which figures show it,
+  double time_scale = 1;             // [s] one of these
   bool rows = false;                 // rows are independent: there is no time
   std::vector<std::uint8_t> scored;  // [N]
   std::vector<PredictedQuantity> quantities;
