@@ -96,11 +96,13 @@ Figure posterior_figure(Report const& report) {
   Grid const grid(count, 3, 760, 176);
   Figure out{"posterior", "Posterior and prior", "", preamble("posterior", grid.width, grid.height)};
   bool any_prior = false;
+  std::string cut_names;
   for (std::size_t i = 0; i < count; ++i) {
     Summary const& summary = report.summary[i];
     std::vector<double> const values = pooled(report.draws, i);
     auto const [low, high] = shown_range(values);
     Histogram const histogram(values, low, high);
+    if (std::pair{low, high} != range(values)) cut_names += (cut_names.empty() ? "" : ", ") + summary.name;
     Panel p = grid.cell(i, 14, 14, 44, 26);
     p.x = axis(low, high, 4, 0.06);
     p.x.clear_edges(0.03);
@@ -135,12 +137,14 @@ Figure posterior_figure(Report const& report) {
     out.script += '\n';
   }
   out.script += "unset multiplot\n";
-  out.caption = fmt::format("Marginal posteriors; the darker part holds 90 %, the numbers above are mean ± sd.{}{}",
-                            any_prior ? " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; "
-                                        "one that stands against an edge is cut "
-                                        "by the prior."
-                                      : "",
-                            left_out(report.draws));
+  out.caption = fmt::format(
+      "Marginal posteriors; the darker part holds 90 %, the numbers above are mean ± sd.{}{}{}",
+      any_prior ? " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; "
+                  "one that stands against an edge is cut "
+                  "by the prior."
+                : "",
+      cut_names.empty() ? "" : fmt::format(" Of {} the central 98 % are shown: the tails reach much farther.", cut_names),
+      left_out(report.draws));
   return out;
 }
 
