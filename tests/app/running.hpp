@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "app/pipeline.hpp"
@@ -51,6 +52,7 @@ inline RunResult run_text(std::filesystem::path const& name, std::string const& 
 
 /// `text` with every occurrence of `from` replaced.
 inline std::string with(std::string text, std::string const& from, std::string const& to) {
+  if (text.find(from) == std::string::npos) throw std::runtime_error("nothing to replace: " + from);
   for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
   return text;
 }

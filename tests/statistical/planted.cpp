@@ -71,7 +71,7 @@ TEST_CASE("a model without the cubic spring leaves coloured residuals") {
       "model full {\n input x [N]\n state y [m]\n initial y = 0, y' = 0\n 1 [kg]*y'' + 20 [N s/m]*y' + 1e4 [N/m]*y + 5e10 "
       "[N/m^3]*y^3 = x\n"
       " observe displacement ~ normal(y, sd = 1e-9)\n}\n";
-  text = with(full + text, "simulate duffing with values(m = 1, c = 20, k = 1e4, k3 = 5e9),", "simulate full with");
+  text = with(full + text, "simulate duffing\n    with values(m = 1, c = 20, k = 1e4, k3 = 5e9),", "simulate full\n    with");
   Fitted const fitted = run_file(text, seeded(7));
   CHECK(fitted.found("posterior", "residuals_not_white"));
   CHECK_FALSE(sound_fit().found("posterior", "residuals_not_white"));
