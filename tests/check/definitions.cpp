@@ -122,3 +122,11 @@ TEST_CASE("a state without an equation is the only thing said about it") {
   CHECK(shown.find("error[E3001]: state `z` has no equation") != std::string::npos);
   CHECK(shown.find("help: write the equation that contains `z''`") != std::string::npos);  // as there is an initial z'
 }
+
+TEST_CASE("a name that nothing declares is said, not the shapes that it spoils") {
+  std::string const shown = messages(
+      "model m {\nstate y(2)\ninitial y = 0\nparameter k(2) ~ normal(1, sd = 1)\nlet K = diagonal(k)\ny' = -K*q + (0, 1)\n"
+      "observe d(2) ~ normal(y, sd = 1)\n}\n");
+  CHECK(errors_in(shown) == 1);
+  CHECK(shown.find("error[E2001]: `q` is not declared in this model") != std::string::npos);
+}

@@ -36,7 +36,10 @@ class Flattener {
     if (failed()) return std::nullopt;
     result_.tree = {{model.span}, {{model.name.span}, root_->instance.display()}, {}, model.title, {}};
     emit(*root_);
-    if (failed()) return std::nullopt;
+    if (failed()) {
+      report_unknown_names();
+      return std::nullopt;
+    }
     drop_noise_of_parts();
     collect_shapes(*root_);
     return std::move(result_);
@@ -238,6 +241,33 @@ class Flattener {
     lesser = std::move(*filled);
     for (std::size_t i = 0; i < shape.count(); ++i)
       add(ast::Equation{{equation.span}, std::move(left->items[i]), std::move(right->items[i])}, equation.span);
+  }
+
+  // A name that nothing declares passes for a number here, so that shapes may disagree on its account: then it is the name that is
+  // reported. Where the model goes on to the next stage this is done there.
+  void report_unknown_names() {
+    std::vector<Diagnostic> unknown;
+    std::set<std::string> channels{"pi", "inf"};
+    errors::Names known;
+    for (auto const& [name, symbol] : root_->symbols) known.push_back(name);
+    for (ast::ModelStatement const& statement : root_->model().statements)
+      if (auto const* observation = std::get_if<ast::Observation>(&statement)) channels.insert(observation->channel.name.text);
+    for (ast::ModelStatement const& statement : root_->model().statements) {
+      if (!std::holds_alternative<ast::Equation>(statement) && !std::holds_alternative<ast::Definition>(statement)) continue;
+      tree::each_reference(statement, [&](ast::Reference const& reference) {
+        std::string const& name = reference.name.text;
+        bool const elsewhere = name.find('.') != std::string::npos || channels.contains(name) ||
+                               root_->instance.arguments.contains(name) || find(*root_, name).symbol != nullptr;
+        if (!elsewhere) unknown.push_back(errors::unknown_name(reference.name, known));
+      });
+    }
+    if (unknown.empty()) return;
+    std::vector<Diagnostic> all = diagnostics_.all();
+    all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(before_), all.end(),
+                             [](Diagnostic const& each) { return each.code == "E2704"; }),
+              all.end());
+    all.insert(all.end(), unknown.begin(), unknown.end());
+    diagnostics_.replace(std::move(all));
   }
 
   std::optional<Shape> channel_shape(Frame const& frame, ast::Declared const& channel) {
