@@ -80,10 +80,11 @@ LaneArray pair(double a, double b) {
 
 }  // namespace
 
-TEST_CASE("CVODE, IDA and RK4 agree on a smooth problem with its closed form") {
+TEST_CASE("CVODE, IDA, Dormand-Prince and RK4 agree on a smooth problem with its closed form") {
   // The local error allowed is 1e-10 of 1; over ten radians a BDF of order 5 adds up to some hundred of them.
   CHECK(harmonic_error({.method = "cvode", .relative = 1e-10}) < 1e-7);
   CHECK(harmonic_error({.method = "ida", .relative = 1e-10}) < 1e-7);
+  CHECK(harmonic_error({.method = "dopri5", .relative = 1e-10}) < 1e-8);  // some hundred steps of 1e-10 each
   // h w = 0.0065: error of RK4 over N steps is N (h w)^5 / 120 = 2000 * 1.2e-11 / 120.
   CHECK(harmonic_error({.method = "rk4", .substeps = 20}) < 1e-9);
 }
