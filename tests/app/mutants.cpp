@@ -21,6 +21,7 @@ struct Mutant {
   std::string kind, text;
   Span token;                      // what was changed, in the new text, with its neighbours where something was deleted
   Span statement;                  // that it stands in
+  std::string declared;            // the name whose unit lost a sign
   std::vector<std::string> names;  // mentioning one of these is as good as pointing there: the place itself is gone
 };
 
@@ -62,6 +63,15 @@ bool mentions(Diagnostic const& diagnostic, std::vector<std::string> const& name
     return diagnostic.message.find("`" + name) != std::string::npos || diagnostic.help.find("`" + name) != std::string::npos ||
            diagnostic.help.find(" " + name + " ") != std::string::npos;
   });
+}
+
+/// `[1/s]` without its sign is another unit, which is noticed where the declared name meets others.
+bool points_to_use(Diagnostic const& diagnostic, std::string const& text, std::string const& name) {
+  if (name.empty()) return false;
+  auto const shows = [&](Span span) { return text.substr(span.begin, span.end - span.begin).find(name) != std::string::npos; };
+  return (diagnostic.primary && shows(diagnostic.primary->span)) ||
+         std::any_of(diagnostic.secondary.begin(), diagnostic.secondary.end(),
+                     [&](Label const& label) { return shows(label.span); });
 }
 
 class Mutator {
@@ -123,6 +133,7 @@ class Mutator {
                     std::move(text),
                     {old.begin, old.begin + length},
                     {tokens()[first_of(i)].span.begin, last},
+                    {},
                     std::move(names)});
   }
 
@@ -148,6 +159,10 @@ class Mutator {
         std::string_view("(){}[]").find(tokens()[i].text) != std::string_view::npos ? "deleted bracket" : "deleted sign";
     add(kind, i, "");
     Mutant& mutant = out_.back();
+    std::size_t const first = first_of(i);
+    bool in_brackets = false;
+    for (std::size_t j = first; j < i; ++j) in_brackets = tokens()[j].is("[") || (in_brackets && !tokens()[j].is("]"));
+    if (in_brackets && declares(first + 1)) mutant.declared = bare(tokens()[first + 1]);
     if (i > 0) mutant.token.begin = tokens()[i - 1].span.begin;
     if (i + 1 < tokens().size()) mutant.token.end = tokens()[i + 1].span.end;
     mutant.statement.begin = std::min(mutant.statement.begin, mutant.token.begin);
@@ -162,7 +177,7 @@ class Mutator {
     std::string doubled = text_;
     doubled.insert(span.end, "\n" + statement);
     Span const both{span.begin, span.end + 1 + (span.end - span.begin)};
-    out_.push_back({"doubled statement", std::move(doubled), both, both, {}});
+    out_.push_back({"doubled statement", std::move(doubled), both, both, {}, {}});
     if (tokens()[first].is("derive") || !(declaration(first) || tokens()[first + 1].is("="))) return;
     std::vector<std::string> names = {std::string(tokens()[first].text)};
     bool used = tokens()[first].is("initial") || tokens()[first].is("file");
@@ -173,7 +188,8 @@ class Mutator {
     if (!used) return;
     std::string without = text_;
     without.erase(span.begin, span.end - span.begin);
-    out_.push_back({"removed statement", std::move(without), {span.begin, span.begin}, {span.begin, span.begin}, std::move(names)});
+    out_.push_back(
+        {"removed statement", std::move(without), {span.begin, span.begin}, {span.begin, span.begin}, {}, std::move(names)});
   }
 
   std::string text_;
@@ -210,7 +226,8 @@ TEST_CASE("mistakes planted in the shipped models are refused where they stand")
       Tally& tally = tallies[mutant.kind];
       ++tally.planted;
       bool const statement = std::any_of(found.begin(), found.end(), [&](Diagnostic const& each) {
-        return points_to(each, mutant.statement) || mentions(each, mutant.names);
+        return points_to(each, mutant.statement) || mentions(each, mutant.names) ||
+               points_to_use(each, mutant.text, mutant.declared);
       });
       bool const token = std::any_of(found.begin(), found.end(), [&](Diagnostic const& each) {
         return points_to(each, mutant.token) || mentions(each, mutant.names);
