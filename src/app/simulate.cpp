@@ -90,6 +90,18 @@ Trajectory::Result with_feedback(std::shared_ptr<CompiledModel const> const& com
   }
 }
 
+// With another output folder a data block that reads `results/NAME/FILE` still reads what an earlier run left there.
+void warn_of_older_data(Session& session, Task const& task, std::filesystem::path const& written) {
+  auto const absolute = [](std::filesystem::path const& path) { return std::filesystem::absolute(path).lexically_normal(); };
+  for (DataBlock const& block : session.file.data) {
+    std::filesystem::path const read = session.folder() / block.path;
+    bool const same_name = read.filename() == written.filename() && read.parent_path().filename() == task.name;
+    if (same_name && absolute(read) != absolute(written))
+      session.notices << fmt::format("{}: warning: data `{}` reads {}, not what was written now\n", task.name, block.name,
+                                     read.string());
+  }
+}
+
 }  // namespace
 
 ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) {
@@ -199,6 +211,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   write_file(folder / what.file, text);
   session.notices << fmt::format("{}: {} samples of {} written to {}\n", task.name, what.samples, model.name,
                                  (folder / what.file).string());
+  warn_of_older_data(session, task, folder / what.file);
   return ExitCode::success;
 }
 

@@ -114,6 +114,15 @@ Diagnostic constant_needed(Span span, std::string const& what) {
 
 Diagnostic unknown_unit(ast::Name const& name) {
   if (name.text == "per") return error("E2011", name.span, "`per` is not a unit", "division is written with `/`: [N s/m]");
+  // Two units without a blank: `Nm`, `Ns`.
+  for (std::size_t i = 1; i < name.text.size(); ++i) {
+    std::string const left = name.text.substr(0, i), right = name.text.substr(i);
+    bool const common = std::find(common_unit_names().begin(), common_unit_names().end(), left) != common_unit_names().end() &&
+                        std::find(common_unit_names().begin(), common_unit_names().end(), right) != common_unit_names().end();
+    if (common)
+      return error("E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
+                   fmt::format("a blank or `*` multiplies: `{} {}`", left, right));
+  }
   return error(
       "E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
       guess_or(name.text, common_unit_names(), "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));

@@ -19,7 +19,8 @@ std::optional<Unit> rate_unit(std::optional<Unit> const& unit, int primes) {
   Unit second;
   second.dimension[2] = {1, 1};
   Unit result = divide(*unit, power(second, {primes, 1}));
-  if (!unit->text.empty()) result.text = unit->text + (primes == 1 ? "/s" : "/s^" + std::to_string(primes));
+  std::string const base = unit->text == "-" ? "1" : unit->text;
+  if (!base.empty()) result.text = base + (primes == 1 ? "/s" : "/s^" + std::to_string(primes));
   return result;
 }
 

@@ -40,7 +40,7 @@ std::string list(std::string const& topic) {
     for (ArrayFunctionRow const& row : array_functions()) text += fmt::format("{:<12} {}: {}\n", row.name, row.usage, row.summary);
   } else if (topic == "distributions") {
     for (DistributionRow const& row : distributions())
-      text += fmt::format("{:<68} {}{}\n", signature(row), row.summary, row.noise ? "; also as noise" : "");
+      text += fmt::format("{:<68} {}{}\n", signature(row), row.summary, row.noise && !row.discrete ? "; also as noise" : "");
   } else if (topic == "modules") {
     for (LibraryModule const& module : library_modules()) text += fmt::format("{:<14} {}\n", module.name, module_summary(module));
   } else if (topic == "solvers") {

@@ -125,8 +125,10 @@ int check(CommandLine const& line) {
       SilentProgress silent;
       std::ostream nowhere(nullptr);
       Session session(source, *file, line.run, silent, nowhere, nowhere);
-      CheckResult const result = check_file(session);
+      CheckResult result = check_file(session);
       show(result.diagnostics, source, line);
+      for (Diagnostics const* said : {&diagnostics, &result.diagnostics})
+        for (Diagnostic const& each : said->all()) ++(each.severity == Severity::error ? result.page.errors : result.page.warnings);
       std::cout << (line.error_format == "json" ? check_json(result.page) : check_text(result.page));
       if (result.diagnostics.has_errors()) return code(result.unreadable ? ExitCode::io : ExitCode::user_error);
       return code(grade(result.page) == Severity::error ? ExitCode::doubtful : ExitCode::success);

@@ -91,6 +91,7 @@ struct CheckPage {
   std::vector<ModelPage> models;
   std::vector<TaskPage> tasks;
   int data_blocks = 0;
+  int errors = 0, warnings = 0;  // told beside the page, with places in the text
 };
 
 /// The worst of the tasks' findings; note when there are none.

@@ -156,7 +156,7 @@ std::string check_text(CheckPage const& page) {
   std::string out;
   for (ModelPage const& model : page.models) out += model_text(model) + "\n";
   for (TaskPage const& task : page.tasks) out += task_text(task) + "\n";
-  int serious = 0, warnings = 0;
+  int serious = 0, warnings = page.warnings;
   for (TaskPage const& task : page.tasks)
     for (Finding const& finding : task.findings) {
       serious += finding.severity == Severity::error;
@@ -164,11 +164,11 @@ std::string check_text(CheckPage const& page) {
     }
   out += fmt::format("{}: {}, {}, {}: ", page.file, count(static_cast<int>(page.models.size()), "model"),
                      count(page.data_blocks, "data block"), count(static_cast<int>(page.tasks.size()), "task"));
-  if (serious == 0 && warnings == 0)
-    out += "nothing found\n";
-  else
-    out += fmt::format("{}{}{}\n", serious > 0 ? count(serious, "serious finding") : std::string(),
-                       serious > 0 && warnings > 0 ? ", " : "", warnings > 0 ? count(warnings, "warning") : std::string());
+  std::vector<std::string> found;
+  if (page.errors > 0) found.push_back(count(page.errors, "error"));
+  if (serious > 0) found.push_back(count(serious, "serious finding"));
+  if (warnings > 0) found.push_back(count(warnings, "warning"));
+  out += fmt::format("{}\n", found.empty() ? "nothing found" : fmt::format("{}", fmt::join(found, ", ")));
   return out;
 }
 
