@@ -11,6 +11,13 @@ namespace {
 
 using Kind = Typed::Kind;
 
+Typed of_unknown_unit(NodeId node, Span span) {
+  Typed result;
+  result.node = node;
+  result.span = span;
+  return result;
+}
+
 Span cover_all(std::span<Typed const> operands) {
   Span span = operands.front().span;
   for (Typed const& operand : operands) span = cover(span, operand.span);
@@ -129,7 +136,7 @@ Unit pure(Unit unit) {
 
 // The kind of a result whose operands share one unit.
 Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> const& unit) {
-  Typed result{node, Kind::unknown, {}, cover_all(operands)};
+  Typed result = of_unknown_unit(node, cover_all(operands));
   if (unit) {
     result.kind = Kind::known;
     result.unit = *unit;
@@ -171,7 +178,7 @@ Typed add(Graph& graph, Typed a, Typed b, bool subtract) {
 }
 
 Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
-  Typed result{graph.multiply(a.node, b.node), Kind::unknown, {}, cover(a.span, b.span)};
+  Typed result = of_unknown_unit(graph.multiply(a.node, b.node), cover(a.span, b.span));
   if (a.kind == Kind::literal && b.kind == Kind::literal) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
@@ -183,7 +190,7 @@ Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
 }
 
 Typed divide(Graph& graph, Typed const& a, Typed const& b) {
-  Typed result{graph.divide(a.node, b.node), Kind::unknown, {}, cover(a.span, b.span)};
+  Typed result = of_unknown_unit(graph.divide(a.node, b.node), cover(a.span, b.span));
   if (a.kind == Kind::literal && b.kind == Kind::literal) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
@@ -196,7 +203,7 @@ Typed divide(Graph& graph, Typed const& a, Typed const& b) {
 }
 
 Typed power(Graph& graph, Typed const& a, Typed const& b) {
-  Typed result{graph.power(a.node, b.node), Kind::unknown, {}, cover(a.span, b.span)};
+  Typed result = of_unknown_unit(graph.power(a.node, b.node), cover(a.span, b.span));
   if (a.kind == Kind::literal && b.kind == Kind::literal) {
     result.kind = Kind::literal;
   } else if (a.kind == Kind::literal && b.kind == Kind::known) {

@@ -111,11 +111,12 @@ void free_run(Model& model) {
         most[model.graph[id].index] = std::max(most[model.graph[id].index], model.graph[id].lag);
   });
   std::map<int, std::size_t> past_of;
-  for (auto const& [channel, lags] : most) {
+  for (auto const& each : most) {
+    int const channel = each.first;
     auto const found =
         std::find_if(model.pasts.begin(), model.pasts.end(), [&](Past const& past) { return past.channel == channel; });
     past_of[channel] = static_cast<std::size_t>(found - model.pasts.begin());
-    add_registers(model, past_of[channel], lags, measured_leaf(model, channel));
+    add_registers(model, past_of[channel], each.second, measured_leaf(model, channel));
   }
   // A present sample of another channel is what the model predicts for it, which may read a further one.
   auto const predicted = [&](NodeId leaf) -> std::optional<NodeId> {
