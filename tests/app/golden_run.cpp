@@ -61,7 +61,7 @@ TEST_CASE("every shipped model runs to its recorded summary and exit code") {
       found[task.path().filename().string()] = json::parse(read_file(task.path() / "summary.json"));
     }
     // The version is a banner; paths in messages are those of this checkout.
-    std::string text = with(found.dump(1), models.string() + "/", "");
+    std::string text = without(found.dump(1), models.string() + "/");
     found = json::parse(text);
     for (auto& [name, summary] : found.items())
       if (summary.is_object()) summary.erase("versions");

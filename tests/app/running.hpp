@@ -50,7 +50,13 @@ inline RunResult run_text(std::filesystem::path const& name, std::string const& 
   return {static_cast<int>(code), out.str(), notices.str()};
 }
 
-/// `text` with every occurrence of `from` replaced.
+/// `text` without any occurrence of `part`.
+inline std::string without(std::string text, std::string const& part) {
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at)) text.erase(at, part.size());
+  return text;
+}
+
+/// `text` with every occurrence of `from` replaced; there is one.
 inline std::string with(std::string text, std::string const& from, std::string const& to) {
   if (text.find(from) == std::string::npos) throw std::runtime_error("nothing to replace: " + from);
   for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
