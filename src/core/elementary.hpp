@@ -1,5 +1,6 @@
 // Elementary functions with one answer on every processor: SLEEF's deterministic `finz_` family, scalar and over lanes.
-// Nothing in simulation, densities, transforms or random variates may call std:: for these; sqrt, fma, fabs and floor are exact and may be used.
+// Nothing in simulation, densities, transforms or random variates may call std:: for these; sqrt, fma, fabs and floor are exact and
+// may be used.
 #pragma once
 
 namespace sysid::elementary {

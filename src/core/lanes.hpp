@@ -21,9 +21,7 @@ class LaneView {
   int stride() const { return stride_; }
   T* data() const { return data_; }
   T& operator()(int row, int lane) const { return data_[static_cast<std::ptrdiff_t>(row) * stride_ + lane]; }
-  std::span<T> row(int r) const {
-    return {data_ + static_cast<std::ptrdiff_t>(r) * stride_, static_cast<std::size_t>(width_)};
-  }
+  std::span<T> row(int r) const { return {data_ + static_cast<std::ptrdiff_t>(r) * stride_, static_cast<std::size_t>(width_)}; }
   /// Lanes [first, first + count) of the same rows.
   LaneView columns(int first, int count) const { return {data_ + first, rows_, count, stride_}; }
 

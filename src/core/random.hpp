@@ -1,4 +1,5 @@
-// Counter-based random streams (Philox 4x64 of Random123): a number depends on its key and position alone, never on who drew before.
+// Counter-based random streams (Philox 4x64 of Random123): a number depends on its key and position alone, never on who drew
+// before.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,14 +8,14 @@ namespace sysid {
 
 /// What a stream is for; streams of different purposes never meet. Append only: the values enter every stored result.
 enum class Purpose : std::uint32_t {
-  prior = 1,        // draws from the prior
-  start = 2,        // global search and starts of chains
-  proposal = 3,     // moves of a chain
-  accept = 4,       // acceptance of a move
-  noise = 5,        // measurement noise of made data
-  input = 6,        // generated input records
-  selection = 7,    // which posterior draws are used
-  redraw = 8,       // parameters redrawn at each step
+  prior = 1,      // draws from the prior
+  start = 2,      // global search and starts of chains
+  proposal = 3,   // moves of a chain
+  accept = 4,     // acceptance of a move
+  noise = 5,      // measurement noise of made data
+  input = 6,      // generated input records
+  selection = 7,  // which posterior draws are used
+  redraw = 8,     // parameters redrawn at each step
   test = 9,
   prediction = 10,  // measurement noise of predictions
   population = 11,  // parameters of an experiment that was not fitted, from their prior

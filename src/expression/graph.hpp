@@ -54,9 +54,9 @@ enum class LeafKind : std::uint8_t {
   input,          // at the current time
   input_rate,     // its time derivative
   time,
-  measured,   // the channel's sample at the current time
-  previous,   // a remembered value, `index` says which, as it was at the sample before
-  unknown,    // a highest derivative still to be solved for, or a place holder of a symbolic pass
+  measured,     // the channel's sample at the current time
+  previous,     // a remembered value, `index` says which, as it was at the sample before
+  unknown,      // a highest derivative still to be solved for, or a place holder of a symbolic pass
   step_size,    // h of the integrator
   control,      // a lane's step control: program/embedded.hpp
   interval,     // what step control reads of the data between two samples

@@ -98,8 +98,7 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   out.script += "plot ";
   if (has_noise) out.script += fmt::format("$fit using 1:5:6 with filledcurves fc rgb '{}' fs noborder, ", noise_band);
   out.script += fmt::format("$fit using 1:3:4 with filledcurves fc rgb '{}' fs noborder, ", response_band);
-  if (has_data)
-    out.script += fmt::format("$fit using 1:7 with points pt 7 ps {} lc rgb '{}', ", point_size, data);
+  if (has_data) out.script += fmt::format("$fit using 1:7 with points pt 7 ps {} lc rgb '{}', ", point_size, data);
   out.script += fmt::format("$fit using 1:2 with lines lw 1.4 lc rgb '{}'\n", model);
 
   out.script += end_legend();
