@@ -1,0 +1,62 @@
+// One task on its way from the tree to what it runs from: what the verbs share, and one function for each verb, in a file of its
+// own (task_fit.cpp, task_predict.cpp, task_simulate.cpp).
+#pragma once
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "check/option_reader.hpp"
+#include "check/tasks.hpp"
+
+namespace sysid {
+
+class TaskChecker {
+ public:
+  TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile const& file, std::span<BackendSettings const> backends,
+              std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics);
+
+  /// The checked task, or nothing when an error was reported or the task refers to something that failed its own check.
+  std::optional<Task> run();
+
+ private:
+  // --- tasks.cpp
+  std::optional<int> item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items, std::string const& kind);
+  // Equations that cannot be solved for their highest derivatives need a solver that does without.
+  void suit(SolverSettings& solver, Model const& model);
+  void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options);
+  // `prediction = one_step`, for a model that has lags to read.
+  void prediction(ast::Option const& option, Model const* model, PredictionRule& rule);
+
+  // --- task_experiments.cpp
+  // One experiment of the task, without its name; nothing when a diagnostic was added.
+  std::optional<ExperimentUse> experiment(ast::DataReference const& reference, Model const* model);
+  // All of the task, named. preposition: before its data, `to` or `on`; no sample is fitted twice.
+  std::vector<ExperimentUse> experiments(Model const* model, std::string const& preposition);
+
+  // --- task_fit.cpp
+  FitTask fit();
+
+  // --- task_predict.cpp
+  PredictTask predict();
+
+  // --- task_simulate.cpp
+  SimulateTask simulate();
+  // `values(m = 1, ...)`.
+  void values(ast::Call const& call, Model const& model, SimulateTask& task);
+  // The names that states, channel locations and (when the model makes the noise) noise need.
+  std::vector<std::string> values_needed(Model const& model, SimulateTask const& task) const;
+
+  ast::Task const& tree_;
+  TaskNames const& names_;
+  CheckedFile const& file_;
+  std::span<BackendSettings const> backends_;
+  std::span<ast::Task const* const> all_tasks_;
+  Diagnostics& diagnostics_;
+  std::size_t before_;
+  OptionReader options_;
+  bool unresolved_ = false;  // the task refers to something that failed its own check
+};
+
+}  // namespace sysid
