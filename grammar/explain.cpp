@@ -247,7 +247,7 @@ std::uint32_t behind_item(Layout const& layout, std::uint32_t where, std::string
     int depth = 0;
     for (std::size_t i = found; i < layout.tokens.size(); ++i) {
       Token const& token = layout.tokens[i];
-      bool const next_block = depth == 0 && token.newline_before && (token.is("model") || token.is("data"));
+      bool const next_block = depth == 0 && token.newline_before && words::contains(words::blocks, token.text);
       if (next_block) break;
       depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
       if (token.is("}") && depth <= 0) return token.span.end;

@@ -110,7 +110,8 @@ class LayoutPass {
     std::size_t const verb = i + 1 < tokens_.size() && tokens_[i + 1].is("=") ? i + 2 : i;
     return tokens_[i].newline_before && tokens_[i].kind == TokenKind::word && verb + 1 < tokens_.size() &&
            words::contains(words::verbs, tokens_[verb].text) && tokens_[verb + 1].kind == TokenKind::word &&
-           !tokens_[verb + 1].newline_before && !words::contains(words::reserved, tokens_[verb + 1].text);
+           !tokens_[verb + 1].newline_before && !words::contains(words::reserved, tokens_[verb + 1].text) &&
+           !(verb == i && tokens_[verb + 1].is("probability"));  // of a candidate with such a name
   }
 
   void match_bracket(std::size_t i) {
@@ -127,7 +128,7 @@ class LayoutPass {
     } else if (token.is("{")) {
       close_unclosed(i);
       // Blocks do not nest: a block that begins while another is open means that the other was never closed.
-      if (!open_.empty() && (tokens_[line_].is("model") || tokens_[line_].is("data"))) leave_block(line_);
+      if (!open_.empty() && words::contains(words::blocks, tokens_[line_].text)) leave_block(line_);
       open_.push_back(i);
     } else if (token.is("}")) {
       close_unclosed(i);

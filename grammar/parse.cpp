@@ -2,6 +2,7 @@
 #include "syntax/parse.hpp"
 
 #include "grammar/actions.hpp"
+#include "grammar/candidates.hpp"
 #include "grammar/data.hpp"
 #include "grammar/model.hpp"
 #include "grammar/task.hpp"
@@ -31,7 +32,7 @@ constexpr x3::rule<lone_expression_tag, ast::Expression> lone_expression = wante
 auto const file_def = *(file_line[append(&ast::File::items)] | '\n' | ';');
 auto const file_line_def = (!(x3::lit('\n') | ';' | x3::eoi)) > item[take] > end_of_statement;
 auto const use_def = located[keyword("use") > name[to(&ast::Use::module)]];
-auto const item_def = use[take] | model[take] | data[take] | function_definition[take] | task[take];
+auto const item_def = use[take] | model[take] | data[take] | candidates[take] | function_definition[take] | task[take];
 auto const lone_expression_def = x3::eps > *x3::lit('\n') > expression[take] > end_of_statement > *x3::lit('\n') > x3::eoi;
 
 BOOST_SPIRIT_DEFINE(file, file_line, use, item, lone_expression)

@@ -81,9 +81,12 @@ class Walk {
     if (previous().kind != TokenKind::word || previous().span.end != token().span.begin) return true;
     if (counts()) return false;
     // Directly behind a name: an index, but for the names that are being declared and for columns.
-    if (!is_declaration(tokens_) || !inside_.empty() || !words::contains(declares_units, tokens_[0].text)) return false;
+    if (!is_declaration(tokens_) || is_candidate() || !inside_.empty() || !words::contains(declares_units, tokens_[0].text)) return false;
     return !equals_seen_ || tokens_[0].is("input") || tokens_[0].is("measure");
   }
+
+  /// `state probability p[1]`: a candidate model of that name.
+  bool is_candidate() const { return tokens_.size() > 2 && tokens_[1].is("probability") && begins_operand(tokens_[2]); }
 
   /// `[1]`, `[1, 2]`: an index wherever it stands, since no unit is a bare number behind a name.
   bool counts() const {
@@ -112,7 +115,7 @@ class Walk {
     if (is_reserved(previous())) return false;
     if (previous().is("rows") && tokens_[0].is("split")) return false;
     bool const between = inside_.empty() && at_ > 1 && ends_operand(tokens_[at_ - 2]);
-    return !between || !(previous().is("with") || words::contains(words::prepositions, previous().text));
+    return !between || !(previous().is("with") || previous().is("probability") || words::contains(words::prepositions, previous().text));
   }
 
   std::optional<int> behind_previous() const {

@@ -53,21 +53,28 @@ TaskPage check_task(Session& session, Task const& task) {
   CheckedFile const& file = session.file;
   TaskPage page;
   page.name = task.name;
-  auto const data = data_of(file, task);
+  auto const data = data_of(file, task);  // of a selection and its predictions the same for each candidate
   if (auto const* made = std::get_if<SimulateTask>(&task.what)) {
     page.what = fmt::format("simulate {}: {} samples at {:.6g} Hz into {}", file.models[static_cast<std::size_t>(made->model)].name,
                             made->samples, 1 / made->step, made->file);
   } else if (auto const* fit = std::get_if<FitTask>(&task.what)) {
     Model const& model = file.models[static_cast<std::size_t>(fit->model)];
     page.what = fmt::format("fit {} to {} with {}", model.name, data_names(file, fit->experiments), fit->backend);
-    auto const experiments = cover(session, *data, page);
+    auto const experiments = cover(session, data.front(), page);
     check_bands(page);
     if (experiments && !refusal(task, *fit, model, *experiments)) look_ahead(session, *fit, *experiments, page);
+  } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
+    CandidateSet const& set = file.candidates[static_cast<std::size_t>(selection->candidates)];
+    page.what =
+        fmt::format("select {} ({} {}) to {} with {}", set.name, set.models.size(), set.models.size() == 1 ? "model" : "models",
+                    data_names(file, selection->fits.front().experiments), selection->backend);
+    cover(session, data.front(), page);
+    check_bands(page);
   } else {
     auto const& prediction = std::get<PredictTask>(task.what);
     page.what = fmt::format("predict {} on {}", file.tasks[static_cast<std::size_t>(prediction.fit)].name,
                             data_names(file, prediction.experiments));
-    cover(session, *data, page);
+    cover(session, data.front(), page);
   }
   return page;
 }

@@ -12,6 +12,7 @@
 #include "app/results.hpp"
 #include "app/session.hpp"
 #include "check/check.hpp"
+#include "inference/abc/settings.hpp"
 #include "inference/backend.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "model/dump.hpp"
@@ -27,10 +28,22 @@ std::vector<BackendSettings> backend_settings() {
   return rows;
 }
 
+std::vector<BackendSettings> selector_settings() { return {{"abc_smc", abc::settings()}}; }
+
 std::string verb_of(Task const& task) {
   return std::holds_alternative<SimulateTask>(task.what) ? "simulate"
          : std::holds_alternative<FitTask>(task.what)    ? "fit"
+         : std::holds_alternative<SelectTask>(task.what) ? "select"
                                                          : "predict";
+}
+
+UserError selection_without_backend(Task const& task, SelectTask const& what) {
+  return UserError({Severity::error,
+                    "E6008",
+                    fmt::format("there is no back end `{}` in this program", what.backend),
+                    Label{task.span, {}},
+                    {},
+                    "fit each candidate with `mh`"});
 }
 
 // Names of the file in a task that it could have, so that the line can be copied.
@@ -41,6 +54,9 @@ std::string nothing_to_do(Source const& source, CheckedFile const& file, std::ve
   std::string const data = file.data.empty() ? "DATA" : file.data.front().name;
   if (verbs.empty() || verbs.front() == "fit")
     text += fmt::format("help: add one, for example `posterior = fit {} to {} with mh`\n", model, data);
+  else if (verbs.front() == "select")
+    text += fmt::format("help: add one, for example `selection = select {} to {} with abc_smc`\n",
+                        file.candidates.empty() ? model : file.candidates.front().name, data);
   else if (verbs.front() == "predict")
     text += fmt::format("help: add one, for example `forecast = predict posterior on {}`\n", data);
   else
@@ -55,7 +71,8 @@ std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics) {
   if (!tree) return std::nullopt;
   auto const modules = load_modules(*tree, source, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
-  return check(elaborate(*tree, modules, diagnostics), backend_settings(), diagnostics);
+  auto const fitting = backend_settings(), selecting = selector_settings();
+  return check(elaborate(*tree, modules, diagnostics), {fitting, selecting}, diagnostics);
 }
 
 std::string dump_stage(Source& source, std::string const& stage, Diagnostics& diagnostics) {
@@ -89,8 +106,11 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
       model = fit->model;
       if (!seed) seed = fit->seed;
     } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
-      model = std::get<FitTask>(file.tasks[static_cast<std::size_t>(prediction->fit)].what).model;
+      model = data_of(file, task).front().model;
       if (!seed) seed = prediction->seed;
+    } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
+      model = selection->fits.front().model;
+      if (!seed) seed = selection->seed;
     }
     if (auto const wrong = stored_otherwise(session, task, model, seed); wrong && options.resume) throw UserError(*wrong);
     return true;
@@ -121,12 +141,16 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
     if (complete_already.contains(&task)) notices << fmt::format("{}: complete, kept\n", task.name);
     if (!wanted(task)) continue;
     ExitCode const code = std::visit(
-        [&](auto const& what) {
+        [&](auto const& what) -> ExitCode {
           using What = std::decay_t<decltype(what)>;
           if constexpr (std::is_same_v<What, SimulateTask>)
             return run_simulate(session, task, what);
           else if constexpr (std::is_same_v<What, FitTask>)
             return run_fit(session, static_cast<int>(i), task, what);
+          else if constexpr (std::is_same_v<What, SelectTask>)
+            throw selection_without_backend(task, what);
+          else if (auto const* selection = std::get_if<SelectTask>(&file.tasks[static_cast<std::size_t>(what.fit)].what))
+            throw selection_without_backend(task, *selection);
           else
             return run_predict(session, task, what);
         },

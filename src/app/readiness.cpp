@@ -14,13 +14,24 @@
 
 namespace sysid {
 
-std::optional<TaskData> data_of(CheckedFile const& file, Task const& task) {
-  if (auto const* fit = std::get_if<FitTask>(&task.what))
-    return TaskData{fit->model, &fit->experiments, fit->start, fit->prediction};
-  auto const* prediction = std::get_if<PredictTask>(&task.what);
-  if (prediction == nullptr) return std::nullopt;
-  int const model = std::get<FitTask>(file.tasks[static_cast<std::size_t>(prediction->fit)].what).model;
-  return TaskData{model, &prediction->experiments, prediction->start, prediction->prediction};
+std::vector<TaskData> data_of(CheckedFile const& file, Task const& task) {
+  auto const of_fit = [](FitTask const& fit) { return TaskData{fit.model, &fit.experiments, fit.start, fit.prediction}; };
+  std::vector<TaskData> all;
+  if (auto const* fit = std::get_if<FitTask>(&task.what)) {
+    all.push_back(of_fit(*fit));
+  } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
+    for (FitTask const& fit : selection->fits) all.push_back(of_fit(fit));
+  } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
+    Task const& subject = file.tasks[static_cast<std::size_t>(prediction->fit)];
+    auto const add = [&](int model, std::vector<ExperimentUse> const& experiments) {
+      all.push_back({model, &experiments, prediction->start, prediction->prediction});
+    };
+    if (auto const* selection = std::get_if<SelectTask>(&subject.what))
+      for (std::size_t c = 0; c < selection->fits.size(); ++c) add(selection->fits[c].model, prediction->candidate_experiments[c]);
+    else
+      add(std::get<FitTask>(subject.what).model, prediction->experiments);
+  }
+  return all;
 }
 
 std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
@@ -90,32 +101,32 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
     add(one, false);
   };
   for (Task const& task : session.file.tasks) {
-    auto const data = wanted(task) ? data_of(session.file, task) : std::nullopt;
-    if (!data) continue;
     bool complete = true;
-    auto const as_predicted = with_prediction(session.file.models[static_cast<std::size_t>(data->model)], data->prediction);
-    for (ExperimentUse const& use : *data->experiments) {
-      DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
-      Task const* made = maker(session, block);
-      if (left_out.contains({use.data, data->model}) || (made != nullptr && wanted(*made))) {
+    for (TaskData const& data : wanted(task) ? data_of(session.file, task) : std::vector<TaskData>()) {
+      auto const as_predicted = with_prediction(session.file.models[static_cast<std::size_t>(data.model)], data.prediction);
+      for (ExperimentUse const& use : *data.experiments) {
+        DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+        Task const* made = maker(session, block);
+        if (left_out.contains({use.data, data.model}) || (made != nullptr && wanted(*made))) {
+          complete = false;
+          continue;
+        }
+        try {
+          cut(session.record(use.data, data.model), block, *as_predicted, use.part, data.start);
+          continue;
+        } catch (UnusableData const& error) {
+          left_out.insert({use.data, data.model});
+          add(error.diagnostics(), false);
+        } catch (UnreadableData const& error) {
+          left_out.insert({use.data, data.model});
+          add(error.diagnostics(), true);
+        } catch (UserError const& error) {
+          add_one(error.diagnostic());
+        }
         complete = false;
-        continue;
       }
-      try {
-        cut(session.record(use.data, data->model), block, *as_predicted, use.part, data->start);
-        continue;
-      } catch (UnusableData const& error) {
-        left_out.insert({use.data, data->model});
-        add(error.diagnostics(), false);
-      } catch (UnreadableData const& error) {
-        left_out.insert({use.data, data->model});
-        add(error.diagnostics(), true);
-      } catch (UserError const& error) {
-        add_one(error.diagnostic());
-      }
-      complete = false;
     }
-    auto const* fit = std::get_if<FitTask>(&task.what);
+    auto const* fit = wanted(task) ? std::get_if<FitTask>(&task.what) : nullptr;
     if (fit == nullptr || !complete) continue;
     if (auto const why = refusal(task, *fit, session.file.models[static_cast<std::size_t>(fit->model)],
                                  load_experiments(session, fit->experiments, fit->model, fit->start, fit->prediction)))

@@ -25,14 +25,14 @@ struct Readiness {
 /// the file makes are left for later.
 Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted);
 
-/// The data of a fit or predict task; nothing for others. `model`: which reads them.
+/// The data of a fit, select or predict task, once for each model that reads them; empty for others.
 struct TaskData {
   int model = 0;
   std::vector<ExperimentUse> const* experiments = nullptr;
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;
 };
-std::optional<TaskData> data_of(CheckedFile const& file, Task const& task);
+std::vector<TaskData> data_of(CheckedFile const& file, Task const& task);
 
 /// The simulate task whose result the data block reads, or nullptr.
 Task const* maker(Session const& session, DataBlock const& block);

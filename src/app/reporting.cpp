@@ -50,6 +50,7 @@ std::function<double(double)> prior_density(Parameter const& parameter, Model co
 
 std::vector<ExperimentUse> const& experiments_of(Task const& task) {
   if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->experiments;
+  if (auto const* selection = std::get_if<SelectTask>(&task.what)) return selection->fits.front().experiments;
   return std::get<FitTask>(task.what).experiments;
 }
 

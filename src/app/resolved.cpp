@@ -21,6 +21,8 @@ std::string value_text(SettingValue const& value) {
           return shortest(v);
         else if constexpr (std::is_same_v<Value, bool>)
           return v ? "yes" : "no";
+        else if constexpr (std::is_same_v<Value, std::vector<double>>)
+          return numbers_text(v);
         else
           return v;
       },
@@ -31,8 +33,10 @@ std::string value_text(SettingValue const& value) {
 
 std::string settings_text(std::string const& backend, Settings const& settings) {
   std::string arguments;
-  for (auto const& [name, value] : settings.all())
+  for (auto const& [name, value] : settings.all()) {
+    if (auto const* numbers = std::get_if<std::vector<double>>(&value); numbers != nullptr && numbers->empty()) continue;
     arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, value_text(value));
+  }
   return arguments.empty() ? backend : fmt::format("{}({})", backend, arguments);
 }
 

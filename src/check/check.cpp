@@ -1,10 +1,12 @@
-// A whole file: models, then data blocks, then tasks in order. What fails its own check is not reported again where it is used.
+// A whole file: models and data blocks, then sets of candidates, then tasks in order. What fails its own check is not reported
+// again where it is used.
 #include "check/check.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
+#include "check/candidates.hpp"
 #include "check/consequences.hpp"
 #include "check/data.hpp"
 #include "check/errors.hpp"
@@ -33,6 +35,12 @@ class Unique {
 
 namespace {
 
+ast::Model const* find_model(ast::File const& tree, std::string const& name) {
+  for (ast::Item const& item : tree.items)
+    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
+  return nullptr;
+}
+
 bool mentioned(std::vector<ast::Task const*> const& tasks, std::string const& block) {
   return std::any_of(tasks.begin(), tasks.end(), [&](ast::Task const* task) {
     return std::any_of(task->data.begin(), task->data.end(), [&](auto const& each) { return each.data.text == block; });
@@ -41,8 +49,7 @@ bool mentioned(std::vector<ast::Task const*> const& tasks, std::string const& bl
 
 }  // namespace
 
-std::optional<CheckedFile> check(Elaborated const& elaborated, std::span<BackendSettings const> backends,
-                                 Diagnostics& diagnostics) {
+std::optional<CheckedFile> check(Elaborated const& elaborated, Backends const& backends, Diagnostics& diagnostics) {
   ast::File const& tree = elaborated.tree;
   Lineage const& lineage = elaborated.lineage;
   CheckedFile file;
@@ -53,7 +60,7 @@ std::optional<CheckedFile> check(Elaborated const& elaborated, std::span<Backend
   std::vector<ast::FunctionDefinition const*> functions;
   std::vector<ast::Task const*> tasks;
   Unique unique_model("model", diagnostics), unique_data("data block", diagnostics), unique_task("task", diagnostics),
-      unique_function("function", diagnostics);
+      unique_function("function", diagnostics), unique_candidates("candidate set", diagnostics);
   for (ast::Item const& item : tree.items) {
     if (auto const* function = std::get_if<ast::FunctionDefinition>(&item))
       if (unique_function(function->name, function->name.text)) functions.push_back(function);
@@ -78,6 +85,15 @@ std::optional<CheckedFile> check(Elaborated const& elaborated, std::span<Backend
       names.data[data->name.text] = checked ? std::optional(static_cast<int>(file.data.size())) : std::nullopt;
       if (checked) file.data.push_back(std::move(*checked));
     }
+  }
+  for (ast::Item const& item : tree.items) {
+    auto const* set = std::get_if<ast::Candidates>(&item);
+    if (set == nullptr || !unique_candidates(set->name, set->name.text)) continue;
+    if (ast::Model const* model = find_model(tree, set->name.text); model != nullptr)
+      diagnostics.add(errors::model_and_candidates(set->name, model->name.span));
+    auto checked = check_candidates(*set, names.models, file, diagnostics);
+    names.candidates[set->name.text] = checked ? std::optional(static_cast<int>(file.candidates.size())) : std::nullopt;
+    if (checked) file.candidates.push_back(std::move(*checked));
   }
   for (ast::Task const* task : tasks) {
     auto checked = check_task(*task, names, file, backends, tasks, diagnostics);

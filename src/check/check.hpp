@@ -16,7 +16,13 @@ struct BackendSettings {
   std::span<SettingRow const> settings;
 };
 
+/// Those that a file's tasks may name.
+struct Backends {
+  std::span<BackendSettings const> fitting;
+  std::span<BackendSettings const> selecting;
+};
+
 /// The checked file, or nothing when an error was reported. Warnings do not prevent a result.
-std::optional<CheckedFile> check(Elaborated const& file, std::span<BackendSettings const> backends, Diagnostics& diagnostics);
+std::optional<CheckedFile> check(Elaborated const& file, Backends const& backends, Diagnostics& diagnostics);
 
 }  // namespace sysid

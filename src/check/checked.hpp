@@ -113,10 +113,54 @@ struct FitTask {
   std::optional<std::uint64_t> seed;
 };
 
+/// One model of a set, expanded: "bouc_wen(n = 2)".
+struct CandidateModel {
+  int model = 0;  // index into CheckedFile::models
+  double probability = 0;
+  Span span;
+  std::string name;
+};
+
+/// Models that explain the same data; their probabilities sum to 1. A task that names a model where a set may stand has a set of
+/// that model alone, under its name.
+struct CandidateSet {
+  std::string name, title;
+  Span span;
+  std::vector<CandidateModel> models;
+  std::vector<std::string> shared;  // parameters that mean the same in every model that has them
+};
+
+/// How far a simulation without noise lies from the data: of each channel one number, their mean by weights.
+struct DistanceRule {
+  enum class Kind {
+    nmse,        // 100 x mean square of the residuals / variance of what was measured
+    rmse,        // root of their mean square
+    expression,  // the mean of an expression of the sample and its simulation, not negative
+  };
+  Kind kind = Kind::nmse;
+  std::vector<std::string> channels;             // that the data measure, in the order of the first candidate's declarations
+  std::vector<double> weights;                   // per channel, not negative, not all 0
+  std::vector<std::vector<NodeId>> expressions;  // [candidate][channel] in the graph of the candidate's model, SI; else empty
+  std::string text;                              // as written
+};
+
+/// The selection of a model among candidates.
+struct SelectTask {
+  int candidates = 0;         // index into CheckedFile::candidates
+  std::vector<FitTask> fits;  // per candidate: what it is fitted to and how it is simulated, without a back end
+  std::string backend;
+  Settings settings;
+  DistanceRule distance;
+  std::optional<std::uint64_t> seed;
+};
+
+/// With the draws of a fit, or of a selection: then those of each candidate count as much as it is probable.
 struct PredictTask {
   int fit = 0;  // index into CheckedFile::tasks
   std::vector<ExperimentUse> experiments;
   std::vector<int> fitted;  // per experiment the one of the fit whose parameters it has; -1: a new one
+  std::vector<std::vector<ExperimentUse>>
+      candidate_experiments;  // of a selection, per candidate; `experiments` are the first one's
   int draws = 200;
   bool redraw_each_step = false;  // the tutorial's Fig. 8.4; the default is one draw per trajectory
   StartRule start;
@@ -127,13 +171,14 @@ struct PredictTask {
 struct Task {
   std::string name;
   Span span;
-  std::variant<SimulateTask, FitTask, PredictTask> what;
+  std::variant<SimulateTask, FitTask, SelectTask, PredictTask> what;
 };
 
 struct CheckedFile {
   ast::File tree;  // flat, for texts of models in reports
   std::vector<Model> models;
   std::vector<DataBlock> data;
+  std::vector<CandidateSet> candidates;
   std::vector<Task> tasks;
 };
 

@@ -124,6 +124,33 @@ Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model)
 Diagnostic other_step(Span span, double given, double declared, std::string const& model);
 Diagnostic task_too_late(ast::Name const& name);
 
+// candidate models and their selection (E65)
+Diagnostic candidate_twice(Span second, Span first, std::string const& model);
+/// open: how many of `models` have no probability of their own.
+Diagnostic probabilities(ast::Name const& set, double sum, int open, int models);
+Diagnostic not_a_probability(Span span, double value);
+Diagnostic shared_by_none(ast::Name const& name, std::string const& set, Names const& known);
+Diagnostic shared_by_one(ast::Name const& name, std::string const& model);
+Diagnostic shared_parameter_differs(ast::Name const& name, Span first, std::string const& one, Span other, std::string const& model,
+                                    bool same_unit);
+Diagnostic no_candidates(ast::Name const& set);
+Diagnostic candidate_without_channel(Span candidate, std::string const& model, Span channel, std::string const& other,
+                                     std::string const& name);
+Diagnostic channel_of_two_units(Span one, std::string const& model, Unit const& unit, Span other, std::string const& other_model,
+                                Unit const& other_unit, std::string const& name);
+Diagnostic distance_choice(Span span, std::string const& given, std::string const& channel);
+Diagnostic distance_reads(Span span, std::string const& name);
+Diagnostic distance_of_one_channel(Span span, Names const& channels, std::string const& example);
+Diagnostic distance_may_be_negative(Span span, std::string const& expression);
+Diagnostic distance_lacks_channel(Span span, std::string const& channel);
+Diagnostic distances_of_two_kinds(Span span, std::string const& one, Unit const& unit, std::string const& other,
+                                  Unit const& other_unit);
+Diagnostic expressions_of_two_units(Span second, Unit const& unit, Span first, Unit const& first_unit);
+Diagnostic no_weight(Span span);
+Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, Names const& known);
+Diagnostic arguments_of_candidates(Span span, std::string const& set);
+Diagnostic model_and_candidates(ast::Name const& name, Span model);
+
 // several experiments (E63)
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known);
 Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter);

@@ -48,8 +48,10 @@ Diagnostic option_choice(Span span, std::string const& option, std::string const
 }
 
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {
-  return error("E6007", task.verb.span, "this fit does not say with what",
-               fmt::format("add `with mh(samples = 25000)`; back ends: {}", quoted(known)));
+  bool const selects = task.verb.text == "select";
+  return error(
+      "E6007", task.verb.span, fmt::format("this {} does not say with what", selects ? "selection" : "fit"),
+      fmt::format("add `with {}`; back ends: {}", selects ? "abc_smc(particles = 1000)" : "mh(samples = 25000)", quoted(known)));
 }
 
 Diagnostic unknown_backend(ast::Name const& name, Names const& known) {

@@ -60,6 +60,14 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
         diagnostics_.add(errors::option_choice(argument.value.span, name, word.value_or(""), {"yes", "no"}));
       break;
     }
+    case SettingKind::numbers: {
+      auto const* list = std::get_if<ast::Box<ast::List>>(&argument.value.node);
+      std::vector<double> all;
+      for (ast::Expression const& item : list == nullptr ? std::vector{argument.value} : (*list)->items)
+        if (auto const value = number(item, name, Unit{}, row.minimum, row.maximum)) all.push_back(*value);
+      values.set(name, std::move(all));
+      break;
+    }
     case SettingKind::word: {
       std::vector<std::string> choices;
       std::istringstream stream{std::string(row.choices)};

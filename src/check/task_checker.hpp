@@ -14,7 +14,7 @@ namespace sysid {
 
 class TaskChecker {
  public:
-  TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile const& file, std::span<BackendSettings const> backends,
+  TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile& file, Backends const& backends,
               std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics);
 
   /// The checked task, or nothing when an error was reported or the task refers to something that failed its own check.
@@ -26,8 +26,14 @@ class TaskChecker {
   // Equations that cannot be solved for their highest derivatives need a solver that does without.
   void suit(SolverSettings& solver, Model const& model);
   void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options);
-  // `prediction = one_step`, for a model that has lags to read.
-  void prediction(ast::Option const& option, Model const* model, PredictionRule& rule);
+  void suit(FitTask& task, Model const& model);
+  // `prediction = one_step`, for models that have lags to read.
+  void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule);
+  // Whether the option says how a fit simulates; read into `task` then.
+  bool simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task);
+  // Whether the option names a back end, known or not.
+  bool backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
+                      std::string& backend, Settings& settings);
 
   // --- task_experiments.cpp
   // One experiment of the task, without its name; nothing when a diagnostic was added.
@@ -38,8 +44,18 @@ class TaskChecker {
   // --- task_fit.cpp
   FitTask fit();
 
+  // --- task_select.cpp
+  SelectTask select();
+  // What the task selects among: index into the sets of the file.
+  std::optional<int> candidate_set();
+  std::vector<FitTask> candidate_fits(CandidateSet const& set, FitTask const& common);
+  // The channels that the data measure; all candidates observe them in units of one kind.
+  std::vector<std::string> common_channels(CandidateSet const& set, std::vector<ExperimentUse> const& experiments);
+
   // --- task_predict.cpp
   PredictTask predict();
+  // Index of the task whose draws are used; nothing when it is none.
+  std::optional<int> fitted_task();
 
   // --- task_simulate.cpp
   SimulateTask simulate();
@@ -50,13 +66,15 @@ class TaskChecker {
 
   ast::Task const& tree_;
   TaskNames const& names_;
-  CheckedFile const& file_;
-  std::span<BackendSettings const> backends_;
+  CheckedFile& file_;
+  Backends backends_;
   std::span<ast::Task const* const> all_tasks_;
   Diagnostics& diagnostics_;
   std::size_t before_;
   OptionReader options_;
   bool unresolved_ = false;  // the task refers to something that failed its own check
 };
+
+std::vector<std::string> names_of(std::span<BackendSettings const> backends);
 
 }  // namespace sysid

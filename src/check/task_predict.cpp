@@ -1,4 +1,4 @@
-// `predict`: the fit whose draws it uses, and how.
+// `predict`: the fit or selection whose draws it uses, and how.
 #include "check/task_checker.hpp"
 
 #include <algorithm>
@@ -7,38 +7,53 @@
 
 namespace sysid {
 
+std::optional<int> TaskChecker::fitted_task() {
+  std::string const& name = tree_.subject.text;
+  auto const fit = std::find_if(file_.tasks.begin(), file_.tasks.end(), [&](Task const& each) { return each.name == name; });
+  if (fit != file_.tasks.end()) {
+    if (std::holds_alternative<FitTask>(fit->what) || std::holds_alternative<SelectTask>(fit->what))
+      return static_cast<int>(fit - file_.tasks.begin());
+    diagnostics_.add(errors::not_a_fit(tree_.subject));
+    return std::nullopt;
+  }
+  std::vector<std::string> known;
+  for (ast::Task const* each : all_tasks_)
+    if (each->verb.text == "fit" || each->verb.text == "select") known.push_back(task_name(*each));
+  auto const self = std::find(all_tasks_.begin(), all_tasks_.end(), &tree_);
+  auto const written = std::find_if(all_tasks_.begin(), all_tasks_.end(),
+                                    [&](ast::Task const* each) { return each != &tree_ && task_name(*each) == name; });
+  if (written == all_tasks_.end())
+    diagnostics_.add(errors::unknown_item(tree_.subject, "fit", known));
+  else if (written > self)
+    diagnostics_.add(errors::task_too_late(tree_.subject));
+  else
+    unresolved_ = true;  // it failed its own check
+  return std::nullopt;
+}
+
 PredictTask TaskChecker::predict() {
   PredictTask task;
-  auto const fit =
-      std::find_if(file_.tasks.begin(), file_.tasks.end(), [&](Task const& each) { return each.name == tree_.subject.text; });
-  Model const* model = nullptr;
-  if (fit == file_.tasks.end()) {
-    std::vector<std::string> known;
-    bool exists = false;
-    for (ast::Task const* each : all_tasks_) {
-      if (each->verb.text == "fit") known.push_back(task_name(*each));
-      if (each != &tree_ && task_name(*each) == tree_.subject.text) exists = true;
-    }
-    bool const later = exists && std::find_if(all_tasks_.begin(), all_tasks_.end(), [&](ast::Task const* each) {
-                                   return task_name(*each) == tree_.subject.text;
-                                 }) > std::find(all_tasks_.begin(), all_tasks_.end(), &tree_);
-    if (!exists)
-      diagnostics_.add(errors::unknown_item(tree_.subject, "fit", known));
-    else if (later)
-      diagnostics_.add(errors::task_too_late(tree_.subject));
+  std::vector<FitTask const*> fits;  // of a selection one per candidate
+  if (auto const fit = fitted_task()) {
+    task.fit = *fit;
+    Task const& subject = file_.tasks[static_cast<std::size_t>(*fit)];
+    if (auto const* selection = std::get_if<SelectTask>(&subject.what))
+      for (FitTask const& each : selection->fits) fits.push_back(&each);
     else
-      unresolved_ = true;  // it failed its own check
-  } else if (auto const* what = std::get_if<FitTask>(&fit->what)) {
-    task.fit = static_cast<int>(fit - file_.tasks.begin());
-    model = &file_.models[static_cast<std::size_t>(what->model)];
-  } else {
-    diagnostics_.add(errors::not_a_fit(tree_.subject));
+      fits.push_back(&std::get<FitTask>(subject.what));
   }
-  task.experiments = experiments(model, "on");
+  std::vector<int> models;
+  for (FitTask const* each : fits) models.push_back(each->model);
+  if (fits.empty()) experiments(nullptr, "on");
+  for (std::size_t c = 0; c < fits.size() && !diagnostics_.has_errors(before_); ++c) {
+    auto uses = experiments(&file_.models[static_cast<std::size_t>(models[c])], "on");
+    if (c == 0) task.experiments = uses;
+    if (std::holds_alternative<SelectTask>(file_.tasks[static_cast<std::size_t>(task.fit)].what))
+      task.candidate_experiments.push_back(std::move(uses));
+  }
   for (ExperimentUse const& use : task.experiments) {
     task.fitted.push_back(-1);
-    if (model == nullptr) continue;
-    std::vector<ExperimentUse> const& fitted = std::get<FitTask>(fit->what).experiments;
+    std::vector<ExperimentUse> const& fitted = fits.front()->experiments;
     bool const split = std::count_if(fitted.begin(), fitted.end(), [&](auto const& each) { return each.data == use.data; }) > 1;
     for (std::size_t e = 0; e < fitted.size(); ++e)
       if (fitted[e].data == use.data && (!split || fitted[e].part == use.part)) task.fitted.back() = static_cast<int>(e);
@@ -68,14 +83,14 @@ PredictTask TaskChecker::predict() {
     } else if (option.key && key == "start") {
       options_.start(option, task.start);
     } else if (option.key && key == "prediction") {
-      prediction(option, model, task.prediction);
+      prediction(option, models, task.prediction);
     } else if (option.key && key == "seed") {
       options_.seed(option, task.seed);
     } else {
       options_.unknown(option, {"draws", "redraw", "start", "prediction", "seed"});
     }
   }
-  if (model != nullptr) suit(task.start, *model, tree_.options);
+  for (int const model : models) suit(task.start, file_.models[static_cast<std::size_t>(model)], tree_.options);
   return task;
 }
 

@@ -1,14 +1,15 @@
 // Tasks: which verb it is, and what several verbs share.
 #include "check/tasks.hpp"
 
+#include <algorithm>
+
 #include "check/errors.hpp"
 #include "check/task_checker.hpp"
 
 namespace sysid {
 
-TaskChecker::TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile const& file,
-                         std::span<BackendSettings const> backends, std::span<ast::Task const* const> all_tasks,
-                         Diagnostics& diagnostics)
+TaskChecker::TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile& file, Backends const& backends,
+                         std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics)
     : tree_(tree),
       names_(names),
       file_(file),
@@ -26,6 +27,8 @@ std::optional<Task> TaskChecker::run() {
     task.what = simulate();
   } else if (tree_.verb.text == "fit") {
     task.what = fit();
+  } else if (tree_.verb.text == "select") {
+    task.what = select();
   } else {
     task.what = predict();
   }
@@ -63,7 +66,50 @@ void TaskChecker::suit(StartRule const& start, Model const& model, std::vector<a
       diagnostics_.add(errors::estimated_start_of_constraint(option.span, model.invariants.front().span));
 }
 
-void TaskChecker::prediction(ast::Option const& option, Model const* model, PredictionRule& rule) {
+bool TaskChecker::simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task) {
+  if (option.input || !option.key) return false;
+  if (key != "start" && key != "substeps" && key != "solver" && key != "prediction" && key != "seed") return false;
+  if (!options_.fresh(option, key)) return true;
+  if (key == "start")
+    options_.start(option, task.start);
+  else if (key == "prediction")
+    prediction(option, models, task.prediction);
+  else if (key == "seed")
+    options_.seed(option, task.seed);
+  else
+    task.settle = !options_.solver(option, task.solver);
+  return true;
+}
+
+bool TaskChecker::backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
+                                 std::string& backend, Settings& settings) {
+  if (option.input || option.key || key.empty()) return false;
+  auto const row = std::find_if(known.begin(), known.end(), [&](BackendSettings const& each) { return each.name == key; });
+  if (row == known.end()) {
+    bool const other =
+        std::any_of(backends_.fitting.begin(), backends_.fitting.end(), [&](auto const& each) { return each.name == key; }) ||
+        std::any_of(backends_.selecting.begin(), backends_.selecting.end(), [&](auto const& each) { return each.name == key; });
+    diagnostics_.add(other ? errors::backend_of_other_verb({{head_span(option.value)}, key}, tree_.verb.text, names_of(known))
+                           : errors::unknown_backend({{head_span(option.value)}, key}, names_of(known)));
+    backend = key;  // said once is enough
+    return true;
+  }
+  if (!options_.fresh(option, the_backend)) return true;
+  backend = key;
+  settings = Settings(row->settings);
+  if (ast::Call const* call = as_call(option.value)) options_.settings(*call, row->settings, settings);
+  return true;
+}
+
+void TaskChecker::suit(FitTask& task, Model const& model) {
+  suit(task.solver, model);
+  suit(task.start, model, tree_.options);
+  if (model.integrated()) return;  // else there is nothing to solve
+  task.solver = {};
+  task.settle = false;
+}
+
+void TaskChecker::prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule) {
   std::vector<std::string> names;
   std::optional<PredictionRule> chosen;
   for (PredictionRule const each : {PredictionRule::as_written, PredictionRule::one_step, PredictionRule::free_run}) {
@@ -74,19 +120,25 @@ void TaskChecker::prediction(ast::Option const& option, Model const* model, Pred
     diagnostics_.add(errors::option_choice(option.value.span, "prediction", as_word(option.value).value_or(""), names));
     return;
   }
-  if (model == nullptr || *chosen == PredictionRule::as_written) return;
-  if (model->dynamics != Dynamics::discrete)
-    diagnostics_.add(errors::prediction_without_lags(option.span, model->name));
-  else if (!with_prediction(*model, *chosen))
-    diagnostics_.add(errors::nothing_measured_to_predict_from(option.span, model->name));
   rule = *chosen;
+  if (rule == PredictionRule::as_written) return;
+  for (int const index : models) {
+    Model const& model = file_.models[static_cast<std::size_t>(index)];
+    if (model.dynamics != Dynamics::discrete) return diagnostics_.add(errors::prediction_without_lags(option.span, model.name));
+    if (!with_prediction(model, rule)) return diagnostics_.add(errors::nothing_measured_to_predict_from(option.span, model.name));
+  }
+}
+
+std::vector<std::string> names_of(std::span<BackendSettings const> backends) {
+  std::vector<std::string> names;
+  for (BackendSettings const& backend : backends) names.emplace_back(backend.name);
+  return names;
 }
 
 std::string task_name(ast::Task const& tree) { return tree.name ? tree.name->text : tree.verb.text + "_" + tree.subject.text; }
 
-std::optional<Task> check_task(ast::Task const& tree, TaskNames const& names, CheckedFile const& file,
-                               std::span<BackendSettings const> backends, std::span<ast::Task const* const> all_tasks,
-                               Diagnostics& diagnostics) {
+std::optional<Task> check_task(ast::Task const& tree, TaskNames const& names, CheckedFile& file, Backends const& backends,
+                               std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics) {
   return TaskChecker(tree, names, file, backends, all_tasks, diagnostics).run();
 }
 

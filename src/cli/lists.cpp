@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/module_page.hpp"
 #include "app/modules.hpp"
 #include "check/elaborate/array_functions.hpp"
 #include "core/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
+#include "inference/abc/settings.hpp"
 #include "inference/backend.hpp"
 
 namespace sysid {
@@ -26,8 +29,10 @@ std::string signature(DistributionRow const& row) {
 
 std::string with_settings(std::string_view name, std::string_view summary, std::span<SettingRow const> settings) {
   std::string text = fmt::format("{}: {}\n", name, summary);
+  std::size_t width = 10;
+  for (SettingRow const& setting : settings) width = std::max(width, setting.name.size());
   for (SettingRow const& setting : settings)
-    text += fmt::format("  {:<10} {:<10} {}\n", setting.name, setting.fallback, setting.summary);
+    text += fmt::format("  {:<{}} {:<10} {}\n", setting.name, width, setting.fallback, setting.summary);
   return text;
 }
 
@@ -47,6 +52,8 @@ std::string list(std::string const& topic) {
     for (SolverRow const& row : solvers()) text += with_settings(row.name, row.summary, row.settings);
   } else {
     for (BackendRow const& row : backends()) text += with_settings(row.name, row.summary, row.settings);
+    text +=
+        with_settings("abc_smc", "selection: sequential Monte Carlo without a likelihood, over candidate models", abc::settings());
   }
   return text;
 }

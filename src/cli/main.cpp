@@ -239,6 +239,7 @@ int main(int argument_count, char** arguments) {
   runs("run", "do all tasks of a file", {});
   runs("simulate", "do its simulate tasks: make data", {"simulate"});
   runs("fit", "do its fit tasks", {"fit"});
+  runs("select", "do its select tasks: which candidate model, with which parameters", {"select"});
   runs("predict", "do its predict tasks, from stored draws", {"predict"});
   CLI::App* checking = app.add_subcommand("check", "say what is wrong with a file and what its data can tell, before any sampling");
   checking->add_option("file", line.file, "the .sysid file")->required();

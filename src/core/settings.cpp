@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -32,6 +33,8 @@ SettingValue fallback_value(SettingRow const& row) {
       return std::string(row.fallback);
     case SettingKind::flag:
       return row.fallback == "true";
+    case SettingKind::numbers:
+      return std::vector<double>();
   }
   throw InternalError(fmt::format("setting `{}` has no kind", row.name));
 }
@@ -81,8 +84,19 @@ std::string refuse(SettingRow const& row, SettingValue const& value) {
     case SettingKind::flag:
       if (std::holds_alternative<bool>(value)) return {};
       return "it must be true or false";
+    case SettingKind::numbers: {
+      auto const* const numbers = std::get_if<std::vector<double>>(&value);
+      if (numbers && std::all_of(numbers->begin(), numbers->end(), inside)) return {};
+      return fmt::format("it must be a list of numbers{}", allowed_range(row));
+    }
   }
   return {};
+}
+
+std::string numbers_text(std::vector<double> const& values) {
+  std::string text;
+  for (double const value : values) text += fmt::format("{}{}", text.empty() ? "" : ", ", value);
+  return "(" + text + ")";
 }
 
 Settings::Settings(std::span<SettingRow const> rows) {
@@ -110,6 +124,11 @@ double Settings::real(std::string const& name) const {
 std::string const& Settings::word(std::string const& name) const {
   if (auto const* const value = std::get_if<std::string>(&at(name))) return *value;
   throw InternalError(fmt::format("setting `{}` is not a word", name));
+}
+
+std::vector<double> const& Settings::numbers(std::string const& name) const {
+  if (auto const* const value = std::get_if<std::vector<double>>(&at(name))) return *value;
+  throw InternalError(fmt::format("setting `{}` is not a list of numbers", name));
 }
 
 bool Settings::flag(std::string const& name) const {

@@ -11,25 +11,34 @@
 
 namespace sysid {
 
-enum class SettingKind { integer, real, word, flag };
+enum class SettingKind {
+  integer,
+  real,
+  word,
+  flag,
+  numbers,  // a list of reals, none by default: `(100, 10, 1)`
+};
 
 struct SettingRow {
   std::string_view name;
   SettingKind kind;
   std::string_view fallback;  // the default, as the user would write it
-  double minimum;             // smallest allowed number, inclusive (integer, real)
+  double minimum;             // smallest allowed number, inclusive (integer, real, each of numbers)
   double maximum;             // largest allowed number, inclusive
   std::string_view choices;   // for a word: "adaptive spherical", separated by blanks
   std::string_view summary;   // one line for `sysid list` and the docs
 };
 
-using SettingValue = std::variant<std::int64_t, double, std::string, bool>;
+using SettingValue = std::variant<std::int64_t, double, std::string, bool, std::vector<double>>;
 
 /// The row of a name, or nullptr.
 SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_view name);
 
 /// Why `value` cannot be given to the row's setting ("it must be a whole number of at least 1"); empty when it can.
 std::string refuse(SettingRow const& row, SettingValue const& value);
+
+/// "(100, 10, 1)": a list of numbers as the user would write it; "()" for none.
+std::string numbers_text(std::vector<double> const& values);
 
 /// Values by name; every row of the table has one, given or default.
 class Settings {
@@ -44,6 +53,7 @@ class Settings {
   double real(std::string const& name) const;
   std::string const& word(std::string const& name) const;
   bool flag(std::string const& name) const;
+  std::vector<double> const& numbers(std::string const& name) const;
   std::map<std::string, SettingValue> const& all() const { return values_; }
   friend bool operator==(Settings const&, Settings const&) = default;
 

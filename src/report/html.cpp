@@ -17,6 +17,7 @@ namespace {
 std::string text_of(SettingValue const& value) {
   if (auto const* text = std::get_if<std::string>(&value)) return *text;
   if (auto const* number = std::get_if<double>(&value)) return shortest(*number);
+  if (auto const* numbers = std::get_if<std::vector<double>>(&value)) return numbers_text(*numbers);
   if (auto const* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
   return std::to_string(std::get<std::int64_t>(value));
 }

@@ -297,6 +297,33 @@ struct Data : Located {
   friend bool operator==(Data const&, Data const&) = default;
 };
 
+// --- candidate models
+// --------------------------------------------------------------------------------------------------------------
+
+/// `linear`, `bouc_wen(n = 1..4) probability 0.2`: one model, or several where an argument is a range or a list. The probability is
+/// that of each.
+struct Candidate : Located {
+  Name model;
+  std::vector<Argument> arguments;
+  std::optional<Expression> probability;
+  friend bool operator==(Candidate const&, Candidate const&) = default;
+};
+/// `shared m, c`: parameters that mean the same in every model that has them.
+struct SharedParameters : Located {
+  std::vector<Name> names;
+  friend bool operator==(SharedParameters const&, SharedParameters const&) = default;
+};
+
+using CandidateStatement = std::variant<Candidate, SharedParameters>;
+
+/// `candidates hysteresis "which law?" { ... }`.
+struct Candidates : Located {
+  Name name;
+  std::optional<Text> title;
+  std::vector<CandidateStatement> statements;
+  friend bool operator==(Candidates const&, Candidates const&) = default;
+};
+
 // --- tasks
 // ------------------------------------------------------------------------------------------------------------------------
 
@@ -318,8 +345,8 @@ struct Option : Located {
 /// `posterior = fit duffing to bench.train with mh(samples = 25000), start = rest`; `fit bouc_wen(n = 2) to spring, summer`.
 struct Task : Located {
   std::optional<Name> name;
-  Name verb;                        // simulate, fit, predict
-  Name subject;                     // a model (simulate, fit) or a task (predict)
+  Name verb;                        // simulate, fit, select, predict
+  Name subject;                     // a model (simulate, fit), candidates (select) or a task (predict)
   std::vector<Argument> arguments;  // of the model
   std::optional<Name> preposition;  // to, on
   std::vector<DataReference> data;  // one experiment each
@@ -333,7 +360,7 @@ struct Use : Located {
   friend bool operator==(Use const&, Use const&) = default;
 };
 
-using Item = std::variant<Use, Model, Data, FunctionDefinition, Task>;
+using Item = std::variant<Use, Model, Data, Candidates, FunctionDefinition, Task>;
 
 struct File {
   std::vector<Item> items;

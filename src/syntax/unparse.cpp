@@ -265,6 +265,14 @@ struct DataStatementText {
   }
 };
 
+struct CandidateStatementText {
+  std::string operator()(ast::Candidate const& s) const {
+    std::string const arguments = s.arguments.empty() ? "" : fmt::format("({})", comma_list(s.arguments));
+    return s.model.text + arguments + (s.probability ? " probability " + unparse(*s.probability) : "");
+  }
+  std::string operator()(ast::SharedParameters const& s) const { return "shared " + comma_list(s.names); }
+};
+
 template <class Statements, class Text>
 std::string block(std::string const& head, Statements const& statements, Text text) {
   std::string out = head + " {\n";
@@ -281,6 +289,10 @@ struct ItemText {
   }
   std::string operator()(ast::Data const& data) const {
     return block("data " + data.name.text, data.statements, DataStatementText{});
+  }
+  std::string operator()(ast::Candidates const& set) const {
+    std::string const title = set.title ? " " + quoted(set.title->value) : "";
+    return block("candidates " + set.name.text + title, set.statements, CandidateStatementText{});
   }
   std::string operator()(ast::FunctionDefinition const& function) const { return text_of(function); }
   std::string operator()(ast::Task const& task) const {
@@ -314,7 +326,8 @@ std::string unparse(ast::File const& file) {
   std::string out;
   for (ast::Item const& item : file.items) {
     // Blocks stand apart; neighbouring tasks and functions do not.
-    bool const is_block = std::holds_alternative<ast::Model>(item) || std::holds_alternative<ast::Data>(item);
+    bool const is_block = std::holds_alternative<ast::Model>(item) || std::holds_alternative<ast::Data>(item) ||
+                          std::holds_alternative<ast::Candidates>(item);
     if (!out.empty() && (is_block || out.ends_with("}\n"))) out += "\n";
     out += std::visit(ItemText{}, item) + "\n";
   }

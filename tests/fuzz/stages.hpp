@@ -33,6 +33,7 @@ inline constexpr SettingRow settings[] = {{"samples", SettingKind::integer, "100
                                           {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive spherical", ""},
                                           {"start", SettingKind::flag, "yes", 0, 0, "", ""}};
 inline constexpr BackendSettings backends[] = {{"mh", settings}, {"point", {}}};
+inline constexpr BackendSettings selectors[] = {{"abc", {}}};
 
 /// A refusal has a code, words, something to point at within the text, and can be shown.
 inline void look_at(Diagnostics const& diagnostics, Source const& source) {
@@ -81,7 +82,7 @@ inline void text(std::string const& bytes) {
   auto const modules = load_modules(*tree, source, diagnostics);
   look_at(diagnostics, source);
   if (diagnostics.has_errors()) return;
-  auto const file = check(elaborate(*tree, modules, diagnostics), backends, diagnostics);
+  auto const file = check(elaborate(*tree, modules, diagnostics), {backends, selectors}, diagnostics);
   if (!file && !diagnostics.has_errors()) fault("a refusal without a message");
   look_at(diagnostics, source);
   if (!file) return;

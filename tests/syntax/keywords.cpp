@@ -100,6 +100,32 @@ TEST_CASE("each statement of a data block gives its node") {
   CHECK(unparse(split.parts[1].last) == "n - 1");
 }
 
+TEST_CASE("candidates are models with arguments and a probability, and what they share") {
+  auto const set = std::get<ast::Candidates>(
+      parsed(
+          "candidates laws \"which law?\" {\nlinear\nbouc_wen(n = 1..4, m = (1, 3)) probability 1/16\nshared m, spring.k, q[1]\n}")
+          .items.at(0));
+  CHECK(set.name.text == "laws");
+  CHECK(set.title->value == "which law?");
+  REQUIRE(set.statements.size() == 3);
+  auto const& linear = std::get<ast::Candidate>(set.statements[0]);
+  CHECK(linear.model.text == "linear");
+  CHECK(linear.arguments.empty());
+  CHECK_FALSE(linear.probability.has_value());
+  auto const& family = std::get<ast::Candidate>(set.statements[1]);
+  CHECK(family.arguments.size() == 2);
+  CHECK(unparse(family.arguments[0].value) == "1..4");
+  CHECK(unparse(*family.probability) == "1/16");
+  CHECK(std::get<ast::SharedParameters>(set.statements[2]).names.at(2).text == "q[1]");
+  auto const one_line =
+      std::get<ast::Candidates>(parsed("candidates c { linear; shared; shared probability 1; shared x }").items.at(0));
+  REQUIRE(one_line.statements.size() == 4);
+  CHECK(std::get<ast::Candidate>(one_line.statements[1]).model.text == "shared");
+  CHECK(std::get<ast::Candidate>(one_line.statements[2]).probability.has_value());
+  CHECK(std::holds_alternative<ast::SharedParameters>(one_line.statements[3]));
+  CHECK(only_task("candidates = fit candidates to d").name->text == "candidates");
+}
+
 TEST_CASE("tasks have an optional name, a place and options") {
   ast::Task const simulate =
       only_task("truth = simulate duffing with values(m = 1), input x = gaussian(sd = 10), noise = 1 [percent], seed = 1");

@@ -10,8 +10,8 @@ namespace sysid::test {
 namespace {
 
 // Without with, to, on, from: at the end of a line between blocks they would continue it.
-constexpr std::array names{"y",    "x",    "alpha", "k3",   "_",    "input", "state", "model",
-                           "data", "time", "fit",   "rows", "hold", "let",   "σ_ε",   "inf"};
+constexpr std::array names{"y",    "x",   "alpha", "k3",     "_",    "input", "state", "model", "data",
+                           "time", "fit", "rows",  "shared", "hold", "let",   "σ_ε",   "inf"};
 constexpr std::array units{"N", "m", "kg", "µm", "1", "%", "degC"};
 constexpr std::array texts{"", "duffing.csv", "two\nlines", "a \"quoted\" \\ word", "# no comment", "Größe × 2", "y", "if", "1st"};
 constexpr std::array symbols{"+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!=", "and", "or"};
@@ -153,6 +153,11 @@ ast::DataStatement RandomTree::data_statement() {
   }
 }
 
+ast::CandidateStatement RandomTree::candidate_statement() {
+  if (random_.chance(4)) return ast::SharedParameters{{}, several(1, [&] { return name(); })};
+  return ast::Candidate{{}, name(), call(2).arguments, perhaps([&] { return expression(2); })};
+}
+
 ast::Task RandomTree::task() {
   ast::Task out{{}, perhaps([&] { return name(); }), {{}, std::string(random_.pick(words::verbs))}, name(), {}, {}, {}, {}};
   if (random_.chance(3))
@@ -172,7 +177,9 @@ ast::Task RandomTree::task() {
 ast::File RandomTree::file() {
   ast::File out;
   out.items = several(0, [&]() -> ast::Item {
-    switch (random_.below(5)) {
+    switch (random_.below(6)) {
+      case 4:
+        return ast::Candidates{{}, name(), perhaps([&] { return text(); }), several(0, [&] { return candidate_statement(); })};
       case 3:
         return ast::Use{{}, name()};
       case 0:

@@ -1,10 +1,12 @@
-// Which models a file needs and with which arguments: those of tasks, of parts, and some of each model for its own check.
+// Which models a file needs and with which arguments: those of tasks, of candidates, of parts, and some of each model for its own
+// check.
 #include "check/elaborate/elaborate.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "check/elaborate/candidates.hpp"
 #include "check/elaborate/errors.hpp"
 #include "check/elaborate/flatten.hpp"
 #include "check/elaborate/frame.hpp"
@@ -26,6 +28,8 @@ class Elaborator {
     for (ast::Item const& item : file_.items) {
       if (auto const* task = std::get_if<ast::Task>(&item))
         others.push_back(elaborated(*task));
+      else if (auto const* set = std::get_if<ast::Candidates>(&item))
+        others.push_back(elaborated(*set));
       else if (!std::holds_alternative<ast::Model>(item) && !std::holds_alternative<ast::Use>(item))
         others.push_back(item);
     }
@@ -101,7 +105,7 @@ class Elaborator {
     if (task.verb.text == "predict" || model == environments_.main().models.end()) return task;
     std::size_t const before = diagnostics_.all().size();
     auto const arguments = model_arguments(*model->second.tree, task.arguments, task.subject.span, {}, diagnostics_);
-    check_names(*model->second.tree, task);
+    check_names(*model->second.tree, task.arguments);
     if (diagnostics_.all().size() > before || !arguments) {
       result_.lineage.failed.insert(task.subject.text);
       return task;
@@ -119,11 +123,65 @@ class Elaborator {
     return task;
   }
 
-  void check_names(ast::Model const& model, ast::Task const& task) {
+  // Each candidate becomes the models it stands for, under their names and without arguments; one that failed keeps its own.
+  ast::Candidates elaborated(ast::Candidates set) {
+    std::vector<ast::CandidateStatement> statements;
+    std::map<std::string, Shape> shapes;
+    for (ast::CandidateStatement& statement : set.statements) {
+      auto* candidate = std::get_if<ast::Candidate>(&statement);
+      auto const model =
+          candidate == nullptr ? environments_.main().models.end() : environments_.main().models.find(candidate->model.text);
+      if (model == environments_.main().models.end()) {
+        statements.push_back(std::move(statement));
+        continue;
+      }
+      auto const names = requested(model->second, *candidate);
+      if (names.empty()) {
+        result_.lineage.failed.insert(candidate->model.text);
+        statements.push_back(std::move(statement));
+        continue;
+      }
+      candidate->arguments.clear();
+      for (std::string const& name : names) {
+        candidate->model.text = name;
+        statements.emplace_back(*candidate);
+        if (auto const known = shapes_.find(name); known != shapes_.end())
+          shapes.insert(known->second.begin(), known->second.end());
+      }
+    }
+    for (ast::CandidateStatement& statement : statements) {
+      auto* shared = std::get_if<ast::SharedParameters>(&statement);
+      if (shared == nullptr) continue;
+      std::vector<ast::Name> names;
+      for (ast::Name const& name : shared->names) {
+        auto const shape = shapes.find(name.text);
+        if (shape == shapes.end()) names.push_back(name);
+        for (std::size_t i = 0; shape != shapes.end() && i < shape->second.count(); ++i)
+          names.push_back({{name.span}, element_name(name.text, shape->second, i)});
+      }
+      shared->names = std::move(names);
+    }
+    set.statements = std::move(statements);
+    return set;
+  }
+
+  // Empty when a diagnostic was added.
+  std::vector<std::string> requested(ModelEntry const& model, ast::Candidate const& candidate) {
+    std::size_t const before = diagnostics_.all().size();
+    check_names(*model.tree, candidate.arguments);
+    auto const all = expanded(candidate.arguments, diagnostics_);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; all && i < all->size() && diagnostics_.all().size() == before; ++i)
+      if (auto arguments = model_arguments(*model.tree, (*all)[i], candidate.model.span, {}, diagnostics_))
+        names.push_back(request({model, std::move(*arguments)}, false));
+    return names;
+  }
+
+  void check_names(ast::Model const& model, std::vector<ast::Argument> const& arguments) {
     errors::Names known;
     for (ast::ModelArgument const& argument : model.arguments) known.push_back(argument.name.text);
     std::map<std::string, Span> given;
-    for (ast::Argument const& argument : task.arguments) {
+    for (ast::Argument const& argument : arguments) {
       if (!argument.name) {
         diagnostics_.add(errors::model_argument_by_position(argument.span, model.name.text, known));
       } else if (std::find(known.begin(), known.end(), argument.name->text) == known.end()) {

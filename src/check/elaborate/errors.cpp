@@ -106,6 +106,12 @@ Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) 
             "bind a state, or sums, products and whole powers of states and inputs"),
       use, "the derivative is used here");
 }
+Diagnostic candidate_range(Span span, long models, std::size_t most) {
+  return error("E2809", span,
+               models < 1 ? "this range holds no number: it ends before it begins"
+                          : fmt::format("this candidate stands for {} models, more than a set may hold", models),
+               models < 1 ? "write the smaller number first: `1..4`" : fmt::format("leave at most {}", most));
+}
 Diagnostic discrete_part(Span span, std::string const& part, Span declaration) {
   return with(error("E2808", span, fmt::format("part `{}` is in discrete time, the model around it is not", part),
                     "declare `time discrete` in both, or in neither"),

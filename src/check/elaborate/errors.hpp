@@ -30,6 +30,8 @@ Diagnostic model_argument_by_position(Span span, std::string const& model, Names
 Diagnostic model_argument_twice(Span second, Span first, std::string const& name);
 Diagnostic input_of_part_unbound(Span span, std::string const& part, Names const& inputs, std::string const& model);
 Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input);
+/// models: how many a candidate stands for.
+Diagnostic candidate_range(Span span, long models, std::size_t most);
 Diagnostic discrete_part(Span span, std::string const& part, Span declaration);
 
 // modules (E29)
