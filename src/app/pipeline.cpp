@@ -37,6 +37,13 @@ std::string verb_of(Task const& task) {
                                                          : "predict";
 }
 
+std::string dump(CandidateSet const& set) {
+  std::string text = fmt::format("candidates {}{}\n", set.name, set.title.empty() ? "" : " \"" + set.title + "\"");
+  for (CandidateModel const& each : set.models) text += fmt::format("  {} probability {}\n", each.name, each.probability);
+  if (!set.shared.empty()) text += fmt::format("  shared {}\n", fmt::join(set.shared, ", "));
+  return text;
+}
+
 UserError selection_without_backend(Task const& task, SelectTask const& what) {
   return UserError({Severity::error,
                     "E6008",
@@ -86,6 +93,8 @@ std::string dump_stage(Source& source, std::string const& stage, Diagnostics& di
   std::string text;
   for (Model const& model : file->models)
     text += stage == "model" ? dump(model) : dump_program(*compile(model, false, model.implicit ? "ida" : SolverSettings{}.method));
+  if (stage == "model")
+    for (CandidateSet const& set : file->candidates) text += dump(set);
   return text;
 }
 

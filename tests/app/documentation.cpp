@@ -263,7 +263,8 @@ TEST_CASE("the reference names every distribution, function, back end, setting a
 TEST_CASE("findings that the methods page lists are made somewhere") {
   std::string source;
   for (char const* folder : {"src/app", "src/inference"})
-    for (auto const& entry : fs::directory_iterator(root / folder)) source += read_file(entry.path());
+    for (auto const& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file()) source += read_file(entry.path());
   int count = 0;
   std::regex const code("`([a-z_]+)`");
   for (std::string const& line : read_page(root / "docs/methods.md").prose) {

@@ -1,4 +1,5 @@
-// Every stage prints what it made: the dumps of the Duffing case are recorded. SYSID_BLESS=1 rewrites the records.
+// Every stage prints what it made: the dumps of the Duffing case and of a set of candidates are recorded. SYSID_BLESS=1 rewrites
+// the records.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -8,16 +9,28 @@
 
 using namespace sysid;
 
-TEST_CASE("the stages of the Duffing case print what is recorded") {
+namespace {
+
+void compare_dumps(std::filesystem::path const& file, std::string const& name, std::initializer_list<char const*> stages) {
   std::filesystem::path const root(SYSID_SOURCE_DIR);
-  Source source("duffing.sysid", read_file(root / "models/duffing/duffing.sysid"));
-  for (std::string const stage : {"ast", "model", "program"}) {
+  Source source(name + ".sysid", read_file(root / file));
+  for (std::string const stage : stages) {
     CAPTURE(stage);
     Diagnostics diagnostics;
     std::string const text = dump_stage(source, stage, diagnostics);
     CHECK_FALSE(diagnostics.has_errors());
-    auto const record = root / "tests/golden/dump" / ("duffing." + stage);
+    auto const record = root / "tests/golden/dump" / (name + "." + stage);
     if (std::getenv("SYSID_BLESS") != nullptr) write_file(record, text);
     CHECK(text == read_file(record));
   }
+}
+
+}  // namespace
+
+TEST_CASE("the stages of the Duffing case print what is recorded") {
+  compare_dumps("models/duffing/duffing.sysid", "duffing", {"ast", "model", "program"});
+}
+
+TEST_CASE("the stages of a set of candidates print what is recorded") {
+  compare_dumps("tests/golden/dump/candidates.sysid", "candidates", {"ast", "flat", "model"});
 }

@@ -122,6 +122,16 @@ TEST_CASE("neighbouring declarations form a table, an empty line ends it") {
         "a      = fit m to d\nlonger = fit m to d\n\nb = fit m to d\n");
 }
 
+TEST_CASE("candidates stand one a line, their probabilities behind their names") {
+  CHECK(layout_of("candidates laws\"which?\"{linear probability(1/2);law( n=1 .. 4,m=( 1,3 ))probability 0.25\nshared m,q[1]}\n"
+                  "s=select laws to d with abc_smc(schedule=(10,1)),distance=abs(residual(y)),weights(y=1)") ==
+        "candidates laws \"which?\" {\n  linear probability (1/2)\n  law(n = 1..4, m = (1, 3)) probability 0.25\n  shared m, "
+        "q[1]\n}\n\n"
+        "s = select laws to d with abc_smc(schedule = (10, 1)), distance = abs(residual(y)), weights(y = 1)\n");
+  CHECK(layout_of("candidates c {\nlinear probability 0.5\ncubic_law probability 0.5\nstate probability p[1]\n}\n") ==
+        "candidates c {\n  linear    probability 0.5\n  cubic_law probability 0.5\n  state     probability p[1]\n}\n");
+}
+
 TEST_CASE("blocks stand apart, at most one empty line is kept, none at the ends of a block") {
   CHECK(layout_of("\n\nmodel m {\n\n\nlet a = 1\n\n\n\nlet b = 1\n\n}\n# of n\nmodel n {}\nfit m to d\n\n\n") ==
         "model m {\n  let a = 1\n\n  let b = 1\n}\n\n# of n\nmodel n {\n}\n\nfit m to d\n");
