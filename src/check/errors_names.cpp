@@ -48,7 +48,7 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
   if (is_quantity)
     return error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
                  fmt::format("multiplication is written with *: `{}*(...)`", name.text));
-  for (std::string_view const derivative : {"der", "diff", "d", "ddt", "dt", "derivative", "D"})
+  for (std::string_view const derivative : {"der", "diff", "d", "ddt", "dt", "derivative", "D", "dot", "ddot", "Dt"})
     if (name.text == derivative)
       return error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
                    "a derivative is written with primes: `y'`, `y''`");

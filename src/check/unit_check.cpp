@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <map>
 #include <utility>
 
@@ -41,10 +42,29 @@ ast::Reference const* named_factor(ast::Expression const& tree, std::vector<Decl
   return left != nullptr || (*binary)->symbol == "/" ? left : named_factor(*(*binary)->right, declared);
 }
 
+// A unit in coherent SI, without the name it was written by.
+Unit plain(Unit const& unit) {
+  Unit result;
+  result.dimension = unit.dimension;
+  return result;
+}
+
 std::vector<std::string> names_in(ast::Expression const& tree) {
   std::vector<std::string> names;
   each_reference(tree, [&](ast::Reference const& reference) { names.push_back(reference.name.text); });
   return names;
+}
+
+// The one declared name in an expression that does not move and is no pure number: what its unit depends on, beside the states.
+std::optional<DeclaredUnit> only_coefficient(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
+  std::optional<DeclaredUnit> found;
+  for (std::string const& name : names_in(tree))
+    for (DeclaredUnit const& each : declared) {
+      if (each.name != name || each.moves || each.unit.dimensionless()) continue;
+      if (found) return std::nullopt;
+      found = each;
+    }
+  return found;
 }
 
 std::size_t size_of(UnitOperand const& operand) {
@@ -103,7 +123,37 @@ Stretch agreeing(std::span<UnitOperand const> operands, std::vector<std::size_t>
   return {cover(operands[first].value.span, operands[last].value.span), last<odd, last> first};
 }
 
+// Whether `cycles` holds a frequency in Hz where `other`, which counts neither cycles nor radians, asks for an angular one: as a
+// square (k = m omega^2), or as the factor of something else that moves beside a derivative in time (y'' + omega^2 y, y' = -omega
+// y). A displacement per revolution times a speed in Hz is a flow: a frequency alone is no mistake.
+bool used_as_angular(UnitOperand const& cycles, UnitOperand const& other, std::vector<DeclaredUnit> const& declared) {
+  Unit const &ours = cycles.value.unit, &theirs = other.value.unit;
+  if (cycles.tree == nullptr || ours.hertz.numerator == 0 || theirs.hertz.numerator != 0 || !(ours.radian == theirs.radian))
+    return false;
+  if (std::abs(ours.hertz.numerator) == 2 && ours.hertz.denominator == 1) return true;
+  bool derivative = false;
+  if (other.tree != nullptr)
+    each_reference(*other.tree, [&](ast::Reference const& reference) { derivative = derivative || reference.primes > 0; });
+  return derivative && std::any_of(declared.begin(), declared.end(), [&](DeclaredUnit const& each) {
+           std::vector<std::string> const names = names_in(*cycles.tree);
+           bool const stands_here = std::find(names.begin(), names.end(), each.name) != names.end();
+           return stands_here && each.moves && each.unit.hertz.numerator == 0;
+         });
+}
+
+// A name declared in a unit that counts cycles; empty without one.
+std::string frequency_in(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
+  for (std::string const& name : names_in(tree))
+    for (DeclaredUnit const& each : declared)
+      if (each.name == name && each.unit.hertz.numerator != 0) return name;
+  return {};
+}
+
 }  // namespace
+
+Label UnitCheck::unit_label(UnitOperand const& operand) const {
+  return {operand.value.span, "[" + words(operand.value.unit) + "]"};
+}
 
 std::string UnitCheck::words(Unit const& unit) const {
   if (unit.text.empty() && !unit.dimensionless())
@@ -159,8 +209,14 @@ std::string UnitCheck::cure(UnitOperand const& odd, std::string const& wanted, D
   for (int const primes : {1, 2}) {
     Dimension time{};
     time[2] = {primes, 1};
-    if (moving != nullptr && (missing == inverse(time) || (missing == time && moving->primes >= primes)))
-      return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes));
+    if (moving != nullptr && (missing == inverse(time) || (missing == time && moving->primes >= primes))) {
+      Unit factor;
+      factor.dimension = missing;
+      auto const coefficient = only_coefficient(*odd.tree, declared_);
+      std::string const other = coefficient ? words(multiply(plain(coefficient->unit), factor)) : "";
+      return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes),
+                                  coefficient ? coefficient->name : "", other);
+    }
   }
   if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing), "");
   if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing)), "");
@@ -187,13 +243,20 @@ void UnitCheck::hint_cycles(std::span<UnitOperand const> operands) {
   for (std::size_t i = 0; i < operands.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       Unit const &a = operands[j].value.unit, &b = operands[i].value.unit;
-      if (!is_known(operands[i]) || !is_known(operands[j]) || !cycles_against_radians(a, b)) continue;
-      bool const shows_second = operands[i].tree != nullptr;  // the expression rather than a declaration
-      UnitOperand const &shown = operands[shows_second ? i : j], &other = operands[shows_second ? j : i];
-      bool const counts_cycles = shown.value.unit.hertz.numerator > other.value.unit.hertz.numerator;
-      report(errors::cycles_meet_radians({shown.value.span, "[" + words(shown.value.unit) + "]"},
-                                         {other.value.span, "[" + words(other.value.unit) + "]"}, counts_cycles));
-      return;
+      if (!is_known(operands[i]) || !is_known(operands[j])) continue;
+      if (cycles_against_radians(a, b)) {
+        bool const shows_second = operands[i].tree != nullptr;  // the expression rather than a declaration
+        UnitOperand const &shown = operands[shows_second ? i : j], &other = operands[shows_second ? j : i];
+        bool const counts_cycles = shown.value.unit.hertz.numerator > other.value.unit.hertz.numerator;
+        report(errors::cycles_meet_radians(unit_label(shown), unit_label(other), counts_cycles));
+        return;
+      }
+      bool const first = used_as_angular(operands[j], operands[i], declared_);
+      if (first || used_as_angular(operands[i], operands[j], declared_)) {
+        UnitOperand const &shown = operands[first ? j : i], &other = operands[first ? i : j];
+        report(errors::cycles_as_angular(unit_label(shown), unit_label(other), frequency_in(*shown.tree, declared_)));
+        return;
+      }
     }
 }
 

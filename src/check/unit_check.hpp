@@ -75,6 +75,7 @@ class UnitCheck {
  private:
   void hint_cycles(std::span<UnitOperand const> operands);
   std::string words(Unit const& unit) const;
+  Label unit_label(UnitOperand const& operand) const;
   std::string named(Dimension const& dimension, std::vector<std::string> const& but) const;
   std::string cure(UnitOperand const& odd, std::string const& wanted, Dimension const& missing, bool pure) const;
   void remember(UnitOperand const& operand, std::string why = {});

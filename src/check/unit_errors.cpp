@@ -82,6 +82,13 @@ Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
             "a frequency in cycles meets one in radians without 2*pi",
             counts_cycles ? "multiply this by 2*pi if it counts cycles" : "divide this by 2*pi if the other counts cycles");
 }
+Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) {
+  shown.text = name.empty() ? "counts cycles" : fmt::format("`{}` counts cycles", name);
+  return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
+            "a frequency in cycles is used as an angular one, without 2*pi",
+            name.empty() ? "multiply the frequency by 2*pi if it counts cycles"
+                         : fmt::format("write `2*pi*{0}` for `{0}` if it counts cycles", name));
+}
 Diagnostic cycles_in_angle(Span argument, std::string const& function) {
   return at(Severity::warning, "E2210", {argument, "cycles"}, {}, fmt::format("`{}` takes radians, this counts cycles", function),
             "multiply by 2*pi");
@@ -105,9 +112,10 @@ std::string should_be_in(std::string const& unit) {
 std::string tag_the_number(std::string const& number, std::string const& unit) {
   return fmt::format("a number as a factor has no unit of its own: write `{} [{}]`", number, unit);
 }
-std::string primes_wrong(std::string const& name, int primes, int wanted) {
+std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit) {
   auto const primed = [&](int count) { return name + std::string(static_cast<std::size_t>(count), '\''); };
-  return fmt::format("did you mean `{}` for `{}`?", primed(wanted), primed(primes));
+  std::string const meant = fmt::format("did you mean `{}` for `{}`", primed(wanted), primed(primes));
+  return coefficient.empty() ? meant + "?" : fmt::format("{}, or `{} [{}]`?", meant, coefficient, unit);
 }
 
 }  // namespace sysid::errors

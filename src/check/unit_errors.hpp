@@ -28,6 +28,8 @@ Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, st
 Diagnostic condition_with_unit(Label condition, std::string const& text);
 /// Warnings. counts_cycles: the shown quantity does, the other is in radians.
 Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles);
+/// name: of the frequency, or empty.
+Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name);
 Diagnostic cycles_in_angle(Span argument, std::string const& function);
 
 /// A mistake in the body of a function, told at the call.
@@ -38,7 +40,8 @@ std::string multiply_by(std::string const& kind, std::string const& names);
 std::string divide_by(std::string const& kind, std::string const& names);
 std::string should_be_in(std::string const& unit);
 std::string tag_the_number(std::string const& number, std::string const& unit);
-std::string primes_wrong(std::string const& name, int primes, int wanted);
+/// coefficient: the name whose unit may be wrong in place of the primes, and what it would be in; or empty.
+std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit);
 
 }  // namespace errors
 }  // namespace sysid

@@ -68,7 +68,10 @@ Diagnostic index_count(Span span, std::string const& name, Shape const& shape, s
                : shape.rank == 1 ? fmt::format("write `{}[i]`", name)
                                  : fmt::format("write `{}[i, j]`: row and column", name));
 }
-Diagnostic array_arguments(ast::Name const& function, std::string const& usage) {
+Diagnostic array_arguments(ast::Name const& function, std::size_t given, std::string const& usage) {
+  if (function.text == "dot" && given == 1)
+    return error("E2708", function.span, "`dot` multiplies two vectors, it is no derivative",
+                 "a derivative is written with primes: `y'`, `y''`");
   return error("E2708", function.span, fmt::format("`{}` does not take these arguments", function.text), usage);
 }
 Diagnostic model_too_large(Span span) {

@@ -19,7 +19,7 @@ Diagnostic wrong_shape(Span span, std::string const& what, Shape const& given, S
 Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span other_span);
 Diagnostic index_out_of_range(Span span, std::string const& name, Shape const& shape);
 Diagnostic index_count(Span span, std::string const& name, Shape const& shape, std::size_t given);
-Diagnostic array_arguments(ast::Name const& function, std::string const& usage);
+Diagnostic array_arguments(ast::Name const& function, std::size_t given, std::string const& usage);
 Diagnostic model_too_large(Span span);
 
 // models inside models (E28)

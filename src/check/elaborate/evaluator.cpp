@@ -277,8 +277,8 @@ std::optional<Array> Evaluator::array_function(ast::Call const& call, std::vecto
   std::size_t const before = diagnostics_.all().size();
   auto result = row.apply(algebra_, arguments, sizes, span);
   if (!result && diagnostics_.all().size() == before)
-    diagnostics_.add(
-        errors::array_arguments(call.function, std::string("it is ") + std::string(row.usage) + ": " + std::string(row.summary)));
+    diagnostics_.add(errors::array_arguments(call.function, call.arguments.size(),
+                                             std::string("it is ") + std::string(row.usage) + ": " + std::string(row.summary)));
   return result;
 }
 
