@@ -2,7 +2,9 @@
 #include "syntax/format.hpp"
 
 #include <array>
+#include <filesystem>
 
+#include "core/files.hpp"
 #include "grammar/layout.hpp"
 #include "parsing.hpp"
 #include "random_tree.hpp"
@@ -194,4 +196,16 @@ TEST_CASE("random files keep their tree and comments, and their layout is its ow
     // Without comments and empty lines all layouts of a text have one canonical layout.
     REQUIRE(layout_of(Scatter(seed, false)(plain)) == layout_of(plain));
   }
+}
+
+TEST_CASE("shipped models and the standard library are in canonical layout") {
+  int count = 0;
+  for (char const* folder : {"models", "stdlib"})
+    for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
+      if (entry.path().extension() != ".sysid") continue;
+      std::string const text = read_file(entry.path());
+      CHECK_MESSAGE(layout_of(text) == text, "`sysid fmt " << entry.path().string() << "` would change it");
+      ++count;
+    }
+  CHECK(count > 20);
 }
