@@ -12,6 +12,7 @@
 #include "check/errors.hpp"
 #include "check/model.hpp"
 #include "check/tasks.hpp"
+#include "check/unused.hpp"
 
 namespace sysid {
 namespace {
@@ -55,6 +56,8 @@ std::optional<CheckedFile> check(Elaborated const& elaborated, Backends const& b
   CheckedFile file;
   file.tree = tree;
   TaskNames names;
+  names.declared = declared_names(tree);
+  names.declared.all = lineage.failed.empty();
   for (std::string const& failed : lineage.failed) names.models[failed] = std::nullopt;
   std::set<std::string> unsound = lineage.failed;  // what is made of them is not looked at: it has the same mistakes
   std::vector<ast::FunctionDefinition const*> functions;
@@ -106,6 +109,7 @@ std::optional<CheckedFile> check(Elaborated const& elaborated, Backends const& b
     if (!other_dynamics && !mentioned(tasks, block.name)) check_between_samples(block, nullptr, diagnostics);
   remove_consequences(tree, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
+  for (Model const& model : file.models) warn_of_unused(model, diagnostics);
   return file;
 }
 

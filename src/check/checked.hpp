@@ -25,7 +25,8 @@ struct ColumnUse {
 struct DataInputUse : ColumnUse {
   std::string input;
   std::optional<InputRule> rule;  // absent: not stated, which only models in continuous time refuse
-  Span rule_span;                 // of the whole statement where there is none
+  Span input_span;
+  Span rule_span;  // of the whole statement where there is none
 };
 
 struct DataMeasureUse : ColumnUse {

@@ -86,6 +86,7 @@ class DataChecker {
     DataInputUse use;
     static_cast<ColumnUse&>(use) = column(tree.column);
     use.input = tree.input.text;
+    use.input_span = tree.input.span;
     if (!tree.rule) {
       use.rule_span = tree.span;
     } else if (auto const rule = input_rule(tree.rule->text)) {
@@ -168,14 +169,26 @@ void add_once(Diagnostics& diagnostics, Diagnostic diagnostic) {
   if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(std::move(diagnostic));
 }
 
-bool has_channel(Model const& model, std::string const& name) {
-  return std::any_of(model.channels.begin(), model.channels.end(), [&](Channel const& each) { return each.name == name; });
-}
-
 }  // namespace
 
-void check_binding(DataBlock const& block, Model const& model, std::span<Model const> all_models, Span use,
-                   Diagnostics& diagnostics) {
+DeclaredNames declared_names(ast::File const& file) {
+  DeclaredNames names;
+  for (ast::Item const& item : file.items) {
+    auto const* model = std::get_if<ast::Model>(&item);
+    if (model == nullptr) continue;
+    for (ast::ModelStatement const& statement : model->statements) {
+      if (auto const* input = std::get_if<ast::InputDeclaration>(&statement))
+        for (ast::Declared const& each : input->names) names.inputs.insert(each.name.text);
+      if (auto const* observation = std::get_if<ast::Observation>(&statement))
+        names.channels.insert(observation->channel.name.text);
+      if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
+        names.parameters.insert(parameter->name.name.text);
+    }
+  }
+  return names;
+}
+
+void check_binding(DataBlock const& block, Model const& model, DeclaredNames const& declared, Span use, Diagnostics& diagnostics) {
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
     if (!column.unit || !declared.unit) return;
     std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
@@ -185,12 +198,20 @@ void check_binding(DataBlock const& block, Model const& model, std::span<Model c
       diagnostics.add(data_errors::cycles_against_radians(column.column, column.unit->text, wanted, column.span));
   };
   check_between_samples(block, &model, diagnostics);
+  std::vector<std::string> inputs;
+  for (Quantity const& input : model.inputs) inputs.push_back(input.name);
+  bool misnamed = false;
+  for (DataInputUse const& bound : block.inputs) {
+    if (!declared.all || declared.inputs.contains(bound.input)) continue;
+    misnamed = true;
+    add_once(diagnostics, errors::unknown_input(bound.input_span, bound.input, model.name, inputs));
+  }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     Quantity const& input = model.inputs[i];
     auto const bound =
         std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
     if (bound == block.inputs.end()) {
-      diagnostics.add(errors::input_not_bound(use, input.name, model.name, block.name));
+      if (!misnamed) diagnostics.add(errors::input_not_bound(use, input.name, model.name, block.name));
       continue;
     }
     compare_units(*bound, input, "column `" + bound->column + "`");
@@ -210,10 +231,7 @@ void check_binding(DataBlock const& block, Model const& model, std::span<Model c
     auto const channel =
         std::find_if(model.channels.begin(), model.channels.end(), [&](auto const& each) { return each.name == measured.channel; });
     // A block may serve several models.
-    bool const of_another =
-        channel == model.channels.end() &&
-        std::any_of(all_models.begin(), all_models.end(), [&](Model const& other) { return has_channel(other, measured.channel); });
-    if (of_another) continue;
+    if (channel == model.channels.end() && (!declared.all || declared.channels.contains(measured.channel))) continue;
     any = true;
     if (channel != model.channels.end())
       compare_units(measured, *channel, "column `" + measured.column + "`");
@@ -229,20 +247,16 @@ void check_binding(DataBlock const& block, Model const& model, std::span<Model c
   }
 }
 
-std::vector<std::optional<double>> check_constants(DataBlock const& block, Model const& model, std::span<Model const> all_models,
+std::vector<std::optional<double>> check_constants(DataBlock const& block, Model const& model, DeclaredNames const& declared,
                                                    Span use, Diagnostics& diagnostics) {
   std::vector<std::optional<double>> values(model.parameters.size());
-  auto const place_in = [](Model const& any, std::string const& name) {
-    return std::find_if(any.parameters.begin(), any.parameters.end(), [&](Parameter const& each) { return each.name == name; });
-  };
   bool good = true;
   for (DataConstantUse const& constant : block.constants) {
-    auto const place = place_in(model, constant.parameter);
+    auto const place = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                    [&](Parameter const& each) { return each.name == constant.parameter; });
     if (place == model.parameters.end()) {
       // A block may serve several models.
-      if (std::any_of(all_models.begin(), all_models.end(),
-                      [&](Model const& other) { return place_in(other, constant.parameter) != other.parameters.end(); }))
-        continue;
+      if (!declared.all || declared.parameters.contains(constant.parameter)) continue;
       std::vector<std::string> known;
       for (Parameter const& parameter : model.parameters)
         if (parameter.per_experiment) known.push_back(parameter.name);

@@ -60,6 +60,11 @@ Diagnostic no_channel_bound(Span span, std::string const& model, std::string con
                fmt::format("add `measure {} = COLUMN [unit]` to the data block", channels.empty() ? "CHANNEL" : channels.front()));
 }
 
+Diagnostic unknown_input(Span span, std::string const& input, std::string const& model, Names const& inputs) {
+  return error("E4115", span, fmt::format("model `{}` has no input `{}`", model, input),
+               guess_or(input, inputs, choose(inputs, "input")));
+}
+
 Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& model, Names const& channels) {
   return error("E4111", span, fmt::format("model `{}` has no channel `{}`", model, channel),
                guess_or(channel, channels, choose(channels, "channel")));

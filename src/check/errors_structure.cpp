@@ -71,6 +71,26 @@ Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span f
                   fmt::format("there are two {}s named `{}`", kind, name.text), "rename one of the two");
 }
 
+namespace {
+
+Diagnostic unused(Span declaration, std::string message, std::string help) {
+  Diagnostic result = error("E3019", declaration, std::move(message), std::move(help));
+  result.severity = Severity::warning;
+  return result;
+}
+
+}  // namespace
+
+Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior) {
+  return unused(declaration, fmt::format("nothing in this model reads the parameter `{}`", parameter),
+                has_prior ? "use it in an equation, an observation or another prior; as it is, its posterior is its prior"
+                          : "use it in an equation, an observation or a prior, or delete it");
+}
+Diagnostic unused_input(Span declaration, std::string const& input) {
+  return unused(declaration, fmt::format("nothing in this model reads the input `{}`", input),
+                "use it in an equation or an observation, or delete it");
+}
+
 Diagnostic time_twice(Span second, Span first) {
   return conflict("E3014", second, "again here", first, "first declared here", "time is declared twice", "keep one");
 }

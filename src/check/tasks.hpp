@@ -6,12 +6,14 @@
 #include <string>
 
 #include "check/check.hpp"
+#include "check/data.hpp"
 
 namespace sysid {
 
 /// What tasks may name: index of the good ones, nothing for those that failed their own check (then the task is left alone).
 struct TaskNames {
   std::map<std::string, std::optional<int>> models, data, candidates;
+  DeclaredNames declared;
 };
 
 /// The task, or nothing when a diagnostic was added or it refers to something that failed. file: models, data, candidates and

@@ -62,8 +62,8 @@ TEST_CASE("inputs must all be bound, channels in part") {
 TEST_CASE("a block may serve several models: channels and inputs of another are no mistake") {
   std::string const shared =
       "time t\ninput x = x hold linear\ninput u = u hold linear\nmeasure displacement = y\nmeasure strain = s";
-  CHECK(messages(model + "model n {\nparameter k ~ normal(1, sd = 1)\nobserve strain ~ normal(k, sd = 1)\n}\n" + block(shared) +
-                 "fit m to d with mh\n")
+  CHECK(messages(model + "model n {\ninput u\nparameter k ~ normal(1, sd = 1)\nobserve strain ~ normal(k*u, sd = 1)\n}\n" +
+                 block(shared) + "fit m to d with mh\n")
             .empty());
   // Of no model: a misspelt channel would else be left out of the likelihood without a word.
   CHECK(fitted(shared).find("error[E4111]: model `m` has no channel `strain`") != std::string::npos);
@@ -71,6 +71,43 @@ TEST_CASE("a block may serve several models: channels and inputs of another are 
   CHECK(errors_in(shown) == 1);
   CHECK(shown.find("error[E4111]: model `m` has no channel `displacment`") != std::string::npos);
   CHECK(shown.find("did you mean `displacement`?") != std::string::npos);
+}
+
+TEST_CASE("an input that no model has is refused where it stands, and the input it may stand for is not missed") {
+  std::string const shown = fitted("time t\ninput X = x hold linear\nmeasure displacement = y");
+  CHECK(errors_in(shown) == 1);
+  CHECK(shown.find("error[E4115]: model `m` has no input `X`") != std::string::npos);
+  CHECK(shown.find("did you mean `x`?") != std::string::npos);
+  CHECK(errors_in(fitted("time t\ninput x = x hold linear\ninput u = u hold linear\nmeasure displacement = y")) == 1);
+  // A model that fails its own check may have it: nothing is said before that one is mended.
+  std::string const beside =
+      messages(model + "model n {\ninput u\nparameter k ~ normal(1, sd = 1)\nobserve strain ~ normal(k*v, sd = 1)\n}\n" +
+               block("time t\ninput x = x hold linear\ninput u = u hold linear\nmeasure displacement = y\nmeasure strain = s") +
+               "fit m to d with mh\n");
+  CHECK(errors_in(beside) == 1);
+  CHECK(beside.find("`v` is not declared") != std::string::npos);
+}
+
+TEST_CASE("what nothing reads is warned of, once the file has no errors") {
+  auto const unread = [](std::string const& statements) {
+    std::string const shown = messages(
+        "model m {\nstate y [m]\ninitial y = 0\nparameter k [1/s] ~ normal(1, sd = 1)\ny' = -k*y\n"
+        "observe d ~ normal(y, sd = 1)\n" +
+        statements + "\n}\n");
+    std::size_t count = 0;
+    for (std::size_t at = shown.find("warning[E3019]"); at != std::string::npos; at = shown.find("warning[E3019]", at + 1)) ++count;
+    return count;
+  };
+  CHECK(unread("") == 0);
+  CHECK(unread("parameter a ~ normal(0, sd = 1)") == 1);
+  CHECK(unread("parameter a = 1") == 1);
+  CHECK(unread("input x") == 1);
+  CHECK(unread("parameter a ~ normal(0, sd = 1)\nparameter b ~ normal(a, sd = 1)") ==
+        2);  // a prior that nothing reads reads nothing
+  CHECK(unread("parameter a ~ normal(0, sd = 1)\nparameter b ~ normal(a, sd = 1)\nderive e = b") == 0);
+  CHECK(unread("parameter a ~ normal(0, sd = 1)\nlet e = a") == 1);
+  CHECK(unread("parameter a(3) ~ normal(0, sd = 1)\nderive e = a[2]") == 1);  // of its elements the first is named
+  CHECK(unread("parameter a ~ normal(0, sd = 1)\nderive e = f") == 0);        // an error says enough
 }
 
 TEST_CASE("a column in a unit of another kind is refused, with both units") {
