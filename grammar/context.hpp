@@ -38,6 +38,10 @@ class State {
     return is_full() ? end() : begin() + grammar::behind_item(layout_, offset(where), wanted);
   }
 
+  /// What the rules pass over behind a failure.
+  void leave_out(Iterator first, Iterator behind) { left_out_.push_back({offset(first), offset(behind)}); }
+  std::vector<Span> take_left_out() { return std::move(left_out_); }
+
   int depth = 0;
 
  private:
@@ -47,6 +51,7 @@ class State {
   Layout const& layout_;
   Diagnostics& diagnostics_;
   std::size_t limit_;
+  std::vector<Span> left_out_;
 };
 
 struct state_tag {};
@@ -59,7 +64,9 @@ struct resumes_behind_statement {
                                     AnyContext const& context) {
     State& state = x3::get<state_tag>(context);
     state.report(failure.where(), failure.which());
-    first = state.behind_statement(failure.where());
+    Iterator const behind = state.behind_statement(failure.where());
+    state.leave_out(first, behind);
+    first = behind;
     return x3::error_handler_result::accept;
   }
 };
@@ -70,7 +77,9 @@ struct resumes_behind_item {
                                     AnyContext const& context) {
     State& state = x3::get<state_tag>(context);
     state.report(failure.where(), failure.which());
-    first = state.behind_item(failure.where(), failure.which());
+    Iterator const behind = state.behind_item(failure.where(), failure.which());
+    state.leave_out(first, behind);
+    first = behind;
     return x3::error_handler_result::accept;
   }
 };

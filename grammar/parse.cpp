@@ -1,6 +1,9 @@
 // The file rule, and the entry points of syntax/parse.hpp.
 #include "syntax/parse.hpp"
 
+#include <algorithm>
+#include <variant>
+
 #include "grammar/actions.hpp"
 #include "grammar/candidates.hpp"
 #include "grammar/data.hpp"
@@ -39,18 +42,41 @@ BOOST_SPIRIT_DEFINE(file, file_line, use, item, lone_expression)
 
 namespace {
 
-/// The tree of the whole source by `rule`, or nothing when anything was reported.
+template <class Tree>
+struct Reading {
+  Tree tree;
+  bool complete = false;       // nothing was reported
+  std::vector<Span> left_out;  // what holds a mistake; its nodes are in the tree, half filled
+  bool open_end = false;       // a block or a text does not end
+};
+
+/// The whole source by `rule`.
 template <class Rule>
-std::optional<typename Rule::attribute_type> parse_all(Rule const& rule, Source const& source, Diagnostics& diagnostics) {
+Reading<typename Rule::attribute_type> read_all(Rule const& rule, Source const& source, Diagnostics& diagnostics) {
   std::size_t const before = diagnostics.all().size();
   Layout const layout = lay_out(source, diagnostics, before + most_errors);
   State state(layout, diagnostics, before + most_errors);
-  typename Rule::attribute_type tree;
+  Reading<typename Rule::attribute_type> reading;
   Iterator first = state.begin();
-  bool const parsed = x3::phrase_parse(first, state.end(), x3::with<state_tag>(state)[rule], x3::ascii::blank, tree);
-  if (diagnostics.all().size() > before) return std::nullopt;
-  if (!parsed || first != state.end()) throw InternalError("the parser stopped inside a text without a message");
-  return tree;
+  bool const parsed = x3::phrase_parse(first, state.end(), x3::with<state_tag>(state)[rule], x3::ascii::blank, reading.tree);
+  reading.complete = diagnostics.all().size() == before;
+  if (reading.complete && (!parsed || first != state.end()))
+    throw InternalError("the parser stopped inside a text without a message");
+  reading.left_out = state.take_left_out();
+  for (Token const& token : layout.tokens)
+    if (layout.reported.contains(token.statement)) reading.left_out.push_back(token.span);
+  reading.open_end = layout.reported_at_end;
+  return reading;
+}
+
+/// A rule behind whose failure the parse went on leaves a node without a place, or one that begins in what was left out.
+template <class Node>
+void erase_unread(std::vector<Node>& nodes, std::vector<Span> const& left_out) {
+  std::erase_if(nodes, [&](Node const& node) {
+    Span const span = std::visit([](auto const& each) { return each.span; }, node);
+    return span.begin == span.end || std::any_of(left_out.begin(), left_out.end(),
+                                                 [&](Span each) { return each.begin <= span.begin && span.begin < each.end; });
+  });
 }
 
 }  // namespace
@@ -58,11 +84,26 @@ std::optional<typename Rule::attribute_type> parse_all(Rule const& rule, Source 
 }  // namespace grammar
 
 std::optional<ast::File> parse(Source const& source, Diagnostics& diagnostics) {
-  return grammar::parse_all(grammar::file, source, diagnostics);
+  auto reading = grammar::read_all(grammar::file, source, diagnostics);
+  return reading.complete ? std::optional(std::move(reading.tree)) : std::nullopt;
+}
+
+ReadableFile parse_readable(Source const& source, Diagnostics& diagnostics) {
+  auto reading = grammar::read_all(grammar::file, source, diagnostics);
+  if (reading.complete) return {std::move(reading.tree), {}};
+  if (reading.open_end) return {std::nullopt, std::move(reading.left_out)};
+  grammar::erase_unread(reading.tree.items, reading.left_out);
+  for (ast::Item& item : reading.tree.items) {
+    if (auto* model = std::get_if<ast::Model>(&item)) grammar::erase_unread(model->statements, reading.left_out);
+    if (auto* set = std::get_if<ast::Candidates>(&item)) grammar::erase_unread(set->statements, reading.left_out);
+    if (auto* data = std::get_if<ast::Data>(&item)) grammar::erase_unread(data->statements, reading.left_out);
+  }
+  return {std::move(reading.tree), std::move(reading.left_out)};
 }
 
 std::optional<ast::Expression> parse_expression(Source const& source, Diagnostics& diagnostics) {
-  return grammar::parse_all(grammar::lone_expression, source, diagnostics);
+  auto reading = grammar::read_all(grammar::lone_expression, source, diagnostics);
+  return reading.complete ? std::optional(std::move(reading.tree)) : std::nullopt;
 }
 
 }  // namespace sysid

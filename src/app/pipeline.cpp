@@ -12,6 +12,7 @@
 #include "app/results.hpp"
 #include "app/session.hpp"
 #include "check/check.hpp"
+#include "check/independent.hpp"
 #include "inference/abc/settings.hpp"
 #include "inference/backend.hpp"
 #include "likelihood/compiled_model.hpp"
@@ -74,12 +75,17 @@ std::string nothing_to_do(Source const& source, CheckedFile const& file, std::ve
 }  // namespace
 
 std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics) {
-  auto const tree = parse(source, diagnostics);
-  if (!tree) return std::nullopt;
-  auto const modules = load_modules(*tree, source, diagnostics);
-  if (diagnostics.has_errors()) return std::nullopt;
+  ReadableFile const read = parse_readable(source, diagnostics);
+  if (!read.tree) return std::nullopt;
+  bool const complete = !diagnostics.has_errors();
+  Diagnostics found;  // behind the syntax
+  auto const modules = load_modules(*read.tree, source, found);
   auto const fitting = backend_settings(), selecting = selector_settings();
-  return check(elaborate(*tree, modules, diagnostics), {fitting, selecting}, diagnostics);
+  std::optional<CheckedFile> file;
+  if (!found.has_errors()) file = check(elaborate(*read.tree, modules, found), {fitting, selecting}, found);
+  if (!complete) keep_independent(*read.tree, read.left_out, source, found);
+  for (Diagnostic const& each : found.all()) diagnostics.add(each);
+  return complete ? std::move(file) : std::nullopt;
 }
 
 std::string dump_stage(Source& source, std::string const& stage, Diagnostics& diagnostics) {

@@ -1,0 +1,14 @@
+// A text with mistakes in its syntax is checked as far as it can be read; this tells what of the answer to believe.
+#pragma once
+#include <span>
+
+#include "core/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// Of what was found in `tree`, keeps the errors on which the parts of the text that could not be read have no bearing: whatever
+/// may be declared, determined or bound there is not missed. tree, left_out: of `parse_readable`.
+void keep_independent(ast::File const& tree, std::span<Span const> left_out, Source const& source, Diagnostics& found);
+
+}  // namespace sysid
