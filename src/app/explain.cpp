@@ -20,8 +20,15 @@ std::string_view first_line(std::string_view& text) {
   return line;
 }
 
-// "## E2001: title"
-bool heads_section(std::string_view line) { return line.starts_with("## E") && line.size() > 10 && line[8] == ':'; }
+// The code in "## E2001: title" and "## chains_disagree: title"; empty for other lines.
+std::string_view code_of_heading(std::string_view line) {
+  if (!line.starts_with("## ")) return {};
+  std::string_view const code = line.substr(3, line.find(':') - 3);
+  bool const one_word = std::all_of(
+      code.begin(), code.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == 'E'; });
+  return one_word && line.size() > code.size() + 5 ? code : std::string_view();
+}
+bool heads_section(std::string_view line) { return !code_of_heading(line).empty(); }
 
 std::string indented(std::string_view text, std::string_view by) {
   std::string result;
@@ -68,7 +75,8 @@ class PageReader {
     while (!page.empty()) {
       std::string_view const line = first_line(page);
       if (heads_section(line)) {
-        sections_.push_back({std::string(line.substr(3, 5)), std::string(line.substr(10)), {}, {}, {}, frame_});
+        std::string_view const code = code_of_heading(line);
+        sections_.push_back({std::string(code), std::string(line.substr(code.size() + 5)), {}, {}, {}, frame_});
         into_ = nullptr;
       }
       bool const heads_other = line.starts_with("# ") || line.starts_with("## ");
@@ -145,8 +153,8 @@ std::vector<ErrorSection> const& error_sections() {
 
 std::optional<std::string> explain(std::string_view code) {
   std::string wanted(code);
-  if (wanted.starts_with('e')) wanted[0] = 'E';
-  if (!wanted.starts_with('E')) wanted.insert(wanted.begin(), 'E');
+  if (wanted.size() > 1 && wanted.front() == 'e' && wanted[1] >= '0' && wanted[1] <= '9') wanted.front() = 'E';
+  if (!wanted.empty() && wanted.front() >= '0' && wanted.front() <= '9') wanted.insert(wanted.begin(), 'E');
   for (ErrorSection const& section : error_sections()) {
     if (section.code != wanted) continue;
     std::string text = fmt::format("{}: {}\n{}", section.code, section.title, plain(section.body));
@@ -164,7 +172,9 @@ std::optional<std::string> explain(std::string_view code) {
 
 std::string list_codes() {
   std::string text;
-  for (ErrorSection const& section : error_sections()) text += fmt::format("{}  {}\n", section.code, section.title);
+  for (bool const findings : {false, true})
+    for (ErrorSection const& section : error_sections())
+      if (section.of_finding() == findings) text += fmt::format("{:<{}}  {}\n", section.code, findings ? 24 : 5, section.title);
   return text;
 }
 

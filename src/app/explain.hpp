@@ -20,7 +20,7 @@ struct Example {
   std::string file_name() const;
 };
 
-/// A section `## E2001: title`.
+/// A section `## E2001: title`, or of a finding: `## chains_disagree: title`.
 ///
 /// Examples stand behind a line `Bad:` or `Mended:`. A block "sysid file" is a whole file; a block "sysid" continues the frame, the
 /// last block outside sections that is a "sysid inside" (its model takes the statements) or a "sysid above" (the lines follow it).
@@ -33,17 +33,19 @@ struct ErrorSection {
 
   /// The text of a whole .sysid file for an example of this section.
   std::string complete(std::vector<Example> const& examples) const;
+  /// Of a run or a check about its result; otherwise of a message about the text or the data.
+  bool of_finding() const { return !code.starts_with('E'); }
 };
 
 std::vector<ErrorSection> read_error_page(std::string_view page);
 /// Of all pages, in order.
 std::vector<ErrorSection> const& error_sections();
 
-/// For a terminal: title, meaning, examples, the frame they continue. The code in any case of letters, with or without its E;
-/// nothing when there is no such code.
+/// For a terminal: title, meaning, examples, the frame they continue. The code in any case of letters, with or without its E,
+/// or the word of a finding; nothing when there is no such code.
 std::optional<std::string> explain(std::string_view code);
 
-/// "E2001  a name that is not declared", one line each.
+/// "E2001  a name that is not declared", one line each; findings last.
 std::string list_codes();
 
 }  // namespace sysid

@@ -27,6 +27,7 @@ struct CommandLine {
   std::vector<std::string> files;
   RunOptions run;
   bool quiet = false, only_check = false;
+  std::string* messages = nullptr;  // where JSON messages go that a verb prints as part of its answer; else standard error
 };
 
 int code(ExitCode exit) { return static_cast<int>(exit); }
@@ -39,9 +40,16 @@ bool colour() {
   return variable("NO_COLOR").empty() && variable("TERM") != "dumb" && isatty(STDERR_FILENO) != 0;
 }
 
+void show_json(std::string const& lines, CommandLine const& line) {
+  if (line.messages != nullptr)
+    *line.messages += lines;
+  else
+    std::cerr << lines;
+}
+
 void show(Diagnostics const& diagnostics, Source const& source, CommandLine const& line) {
   if (line.error_format == "json")
-    std::cerr << render_json(diagnostics, source);
+    show_json(render_json(diagnostics, source), line);
   else
     std::cerr << render(diagnostics, source, colour());
 }
@@ -54,7 +62,7 @@ void complain(CommandLine const& line, std::string const& message, std::string c
     Diagnostic diagnostic;
     diagnostic.message = message;
     diagnostic.help = help;
-    std::cerr << render_json(diagnostic, Source(line.file, ""));
+    show_json(render_json(diagnostic, Source(line.file, "")), line);
   } else {
     std::cerr << "sysid: " << message << '\n' << help << (help.empty() ? "" : "\n");
   }
@@ -114,8 +122,13 @@ int run(CommandLine& line, std::vector<std::string> const& verbs) {
   });
 }
 
-int check(CommandLine const& line) {
-  return guarded(line, Source("", ""), [&] {
+int check(CommandLine line) {
+  bool const json = line.error_format == "json";
+  std::string messages;
+  if (json) line.messages = &messages;
+  CheckPage page;
+  page.file = line.file;
+  int const exit = guarded(line, Source("", ""), [&] {
     Source source = read_source(line.file);
     Diagnostics diagnostics;
     auto const file = load(source, diagnostics);
@@ -129,11 +142,14 @@ int check(CommandLine const& line) {
       show(result.diagnostics, source, line);
       for (Diagnostics const* said : {&diagnostics, &result.diagnostics})
         for (Diagnostic const& each : said->all()) ++(each.severity == Severity::error ? result.page.errors : result.page.warnings);
-      std::cout << (line.error_format == "json" ? check_json(result.page) : check_text(result.page));
+      page = std::move(result.page);
+      if (!json) std::cout << check_text(page);
       if (result.diagnostics.has_errors()) return code(result.unreadable ? ExitCode::io : ExitCode::user_error);
-      return code(grade(result.page) == Severity::error ? ExitCode::doubtful : ExitCode::success);
+      return code(grade(page) == Severity::error ? ExitCode::doubtful : ExitCode::success);
     });
   });
+  if (json) std::cout << check_json(page, messages);
+  return exit;
 }
 
 std::string read_standard_input() { return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()}; }
@@ -255,8 +271,9 @@ int main(int argument_count, char** arguments) {
       ->required()
       ->check(CLI::IsMember({"functions", "distributions", "backends", "solvers", "modules"}));
   listing->callback([&] { std::cout << list(line.topic); });
-  CLI::App* explaining = app.add_subcommand("explain", "what an error code means, with an example and its mended twin");
-  explaining->add_option("code", line.code, "a code such as E2001; none: list all");
+  CLI::App* explaining =
+      app.add_subcommand("explain", "what the code of a message or a finding means, with an example and its mended twin");
+  explaining->add_option("code", line.code, "a code such as E2001 or chains_disagree; none: list all");
   explaining->callback([&] { exit = explain(line); });
   CLI::App* documenting = app.add_subcommand("document", "print a module of the standard library as a page");
   documenting->add_option("module", line.topic, "a name of `sysid list modules`")->required();

@@ -1,5 +1,6 @@
 // The page of `sysid check` for a program: one JSON object.
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "report/check_page.hpp"
 
@@ -100,11 +101,13 @@ Json task_object(TaskPage const& task) {
 
 }  // namespace
 
-std::string check_json(CheckPage const& page) {
-  Json models = Json::array(), tasks = Json::array();
+std::string check_json(CheckPage const& page, std::string const& messages) {
+  Json models = Json::array(), tasks = Json::array(), said = Json::array();
+  std::istringstream lines(messages);
+  for (std::string line; std::getline(lines, line);) said.push_back(Json::parse(line));
   for (ModelPage const& model : page.models) models.push_back(model_object(model));
   for (TaskPage const& task : page.tasks) tasks.push_back(task_object(task));
-  Json const all = {{"file", page.file}, {"models", models}, {"tasks", tasks}};
+  Json const all = {{"file", page.file}, {"messages", said}, {"models", models}, {"tasks", tasks}};
   // The user's text may hold any bytes; what is not finite is null.
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

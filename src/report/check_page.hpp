@@ -98,6 +98,7 @@ struct CheckPage {
 Severity grade(CheckPage const& page);
 
 std::string check_text(CheckPage const& page);
-std::string check_json(CheckPage const& page);
+/// messages: of `render_json`, one object per line; they become a part of the page.
+std::string check_json(CheckPage const& page, std::string const& messages);
 
 }  // namespace sysid

@@ -136,7 +136,7 @@ TEST_CASE("the page of shipped models is the recorded one, and JSON holds the sa
     auto const record = golden / (std::filesystem::path(name).filename().string() + ".txt");
     if (bless) write_file(record, page);
     CHECK(page == read_file(record));
-    nlohmann::json const object = nlohmann::json::parse(check_json(result.page));
+    nlohmann::json const object = nlohmann::json::parse(check_json(result.page, ""));
     CHECK(object.at("models").at(0).at("name") == result.page.models.front().name);
     CHECK(object.at("tasks").size() == result.page.tasks.size());
   }
@@ -257,4 +257,19 @@ posterior = fit lag to bench.late with map
   CHECK(data.inputs.front().low < 5);
   CHECK(data.inputs.front().high > 5);
   CHECK(data.inputs.front().high < 8);
+}
+
+TEST_CASE("the page for programs holds the messages, each as it is printed for a line") {
+  Source const source("bad.sysid", "model m {\n  state y\n}\n");
+  Diagnostics diagnostics;
+  diagnostics.add({Severity::error, "E2001", "first", Label{{2, 5}, ""}, {}, "help"});
+  diagnostics.add({Severity::warning, "E3019", "second", std::nullopt, {}, ""});
+  CheckPage page;
+  page.file = "bad.sysid";
+  nlohmann::json const object = nlohmann::json::parse(check_json(page, render_json(diagnostics, source)));
+  CHECK(object.at("file") == "bad.sysid");
+  REQUIRE(object.at("messages").size() == 2);
+  CHECK(object.at("messages").at(0) == nlohmann::json::parse(render_json(diagnostics.all()[0], source)));
+  CHECK(object.at("messages").at(1).at("severity") == "warning");
+  CHECK(object.at("tasks").empty());
 }
