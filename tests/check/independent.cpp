@@ -43,7 +43,7 @@ TEST_CASE("what an unreadable statement may declare, determine or observe is not
   CHECK(codes(unobserved + "data b {\nfile \"d.csv\"\ntime t [s]\nmeasure d = y [m]\n}\nfit m to b with mh\n") == "E1113");
   // Of a damaged model, data block or fit nothing is asked.
   CHECK(codes(model(slip) + block + "p = fit m to d with map\nf = predict p on d with draws(2)\n") == "E1105");
-  CHECK(codes(model("") + "data d {\nfile \"d.csv\"\ntime t [s] [s]\n}\np = fit m to d with map\n") == "E1105");
+  CHECK(codes(model("") + "data d {\nfile \"d.csv\"\ntime t [s] [s]\n}\np = fit m to d with map\n") == "E1118");
   CHECK(codes(model("") + block + "p = fit m too d with map\nf = predict p on d with draws(2)\n").substr(0, 2) == "E1");
   CHECK(codes(model("") + block + "p = fit m too d with map\nf = predict p on d with draws(2)\n").find(' ') == std::string::npos);
 }
