@@ -44,7 +44,7 @@ std::set<std::string> findings_in_sources() {
   std::set<std::string> codes;
   std::regex const code("(?:Severity::(?:error|warning|note),\\s*|code == |loud \\? |: |check\\()\"([a-z]+_[a-z_]+|interrupted)\"");
   for (char const* folder : {"src/app", "src/inference"})
-    for (auto const& entry : std::filesystem::directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
+    for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
       if (entry.path().extension() != ".cpp") continue;
       std::string const text = content(entry.path());
       for (std::sregex_iterator match(text.begin(), text.end(), code), end; match != end; ++match) codes.insert((*match)[1]);
