@@ -255,11 +255,32 @@ std::string dump_program(CompiledModel const& compiled) {
                      dump(*compiled.likelihood, names_of(compiled)));
 }
 
-std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {
-  if (auto const span = graph.span(node)) {
-    Place const place = source.place(span->begin);
-    return fmt::format("`{}` ({}:{}:{})", source.text(*span), source.name(place.file), place.line, place.column);
+namespace {
+
+std::string placed(Span span, Source const& source) {
+  Place const place = source.place(span.begin);
+  return fmt::format("`{}` ({}:{}:{})", source.text(span), source.name(place.file), place.line, place.column);
+}
+
+// The nearest expression of the user's that a node without a place is a part of: a time derivative of a constraint is a part of
+// that constraint. Empty when there is none.
+std::string enclosing_place(Graph const& graph, NodeId node, Source const& source) {
+  std::vector<bool> holds(graph.size(), false);
+  holds[node] = true;
+  for (NodeId id = node + 1; id < graph.size(); ++id) {
+    int const operands = operand_count(graph[id]);
+    holds[id] =
+        (operands > 0 && holds[graph[id].a]) || (operands > 1 && holds[graph[id].b]) || (operands > 2 && holds[graph[id].c]);
+    if (!holds[id]) continue;
+    if (auto const span = graph.span(id)) return placed(*span, source);
   }
+  return {};
+}
+
+}  // namespace
+
+std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {
+  if (auto const span = graph.span(node)) return placed(*span, source);
   std::string text = graph.format(node, [&](NodeId leaf) -> std::string {
     Node what = graph[leaf];
     auto const index = static_cast<std::size_t>(what.index);
@@ -289,7 +310,8 @@ std::string describe(Model const& model, Graph const& graph, NodeId node, Source
     }
   });
   if (text.size() > 80) text = text.substr(0, 77) + "...";
-  return fmt::format("`{}`", text);
+  std::string const enclosing = enclosing_place(graph, node, source);
+  return enclosing.empty() ? fmt::format("`{}`", text) : fmt::format("`{}` in {}", text, enclosing);
 }
 
 }  // namespace sysid

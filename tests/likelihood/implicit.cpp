@@ -93,3 +93,23 @@ TEST_CASE("an implicit equation without a solution at the start is a failed solv
   Predicted const none = predict(braking("-1"), {.method = "ida"}, {-2}, 5, 0.1);
   CHECK(none.result.failed == 1);
 }
+
+TEST_CASE("what the compiler made of a constraint is named with the constraint it was made of") {
+  Source source("pendulum.sysid", pendulum);
+  Diagnostics diagnostics;
+  auto const file = load(source, diagnostics);
+  REQUIRE(file);
+  Model const& model = file->models.front();
+  int without_place = 0;
+  for (NodeId const node : model.graph.reachable(model.residuals)) {
+    if (model.graph.span(node) || model.graph[node].operation == Operation::leaf ||
+        model.graph[node].operation == Operation::constant)
+      continue;
+    std::string const text = describe(model, model.graph, node, source);
+    CAPTURE(text);
+    CHECK(text.find("` in `") != std::string::npos);
+    CHECK(text.find("(pendulum.sysid:") != std::string::npos);
+    if (text.find("in `x^2 + y^2 = l^2` (pendulum.sysid:9:3)") != std::string::npos) ++without_place;
+  }
+  CHECK(without_place > 0);
+}
