@@ -43,7 +43,7 @@ Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
       break;
     case Occasion::Kind::branches:
       code = "E2202";
-      message = "the branches of `if` have different units";
+      message = fmt::format("the branches of `{}` have different units", occasion.what.empty() ? "if" : occasion.what);
       break;
     case Occasion::Kind::arguments:
       code = "E2203";

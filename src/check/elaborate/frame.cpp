@@ -183,9 +183,11 @@ void FrameBuilder::bind(Frame& inner, ast::Part const& part) {
   for (auto const& [name, symbol] : inner.symbols)
     if (symbol.kind == FrameSymbol::Kind::input || symbol.kind == FrameSymbol::Kind::parameter) known.push_back(name);
   std::map<std::string, Span> given;
+  bool misnamed = false;  // what stands under a wrong name may be meant for an input
   for (ast::Argument const& argument : part.model.arguments) {
     if (!argument.name) {
       diagnostics_.add(errors::model_argument_by_position(argument.span, model, known));
+      misnamed = true;
       continue;
     }
     std::string const& name = argument.name->text;
@@ -195,6 +197,7 @@ void FrameBuilder::bind(Frame& inner, ast::Part const& part) {
     }
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       diagnostics_.add(errors::unknown_model_argument(*argument.name, model, known));
+      misnamed = true;
       continue;
     }
     auto const symbol = inner.symbols.find(name);
@@ -207,7 +210,7 @@ void FrameBuilder::bind(Frame& inner, ast::Part const& part) {
     if (auto const* inputs = std::get_if<ast::InputDeclaration>(&statement))
       for (ast::Declared const& input : inputs->names)
         if (!given.contains(input.name.text)) open.push_back(input.name.text);
-  if (!open.empty()) diagnostics_.add(errors::input_of_part_unbound(part.name.span, part.name.text, open, model));
+  if (!open.empty() && !misnamed) diagnostics_.add(errors::input_of_part_unbound(part.name.span, part.name.text, open, model));
 }
 
 }  // namespace sysid
