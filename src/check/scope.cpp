@@ -32,9 +32,8 @@ bool Scope::declare(ast::Name const& name, Symbol symbol) {
   auto const [place, fresh] = symbols_.emplace(name.text, std::move(symbol));
   Symbol const& declared = place->second;
   if (fresh && declared.unit) {
-    bool const fixed =
-        std::holds_alternative<ParameterSymbol>(declared.what) || std::holds_alternative<DefinitionSymbol>(declared.what);
-    units_.declare({name.text, *declared.unit, !fixed});
+    bool const moves = std::holds_alternative<StateSymbol>(declared.what) || std::holds_alternative<InputSymbol>(declared.what);
+    units_.declare({name.text, *declared.unit, moves});
   }
   if (!fresh) diagnostics_.add(errors::duplicate_name(name, place->second.span));
   return fresh;

@@ -202,9 +202,7 @@ std::string UnitCheck::cure(UnitOperand const& odd, std::string const& wanted, D
     unit.dimension = missing;
     if (number != nullptr && !coefficient && !used.empty()) return errors::tag_the_number(unparse(*number), words(unit));
   }
-  if (std::string const names = named(missing, but); !names.empty()) return errors::multiply_by(kind_words(missing), names);
-  if (std::string const names = named(inverse(missing), but); !names.empty())
-    return errors::divide_by(kind_words(inverse(missing)), names);
+  // A prime too few or too many is likelier than a missing rate or time, whatever there is by that unit.
   ast::Reference const* moving = odd.tree == nullptr || pure ? nullptr : named_factor(*odd.tree, declared_);
   for (int const primes : {1, 2}) {
     Dimension time{};
@@ -218,6 +216,9 @@ std::string UnitCheck::cure(UnitOperand const& odd, std::string const& wanted, D
                                   coefficient ? coefficient->name : "", other);
     }
   }
+  if (std::string const names = named(missing, but); !names.empty()) return errors::multiply_by(kind_words(missing), names);
+  if (std::string const names = named(inverse(missing), but); !names.empty())
+    return errors::divide_by(kind_words(inverse(missing)), names);
   if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing), "");
   if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing)), "");
   return errors::should_be_in(wanted);

@@ -147,6 +147,8 @@ TEST_CASE("the help names what is missing") {
                 "k*y = x\n"
                 "observe d ~ normal(y, sd = 1)\n}\n")
             .help == "did you mean `y'` for `y`, or `c [N/m]`?");
+  CHECK(with_equation("m*y'' + c*y + k*y = x").help == "did you mean `y'` for `y`, or `c [N/m]`?");  // and not a rate, which `w` is
+  CHECK(with("let a = k*t + x").help.find("t'") == std::string::npos);                               // time has no primes
   CHECK(with("let a = exp(y)").help == "divide it by a length");
   CHECK(with("let a = abs(y)^n").help == "make the base a pure number: divide `abs(y)` by a reference in [m]");
   CHECK(with("let a = if y then 1 else 2").help == "compare it: `y > 0`");
