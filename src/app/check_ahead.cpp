@@ -7,7 +7,7 @@
 
 #include "app/check_file.hpp"
 #include "app/check_information.hpp"
-#include "app/fit_target.hpp"
+#include "app/settled_draws.hpp"
 #include "app/tolerance.hpp"
 #include "core/elementary.hpp"
 #include "inference/convergence.hpp"
@@ -25,6 +25,7 @@ constexpr double many_failures = 0.2;         // share of failed solves that des
 constexpr double right_enough = 1e-2;         // change of a response, of its size, when the solver is refined: good for slopes
 constexpr double converged = 1e-3;            // at the last refinement: neither unstable nor chaotic
 constexpr double tolerable_roughness = 1e-3;  // error of the slopes as a part of them
+constexpr double smooth_enough = 1e-8;
 constexpr std::size_t most_numbers = 1U << 23;
 constexpr std::size_t most_scored = 10000;    // rows of an experiment that are looked at
 constexpr std::size_t most_steps = 1U << 20;  // of one trajectory
@@ -124,15 +125,6 @@ class LookAhead {
     std::uint64_t const seed = session_.options.seed.value_or(what_.seed.value_or(1));
     LaneArray theta(space_->dimension(), prior_draws), declared(space_->dimension(), prior_draws);
     space_->sample_prior({seed, Purpose::prior, 0, 0}, theta);
-    PriorPage prior;
-    Ledger ledger;
-    std::vector<double> ignored(prior_draws);
-    make_fit_target(session_, what_, compiled_, space_, experiments_, what_.solver)->log_likelihood(theta, ignored, ledger);
-    prior.draws = prior_draws;
-    prior.failed = static_cast<int>(std::count_if(ignored.begin(), ignored.end(), [](double v) { return !std::isfinite(v); }));
-    prior.failures = ledger.failures();
-    page_.prior = std::move(prior);
-
     space_->constrain(theta, declared);
     std::vector<ParameterRole> const roles = parameter_roles(model_);
     std::vector<std::string> noise;
@@ -158,29 +150,42 @@ class LookAhead {
     for (int r = 0; r < values.rows(); ++r)
       for (int w = 0; w < prior_draws; ++w) draws_(r, w) = values(r, w);
     outputs_.front().start(draws_);
+    settled_ = settle_draws(session_, what_, compiled_, space_, experiments_, outputs_.front(), theta, draws_);
+    PriorPage prior;
+    prior.draws = prior_draws;
+    prior.stated = what_.solver.text();
+    prior.failed_as_stated = settled_.failed_as_stated;
+    prior.failed = static_cast<int>(std::count(settled_.followed.begin(), settled_.followed.end(), false));
+    if (prior.failed > 0) prior.failures = settled_.ledger.failures();
+    page_.prior = std::move(prior);
   }
 
   // Ranges of all channels; the draws that predict them within a factor of `wild`, nearest first.
   std::vector<Draw> predict() {
     Output const& coarse = outputs_.front();
-    LaneArray centres(static_cast<int>(coarse.places().size()), prior_draws);
-    coarse.centres(draws_, centres);
     std::vector<Draw> draws;
-    for (int w = 0; w < prior_draws; ++w) draws.push_back({w, 0});
+    for (int w = 0; w < prior_draws; ++w)
+      if (settled_.followed[static_cast<std::size_t>(w)]) draws.push_back({w, 0});
     for (std::size_t first = 0, last = 0; first < coarse.places().size(); first = last) {
       Output::Place const& place = coarse.places()[first];
       while (last < coarse.places().size() && coarse.places()[last].experiment == place.experiment &&
              coarse.places()[last].channel == place.channel)
         ++last;
-      compare(place, static_cast<int>(first), static_cast<int>(last), centres, draws);
+      compare(place, static_cast<int>(first), static_cast<int>(last), settled_.centres, draws);
     }
     double const share = static_cast<double>(page_.prior->failed) / prior_draws;
+    double const lost = static_cast<double>(page_.prior->failed_as_stated - page_.prior->failed) / prior_draws;
     if (page_.prior->failed == prior_draws)
       add(Severity::error, "prior_fails", fmt::format("the simulation fails at every one of {} prior draws", prior_draws),
           "look at the priors, the units of the input and the equation at the place named");
     else if (share > many_failures)
       add(Severity::warning, "prior_fails", fmt::format("{:.0f} % of the simulations of prior draws fail", 100 * share),
           "narrow the priors, or look at the equation at the place named");
+    if (!what_.settle && lost > many_failures)
+      add(Severity::warning, "integration_step",
+          fmt::format("with {} {:.0f} % of the prior draws leave the range of numbers that adaptive steps follow",
+                      what_.solver.text(), 100 * lost),
+          "the search does not see what fails: take shorter steps, or `solver = dopri5` or `cvode`");
     std::erase_if(draws, [](Draw const& draw) { return !std::isfinite(draw.mismatch); });
     std::stable_sort(draws.begin(), draws.end(), [](Draw const& a, Draw const& b) { return a.mismatch < b.mismatch; });
     return draws;
@@ -294,7 +299,10 @@ class LookAhead {
 
   // Slopes of the response in units of its noise; first states are nuisances.
   LocalSlopes slopes_at(Converged const& draw) const {
-    Output const& output = outputs_[draw.level];
+    // Slopes of adaptive steps need a tolerance far below the steps of their differences.
+    std::size_t level = draw.level;
+    while (!what_.solver.fixed_step() && level + 1 < solvers_.size() && solvers_[level].relative > smooth_enough) ++level;
+    Output const& output = outputs_[level];
     int const rows = static_cast<int>(output.places().size()), all = draws_.rows();
     int const own = static_cast<int>(space_->rows().size());
     LaneArray here(all, 1);
@@ -379,7 +387,8 @@ class LookAhead {
   std::vector<SolverSettings> solvers_;  // as stated, then ever finer
   std::vector<Output> outputs_;          // of each
   std::vector<JudgedParameter> coordinates_;
-  LaneArray draws_;    // [point rows x prior_draws]
+  LaneArray draws_;  // [point rows x prior_draws]
+  SettledDraws settled_;
   std::string noise_;  // the level of noise taken, in words
 };
 

@@ -64,6 +64,10 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
   }
   page.rate = static_cast<double>(time.size() - 1) / (time.back() - time.front());
   page.equal = longest - shortest <= 1e-3 * shortest;
+  if (experiment.time_unit) {
+    page.time_unit = experiment.time_unit->text;
+    page.time_scale = experiment.time_unit->scale;
+  }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     CoveragePage::Input input;
     input.name = model.inputs[i].name;

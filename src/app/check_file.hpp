@@ -16,8 +16,9 @@ struct CheckResult {
 };
 CheckResult check_file(Session& session);
 
-/// Equations, unknowns and everything declared, in the user's words where the text has them.
-ModelPage describe_structure(Source const& source, Model const& model);
+/// Equations, unknowns and everything declared, in the user's words where the text has them. flat: the models with their parts
+/// written out (CheckedFile::tree), for what stands in modules.
+ModelPage describe_structure(Source const& source, ast::File const& flat, Model const& model);
 
 /// Rows, gaps, rates and the band of each input.
 CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model);

@@ -10,7 +10,9 @@ namespace sysid {
 namespace {
 
 constexpr double barely_narrowed = 0.5;
+constexpr double informed = 0.5;  // sd of a logarithm, a factor of 1.6: a prior narrower than this is knowledge, meant to be kept
 constexpr double strong_correlation = 0.99;
+constexpr double still_unknown = 0.25;  // of the prior's sd: what a confounded pair may keep before it is worth a warning
 
 class Description {
  public:
@@ -74,7 +76,8 @@ class Description {
     line.low = least * line.prior_sd;
     line.high = most * line.prior_sd;
     if (null_[i]) line.instead = "not determined";
-    if (!null_[i] && least > barely_narrowed)
+    bool const vague = !line.relative || line.prior_sd > informed;
+    if (!null_[i] && vague && least > barely_narrowed)
       add(Severity::warning, "barely_narrowed",
           fmt::format("the data will hardly narrow {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} prior draws)",
                       line.name, 100 * least, 100 * most, locals_.size(), locals_.size()),
@@ -92,12 +95,14 @@ class Description {
   // A pair of which little but a combination is known: at every draw, or at most of them with the same combination each time.
   void name_correlation(Eigen::Index i, Eigen::Index j) {
     std::vector<double> sizes, slopes;  // at the draws where they are confounded; dp_j / dp_i along the long axis, SI
+    double widest = 0;                  // of both, there, in sds of the prior
     for (std::size_t d = 0; d < locals_.size(); ++d) {
       Expectation const& each = expectations_[d];
       double const correlation = each.correlation(i, j);
       if (std::abs(correlation) < strong_correlation) continue;
       auto const sd = [&](Eigen::Index p) { return each.shrinkage(p) * locals_[d].spread(p) * locals_[d].scale(p); };
       sizes.push_back(std::abs(correlation));
+      widest = std::max({widest, each.shrinkage(i), each.shrinkage(j)});
       slopes.push_back((correlation > 0 ? 1 : -1) * sd(j) / sd(i));
     }
     if (2 * sizes.size() <= locals_.size()) return;
@@ -113,11 +118,16 @@ class Description {
       NullDirection const direction{NullDirection::Kind::sum, {{static_cast<int>(i), 1, 1}, {static_cast<int>(j), slope, slope}}};
       combination = fmt::format("nearly only {} is determined, ", determined_combination(direction, asked_));
     }
-    add(Severity::warning, "nearly_confounded",
-        fmt::format("{} and {} trade against each other: {}expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
-                    asked_[static_cast<std::size_t>(i)].name, asked_[static_cast<std::size_t>(j)].name, combination,
-                    *std::min_element(sizes.begin(), sizes.end()), *std::max_element(sizes.begin(), sizes.end()), sizes.size(),
-                    locals_.size()),
+    std::string const pair = fmt::format("{} and {} trade against each other", asked_[static_cast<std::size_t>(i)].name,
+                                         asked_[static_cast<std::size_t>(j)].name);
+    std::string const size = fmt::format("expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
+                                         *std::min_element(sizes.begin(), sizes.end()),
+                                         *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
+    if (widest < still_unknown) {
+      page_.information->ridges.push_back(fmt::format("{}, yet both are narrowed: {}", pair, size));
+      return;
+    }
+    add(Severity::warning, "nearly_confounded", fmt::format("{}: {}{}", pair, combination, size),
         "fix one of them, or record what tells them apart; what depends on their combination alone is well known");
   }
 

@@ -15,28 +15,34 @@ struct Texts {
   std::map<std::string, std::string> parameters, channels, derived;
 };
 
-Texts texts_of(Source const& source, std::string const& model) {
-  Texts texts;
-  Diagnostics ignored;
-  auto const tree = parse(source, ignored);
-  if (!tree) return texts;
+// What is said of a name first stays.
+void add_texts(ast::File const& tree, std::string const& model, bool equations, Texts& texts) {
   auto const call = [](ast::Call const& use) { return unparse(ast::Expression{{}, ast::Box<ast::Call>(use)}); };
-  for (ast::Item const& item : tree->items) {
+  for (ast::Item const& item : tree.items) {
     auto const* found = std::get_if<ast::Model>(&item);
     if (found == nullptr || found->name.text != model) continue;
     for (ast::ModelStatement const& statement : found->statements) {
-      if (auto const* equation = std::get_if<ast::Equation>(&statement))
+      if (auto const* equation = std::get_if<ast::Equation>(&statement); equation != nullptr && equations)
         texts.equations.push_back(unparse(equation->left) + " = " + unparse(equation->right));
       if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
-        texts.parameters[parameter->name.name.text] = parameter->prior   ? "~ " + call(*parameter->prior)
-                                                      : parameter->value ? "= " + unparse(*parameter->value)
-                                                                         : std::string();
+        texts.parameters.try_emplace(parameter->name.name.text, parameter->prior   ? "~ " + call(*parameter->prior)
+                                                                : parameter->value ? "= " + unparse(*parameter->value)
+                                                                                   : std::string());
       if (auto const* observation = std::get_if<ast::Observation>(&statement))
-        texts.channels[observation->channel.name.text] = "~ " + call(observation->noise);
+        texts.channels.try_emplace(observation->channel.name.text, "~ " + call(observation->noise));
       if (auto const* definition = std::get_if<ast::Definition>(&statement))
-        texts.derived[definition->name.name.text] = "= " + unparse(definition->value);
+        texts.derived.try_emplace(definition->name.name.text, "= " + unparse(definition->value));
     }
   }
+}
+
+// The user's own text first; what that leaves open from the model with its parts written out: all of one that stands in a module,
+// what parts bring to one of the file.
+Texts texts_of(Source const& source, ast::File const& flat, std::string const& model) {
+  Texts texts;
+  Diagnostics ignored;
+  if (auto const tree = parse(source, ignored)) add_texts(*tree, model, true, texts);
+  add_texts(flat, model, texts.equations.empty() && texts.channels.empty(), texts);
   return texts;
 }
 
@@ -49,11 +55,11 @@ std::string text_of(std::map<std::string, std::string> const& texts, std::string
 
 }  // namespace
 
-ModelPage describe_structure(Source const& source, Model const& model) {
+ModelPage describe_structure(Source const& source, ast::File const& flat, Model const& model) {
   ModelPage page;
   page.name = model.name;
   page.title = model.title;
-  Texts texts = texts_of(source, model.name);
+  Texts texts = texts_of(source, flat, model.name);
   page.equations = std::move(texts.equations);
   // "y", "y'", "y''" are one state of order 3; its unknown is y'''.
   std::vector<std::pair<State const*, int>> orders;

@@ -61,6 +61,13 @@ ChainValues column_of(Draws const& draws, std::size_t column) {
   return values;
 }
 
+// One draw has no spread.
+Summary of_derived(Draws const& draws, std::size_t column) {
+  Summary summary = summarise(draws.names[column], draws.units[column], column_of(draws, column));
+  if (draws.total() == 1) summary.sd = summary.mad = summary.q5 = summary.q95 = std::nan("");
+  return summary;
+}
+
 // A run that drew its seed goes on with that one.
 std::uint64_t stored_seed(Session& session, Task const& task, FitTask const& what) {
   auto const path = checkpoint_path(session.result_folder(task));
@@ -123,10 +130,17 @@ class Fit {
   bool prepare(RunContext& context) {
     MakeTarget const make = [this](SolverSettings const& solver) { return make_target(solver); };
     preparation_.solver = what_.solver;
+    if (what_.settle && model_.integrated()) {
+      SearchSolver const search = search_solver(make, what_.solver, seed_);
+      if (search.solver != what_.solver)
+        session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws leave the range of numbers\n",
+                                        task_.name, accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
+      preparation_.solver = search.solver;
+    }
     auto const target = make(preparation_.solver);
     RunContext search_context{
         seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
-    SearchResult found = search(*target, Aim::posterior, search_context);
+    SearchResult found = search(*target, backend_.aim, search_context);
     if (found.interrupted) return false;
     if (found.failure) {
       ledger_.merge(preparation_.ledger);
@@ -135,10 +149,19 @@ class Fit {
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     if (!what_.settle) return true;
-    SettledSolver settled = settle_solver(make, what_.solver, std::move(preparation_.modes), seed_, preparation_.ledger);
+    // Modes may need fewer steps than far corners of the prior.
+    if (preparation_.solver != what_.solver)
+      preparation_.modes =
+          refit(*make(what_.solver), backend_.aim, preparation_.modes, seed_, preparation_.ledger, context.interrupted);
+    SettledSolver settled = settle_solver(make, backend_.aim, what_.solver, std::move(preparation_.modes), seed_,
+                                          preparation_.ledger, context.interrupted);
+    if (context.stop_requested()) return false;
     preparation_.solver = settled.solver;
     preparation_.modes = std::move(settled.modes);
     preparation_.moves = std::move(settled.moves);
+    // What looked like several may have been the solver's.
+    if (std::count_if(preparation_.modes.begin(), preparation_.modes.end(), [](Mode const& each) { return each.share > 0.01; }) < 2)
+      std::erase_if(preparation_.findings, [](Finding const& each) { return each.code == "second_mode"; });
     if (settled.solver != what_.solver)
       session_.notices << fmt::format("{}: {} (with {}, parameters move by up to {:.2g} sd with {})\n", task_.name,
                                       accuracy(settled.solver), accuracy(what_.solver), preparation_.moves.front(),
@@ -204,11 +227,11 @@ class Fit {
     for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, model_));
     report.priors = priors_of(*space_, report.priors);
     report.findings = result.findings;
-    // Chains that start from the search report its findings themselves.
-    if (!(what_.settings.all().contains("start") && what_.settings.word("start") == "global"))
+    if (!result.search_told)
       report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     report.summary = summarise(result);
+    add(check_use(model_));
     Ledger extra;
     std::vector<double> const best = best_values(result);
     if (!interrupted) {
@@ -216,8 +239,8 @@ class Fit {
       report.fit = std::move(check.lines);
       add(check.findings);
       if (!preparation_.modes.empty() && model_.dynamics == Dynamics::continuous)
-        add(check_input_timing(*target_, preparation_.modes.front(), seed_, extra));
-      if (model_.integrated()) add(tolerance_findings(step_check(result.draws, extra), preparation_.solver));
+        add(check_input_timing(*target_, backend_.aim, preparation_.modes.front(), seed_, extra));
+      if (model_.integrated()) add(step_check(result.draws, extra));
     }
     if (interrupted)
       report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
@@ -227,7 +250,7 @@ class Fit {
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
     add_derived(*compiled_, *space_, result.draws);
     for (std::size_t c = static_cast<std::size_t>(result.draws.parameter_count); c < result.draws.names.size(); ++c)
-      report.summary.push_back(summarise(result.draws.names[c], result.draws.units[c], column_of(result.draws, c)));
+      report.summary.push_back(of_derived(result.draws, c));
     for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
       report.predictions.push_back(fitted_rows(result.draws, e, report.findings));
     report.modes = result.modes;
@@ -258,13 +281,17 @@ class Fit {
     return verdict.pass ? ExitCode::success : ExitCode::doubtful;
   }
 
-  // Draws tell by their weights, an optimum by where it moves.
-  ToleranceCheck step_check(Draws const& draws, Ledger& extra) const {
+  // Draws tell by their weights, an optimum by where it moves. A solver that was chosen has settled the modes before.
+  Findings step_check(Draws const& draws, Ledger& extra) const {
     auto const fine = make_target(preparation_.solver.finer());
-    if (draws.total() > 1) return check_tolerance(*target_, *fine, draws, extra);
-    if (what_.settle || preparation_.modes.empty()) return {};  // settled before
-    Mode const& coarse = preparation_.modes.front();
-    return {target_->parameters().front().name, largest_move(refit(*fine, {coarse}, seed_, extra).front(), coarse)};
+    Findings findings;
+    if (draws.total() > 1)
+      findings = tolerance_findings(check_tolerance(*target_, *fine, draws, extra), preparation_.solver, what_.settle);
+    auto const weighty =
+        std::count_if(preparation_.modes.begin(), preparation_.modes.end(), [](Mode const& each) { return each.share > 0.01; });
+    if (findings.empty() && !what_.settle && (draws.total() == 1 || weighty > 1) && !preparation_.modes.empty())
+      findings = check_modes(*fine, backend_.aim, preparation_.modes, preparation_.solver, seed_, extra);
+    return findings;
   }
 
   void add_failures(Report& report) const {

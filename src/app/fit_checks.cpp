@@ -8,6 +8,7 @@
 
 #include "inference/refit.hpp"
 #include "inference/residual_tests.hpp"
+#include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {
@@ -162,7 +163,19 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
                        member->name, member->name)}};
 }
 
-Findings check_input_timing(ModelTarget const& target, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
+Findings check_use(Model const& model) {
+  Findings findings;
+  std::vector<ParameterRole> const roles = parameter_roles(model);
+  for (std::size_t p = 0; p < roles.size(); ++p)
+    if (model.parameters[p].prior && roles[p] == ParameterRole::none)
+      findings.push_back(
+          {Severity::warning, "unused_parameter",
+           fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", model.parameters[p].name),
+           "remove it, or use it in an equation"});
+  return findings;
+}
+
+Findings check_input_timing(ModelTarget const& target, Aim aim, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
   Model const& model = target.compiled()->model;
   Findings findings;
   for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) {
@@ -175,7 +188,7 @@ Findings check_input_timing(ModelTarget const& target, Mode const& mode, std::ui
         std::vector<Experiment> moved = target.experiments();
         moved[at].inputs[i] = moved[at].inputs[i].shifted(shift);
         ModelTarget const other(target.compiled(), target.space(), std::move(moved), target.options());
-        std::vector<Mode> const refitted = refit(other, {mode}, seed, ledger);
+        std::vector<Mode> const refitted = refit(other, aim, {mode}, seed, ledger);
         double const gain = refitted.front().log_density - mode.log_density;
         if (gain > best_gain) best_gain = gain, best_shift = shift;
       }

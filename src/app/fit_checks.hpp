@@ -22,8 +22,12 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
 /// have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes.
 Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found);
 
+/// Parameters with a prior that nothing in the model uses: their posterior is their prior.
+Findings check_use(Model const& model);
+
 /// A much better fit with an input of one experiment half a sample earlier or later (more than `0.2` nats per scored sample of that
-/// experiment, and 20 in all) means that the rule between input samples is not the one of the experiment. mode: the best one.
-Findings check_input_timing(ModelTarget const& target, Mode const& mode, std::uint64_t seed, Ledger& ledger);
+/// experiment, and 20 in all) means that the rule between input samples is not the one of the experiment. mode: the best one
+/// of the density that `aim` names.
+Findings check_input_timing(ModelTarget const& target, Aim aim, Mode const& mode, std::uint64_t seed, Ledger& ledger);
 
 }  // namespace sysid

@@ -30,7 +30,6 @@ enum class ExitCode : int {
   internal = 70,
   io = 74,
   interrupted = 75,  // resumable
-  killed = 130,
 };
 
 }  // namespace sysid

@@ -17,6 +17,8 @@
 namespace sysid {
 namespace {
 
+constexpr double least_coverage = 0.8;  // of a 95 % band: errors that are correlated in time leave it in stretches
+
 // The per-experiment parameters that a new experiment draws from their prior, by name.
 std::vector<std::string> drawn_parameters(Model const& model, ExperimentUse const& use) {
   std::vector<std::string> names;
@@ -46,8 +48,15 @@ class Predict {
   ExitCode run() {
     Report report = begin_report(
         session_, task_, fit_.model,
-        fmt::format("predict {} on {} with draws({})", fit_task_.name, data_names(session_.file, what_.experiments), wanted_),
+        fmt::format("predict {} on {} with draws({}){}", fit_task_.name, data_names(session_.file, what_.experiments), wanted_,
+                    model_.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model_, what_.prediction))
+                                                          : std::string()),
         seed_);
+    if (fitted_.draws.total() == 1)
+      report.findings.push_back(
+          {Severity::note, "optimum_alone",
+           fmt::format("`{}` is an optimum, not a posterior: the bands leave out how well parameters are known", fit_task_.name),
+           "fit with mh for bands that hold it"});
     int failed = 0;
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
       report.data.push_back(describe_data(session_.file, data_[static_cast<std::size_t>(e)], model_));
@@ -60,7 +69,10 @@ class Predict {
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
     report.ledger.add_solves(static_cast<std::uint64_t>(wanted_) * data_.size());
-    report.verdict = failed == 0 ? "all trajectories stay finite" : "some trajectories do not stay finite";
+    bool const missed = add_coverage(report);
+    report.verdict = failed > 0 ? "some trajectories do not stay finite"
+                     : missed   ? "all trajectories stay finite, but the data lie outside their bands"
+                                : "all trajectories stay finite";
     write_result(report, session_.result_folder(task_), session_.options.figures);
     session_.out << terminal_summary(report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
@@ -82,6 +94,26 @@ class Predict {
                                              use.name, fmt::join(drawn, ", "), drawn.size() == 1 ? "is" : "are"),
                                  ""});
     return space_->of_new_experiment(declared, use.constants, {seed_, Purpose::population, static_cast<std::uint64_t>(e) << 32, 0});
+  }
+
+  // Whether some channel leaves its 95 % band far more often than it should.
+  bool add_coverage(Report& report) const {
+    bool const fed_back = model_.dynamics == Dynamics::discrete && !model_.states.empty();
+    bool any = false;
+    for (FitLine const& line : fit_lines(report))
+      for (Score const& score : line.scores) {
+        if (score.name != "coverage_95" || score.value >= least_coverage) continue;
+        any = true;
+        report.findings.push_back(
+            {Severity::warning, "coverage_low",
+             fmt::format("only {:.0f} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
+             fed_back
+                 ? "a free run leaves out the noise that feeds back into later samples: its bands are those of the parameters and "
+                   "of each sample's own noise"
+                 : "the model or its noise does not carry over to these data: look at the residuals, and at inputs outside the "
+                   "range that was fitted"});
+      }
+    return any;
   }
 
   // Adds bands and findings of experiment e; how many trajectories failed.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "app/drift.hpp"
 #include "app/experiments.hpp"
@@ -176,10 +177,25 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
       comments += fmt::format("# {} = {}{}\n", model.parameters[p].name, shortest(model.parameters[p].from_si(*what.values[p])),
                               unit_suffix(model.parameters[p].unit_text()));
   std::vector<std::vector<double>> columns = {experiment.time};
+  // Channels keep their names; an input of the same name says what it is.
+  std::set<std::string> taken = {header};
+  auto const column_name = [&taken](std::string name, std::string const& suffix) {
+    if (taken.contains(name)) name += suffix;
+    while (!taken.insert(name).second) name += "_";
+    return name;
+  };
+  std::vector<std::pair<std::string, std::string>> channel_columns;  // measured, without noise; by quantity
+  for (TrajectoryQuantity const& quantity : trajectory.quantities()) {
+    channel_columns.emplace_back();
+    if (quantity.channel < 0) continue;
+    channel_columns.back().first = column_name(quantity.name, "_measured");
+    channel_columns.back().second = column_name(channel_columns.back().first + "_clean", "");
+  }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    header += "," + csv_field(model.inputs[i].name);
+    std::string const name = column_name(model.inputs[i].name, "_input");
+    header += "," + csv_field(name);
     comments +=
-        fmt::format("# column {}{}{}\n", model.inputs[i].name, unit_suffix(model.inputs[i].unit_text()),
+        fmt::format("# column {}{}{}\n", name, unit_suffix(model.inputs[i].unit_text()),
                     model.dynamics == Dynamics::continuous ? fmt::format(": {} between samples", rule_name(what.inputs[i].rule))
                                                            : std::string());
     for (double& value : inputs[i]) value = model.inputs[i].from_si(value);
@@ -197,9 +213,10 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
       for (std::size_t i = 0; i < clean.size(); ++i) noisy[i] = clean[i] + sd * stream.normal();
       comments += fmt::format("# noise sd of {}: {}{}\n", quantity.name, shortest(sd), unit_suffix(quantity.unit));
     }
-    header += fmt::format(",{},{}", csv_field(quantity.name), csv_field(quantity.name + "_clean"));
-    comments += fmt::format("# column {}{}: measured; {}_clean: without {}noise\n", quantity.name, unit_suffix(quantity.unit),
-                            quantity.name, feeds_back ? "the sample's own " : "");
+    auto const& [measured, noiseless] = channel_columns[q];
+    header += fmt::format(",{},{}", csv_field(measured), csv_field(noiseless));
+    comments += fmt::format("# column {}{}: measured; {}: without {}noise\n", measured, unit_suffix(quantity.unit), noiseless,
+                            feeds_back ? "the sample's own " : "");
     columns.push_back(std::move(noisy));
     columns.push_back(clean);
   }

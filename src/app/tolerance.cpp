@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "inference/laplace.hpp"
 #include "inference/refit.hpp"
 
 namespace sysid {
@@ -20,29 +21,113 @@ bool too_fine(SolverSettings const& solver) {
 }
 
 constexpr int checked_draws = 200;
+constexpr std::uint64_t probe_step = 3;  // of Purpose::start
+constexpr double of_weight = 0.01;       // share of a mode; others may move as they like
+
+bool same_mode(Mode const& a, Mode const& b) { return std::isfinite(a.log_density) && distance(a, b) < 0.5; }
+
+// Those that have come together, once, with their weights and hits.
+std::vector<Mode> merged(std::vector<Mode> const& modes) {
+  std::vector<Mode> result;
+  for (Mode const& mode : modes) {
+    auto const same = std::find_if(result.begin(), result.end(), [&](Mode const& other) { return same_mode(other, mode); });
+    if (same == result.end()) {
+      result.push_back(mode);
+      continue;
+    }
+    same->share += mode.share;
+    same->hits += mode.hits;
+  }
+  return result;
+}
+
+// To first order only: far beyond a few sds the number means no more than "many".
+std::string move_text(double move) { return move > 5 ? "many sds" : fmt::format("about {:.2g} sd", move); }
+
+// chosen: by the guard itself, so that there is nothing to leave out.
+Finding shaped(SolverSettings const& solver, bool chosen, std::string const& what) {
+  return {Severity::error, "integration_step",
+          fmt::format("the integration {} shapes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
+                      solver.finer_words(), what),
+          chosen ? fmt::format("fit again with `{}` or finer", solver.finer().option())
+          : solver.fixed_step()
+              ? fmt::format("fit again with `{}` or more, or leave `substeps` out and it is chosen", solver.finer().option())
+              : fmt::format("fit again with `{}`, or leave the tolerances out and they are chosen", solver.finer().option())};
+}
 
 }  // namespace
 
-SettledSolver settle_solver(MakeTarget const& make, SolverSettings const& from, std::vector<Mode> modes, std::uint64_t seed,
-                            Ledger& ledger) {
+SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed) {
+  SearchSolver result{from, 0};
+  if (!from.fixed_step()) return result;
+  constexpr int draws = 256;
+  constexpr double tolerable = 0.2, worth_it = 0.05;
+  double least = 1;
+  SolverSettings solver = from;
+  for (int factor = 1; factor <= 64; factor *= 4) {
+    solver.substeps = from.substeps * factor;
+    auto const target = make(solver);
+    LaneArray theta(target->dimension(), draws);
+    target->sample_prior({seed, Purpose::start, 0, probe_step}, theta);
+    std::vector<double> density(draws);
+    Ledger ignored;
+    target->log_likelihood(theta, density, ignored);
+    double const failed =
+        static_cast<double>(std::count_if(density.begin(), density.end(), [](double v) { return !std::isfinite(v); })) / draws;
+    if (factor == 1) result.failed_as_given = failed;
+    if (factor == 1 || failed < least - worth_it) result.solver = solver, least = failed;
+    if (failed <= tolerable) break;
+  }
+  return result;
+}
+
+SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
+                            std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
   SettledSolver result;
   result.solver = from;
   result.modes = std::move(modes);
-  while (true) {
-    std::vector<Mode> finer = refit(*make(result.solver.finer()), result.modes, seed, ledger);
+  while (!stop || !stop()) {
+    std::vector<Mode> finer = refit(*make(result.solver.finer()), aim, result.modes, seed, ledger, stop);
     double move = 0;
-    // Modes of no weight may move as they like.
     for (std::size_t m = 0; m < finer.size(); ++m)
-      if (m == 0 || result.modes[m].share > 0.01) move = std::max(move, largest_move(finer[m], result.modes[m]));
+      if (m == 0 || result.modes[m].share > of_weight) move = std::max(move, largest_move(finer[m], result.modes[m]).size);
     result.moves.push_back(move);
-    if (move <= tolerable_move) return result;
+    if (move <= tolerable_move) break;
     if (too_fine(result.solver.finer())) {
       result.settled = false;
-      return result;
+      break;
     }
     result.solver = result.solver.finer();
-    result.modes = std::move(finer);
+    result.modes = merged(finer);
   }
+  return result;
+}
+
+Findings check_modes(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver,
+                     std::uint64_t seed, Ledger& ledger) {
+  std::vector<Mode> weighty;
+  for (Mode const& mode : modes)
+    if (weighty.empty() || mode.share > of_weight) weighty.push_back(mode);
+  std::vector<Mode> const refined = refit(fine, aim, weighty, seed, ledger);
+  Findings findings;
+  for (std::size_t m = 0; m < refined.size() && findings.empty(); ++m) {
+    Move const move = largest_move(refined[m], weighty[m]);
+    if (move.size <= tolerable_move) continue;
+    auto const p = static_cast<std::size_t>(move.parameter);
+    ParameterInfo const& parameter = fine.parameters()[p];
+    std::string const unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+    if (!std::isfinite(move.size))
+      findings.push_back(shaped(solver, false, "the simulation fails at the optimum"));
+    else if (2 * move.value >= move.size)
+      findings.push_back(shaped(solver, false, fmt::format("{} moves by {}", parameter.name, move_text(move.value))));
+    else
+      findings.push_back(shaped(solver, false,
+                                fmt::format("the sd of {} is {:.2g}{} in place of {:.2g}{}", parameter.name, refined[m].sd[p], unit,
+                                            weighty[m].sd[p], unit)));
+  }
+  if (std::size_t const apart = merged(refined).size(); apart < refined.size())
+    findings.push_back(shaped(solver, false, fmt::format("the {} modes that were found are {}", refined.size(), apart)));
+  return findings;
 }
 
 ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fine, Draws const& draws, Ledger& ledger) {
@@ -75,16 +160,9 @@ ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fin
   return result;
 }
 
-Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver) {
+Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver, bool chosen) {
   if (check.move <= tolerable_move) return {};
-  // To first order only: far beyond a few sds the number means no more than "many".
-  std::string const move = check.move > 5 ? "many sds" : fmt::format("about {:.2g} sd", check.move);
-  return {{Severity::error, "integration_step",
-           fmt::format("the integration {} shapes the result: with {} the mean of {} moves by {}",
-                       solver.fixed_step() ? "step" : "tolerance", solver.finer_words(), check.parameter, move),
-           solver.fixed_step()
-               ? fmt::format("fit again with `{}` or more, or leave `substeps` out and it is chosen", solver.finer().option())
-               : fmt::format("fit again with `{}`, or leave the tolerances out and they are chosen", solver.finer().option())}};
+  return {shaped(solver, chosen, fmt::format("the mean of {} moves by {}", check.parameter, move_text(check.move)))};
 }
 
 }  // namespace sysid

@@ -9,21 +9,35 @@
 
 namespace sysid {
 
-/// A parameter may move by this many of its sds when the step is halved, or the tolerance made a hundred times smaller.
+/// A parameter's limits (value plus and minus sd) may move by this many of its sds when the step is halved, or the tolerance made a
+/// hundred times smaller.
 constexpr double tolerable_move = 0.1;
 
 using MakeTarget = std::function<std::unique_ptr<ModelTarget>(SolverSettings const& solver)>;
 
-/// The first of `from`, `from.finer()`, ... for which no mode moves by more than `tolerable_move` sds at the next one; the modes
-/// there.
+/// Steps for the search, which does not see what fails: `from`, or 4, 16 or 64 times its steps where more than a fifth of 256 prior
+/// draws fail that such steps follow; the first that leaves no more than a fifth, else the first of the best.
+struct SearchSolver {
+  SolverSettings solver;
+  double failed_as_given = 0;  // share of the prior draws
+};
+SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed);
+
+/// The first of `from`, `from.finer()`, ... for which no mode moves or changes its width by more than `tolerable_move` sds at the
+/// next one; the modes there, those that came together counted once.
 struct SettledSolver {
   SolverSettings solver;
   std::vector<Mode> modes;
   std::vector<double> moves;  // of each that was tried: largest move to the next one [sd]
   bool settled = true;        // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative)
 };
-SettledSolver settle_solver(MakeTarget const& make, SolverSettings const& from, std::vector<Mode> modes, std::uint64_t seed,
-                            Ledger& ledger);
+SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
+                            std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {});
+
+/// The same question of a solver that the task states: do the modes keep place and width with the finer one, of which `fine` is
+/// made, and do they stay apart? Rough steps make false modes and false curvature.
+Findings check_modes(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver,
+                     std::uint64_t seed, Ledger& ledger);
 
 /// After sampling: by how many sds each posterior mean moves with the finer solver, from the change of log likelihood over up to
 /// 200 draws (to first order the move of a mean is the covariance of the parameter with that change). Names the worst.
@@ -33,7 +47,7 @@ struct ToleranceCheck {
 };
 ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fine, Draws const& draws, Ledger& ledger);
 
-/// Fires above `tolerable_move`.
-Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver);
+/// Fires above `tolerable_move`. chosen: the guard chose the solver, not the task.
+Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver, bool chosen);
 
 }  // namespace sysid

@@ -24,6 +24,8 @@ struct Failure {
 
 class Ledger {
  public:
+  /// Where the failures lie that are counted without a look at each.
+  static constexpr char const* untraced = "not looked into, as the first eight were";
   void add_solves(std::uint64_t count) { solves_ += count; }
   /// Counts a failure; `example` and `time` are kept for the first one of its (kind, where).
   void add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example, std::uint64_t count = 1);

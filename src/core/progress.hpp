@@ -11,7 +11,8 @@ class Progress {
   virtual void begin(std::string_view what, std::uint64_t total) = 0;
   /// done: units of `total` finished so far; note: a few words of the current state ("acceptance 0.24").
   virtual void advance(std::uint64_t done, std::string_view note) = 0;
-  virtual void end() = 0;
+  /// finished: false where the job was stopped on the way.
+  virtual void end(bool finished = true) = 0;
 };
 
 /// Shows nothing.
@@ -19,7 +20,7 @@ class SilentProgress : public Progress {
  public:
   void begin(std::string_view, std::uint64_t) override {}
   void advance(std::uint64_t, std::string_view) override {}
-  void end() override {}
+  void end(bool) override {}
 };
 
 }  // namespace sysid

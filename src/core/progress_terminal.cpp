@@ -120,7 +120,7 @@ void TerminalProgress::advance(std::uint64_t done, std::string_view note) {
     means_.write(status(now) + "\n");
 }
 
-void TerminalProgress::end() {
+void TerminalProgress::end(bool finished) {
   if (!running_) return;
   running_ = false;
   // A job shorter than an interval is not worth a line; a bar leaves the screen to what follows.
@@ -128,7 +128,8 @@ void TerminalProgress::end() {
     if (means_.bar)
       means_.write("\r\033[K");
     else
-      means_.write(fmt::format("{}: done in {}\n", what_, format_duration(means_.clock() - begun_)));
+      means_.write(
+          fmt::format("{}: {} {}\n", what_, finished ? "done in" : "stopped after", format_duration(means_.clock() - begun_)));
   }
   visible_ = false;
 }

@@ -23,7 +23,7 @@ class TerminalProgress : public Progress {
 
   void begin(std::string_view what, std::uint64_t total) override;
   void advance(std::uint64_t done, std::string_view note) override;
-  void end() override;
+  void end(bool finished = true) override;
 
  private:
   std::string status(double now) const;

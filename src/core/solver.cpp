@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 
 #include "core/diagnostic.hpp"
 
@@ -27,6 +28,9 @@ std::string value_text(SettingValue const& value) {
   if (auto const* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
   return fmt::format("{}", std::get<double>(value));
 }
+
+// To the digits that a person would write: 1e-5/100 is not the number nearest to 1e-7.
+double hundredth(double value) { return std::stod(fmt::format("{:.12e}", value / 100)); }
 
 }  // namespace
 
@@ -60,8 +64,8 @@ SolverSettings SolverSettings::finer() const {
   if (fixed_step()) {
     result.substeps *= 2;
   } else {
-    result.relative = std::max(result.relative / 100, 1e-14);  // rounding is not far below
-    result.absolute /= 100;
+    result.relative = std::max(hundredth(result.relative), 1e-14);  // rounding is not far below
+    result.absolute = hundredth(result.absolute);
   }
   return result;
 }

@@ -13,6 +13,7 @@
 #include "core/ledger.hpp"
 #include "core/progress.hpp"
 #include "core/settings.hpp"
+#include "inference/aim.hpp"
 #include "inference/convergence.hpp"
 #include "inference/draws.hpp"
 #include "inference/finding.hpp"
@@ -32,10 +33,12 @@ struct Mode {
   std::vector<double> sd;          // [P], declared units, to first order in the width
   std::vector<double> covariance;  // [P x P] by rows, sampler's coordinates
   double log_density = 0;          // of the objective at theta, all constants kept
-  double log_mass = 0;             // log integral of its Laplace approximation over the sampler's coordinates
-  double share = 0;                // of the sum of all modes' masses
-  int hits = 0;                    // local searches that ended here
-  bool well_defined = true;        // false: flat in some direction, whose width is the prior's
+  double log_mass = 0;       // log integral of its Laplace approximation: over the sampler's coordinates where the objective is
+                             // the density there, else over the declared parameters
+  double share = 0;          // of the sum of all modes' masses; of `ml`, of their likelihoods
+  int hits = 0;              // local searches that ended here
+  std::vector<double> flat;  // [K x P] moves of the declared parameters, a tenth of a prior width at most, that nothing
+                             // resists: widths along them are the prior's; empty: well defined
 };
 
 /// All that a run gets from outside, and the only way anything but the result leaves it.
@@ -52,7 +55,8 @@ struct RunContext {
   double checkpoint_interval = 60;
   /// What `checkpoint` was last given by the same task: the run goes on to the same bytes as if it had never stopped.
   std::optional<nlohmann::json> resume = {};
-  /// Modes of the posterior, when a search has found them already: `mh` starts from these instead of searching again.
+  /// Modes of the density that the row's `aim` names, when a search has found them already: back ends start from these instead of
+  /// searching again.
   std::vector<Mode> modes = {};
   Findings mode_findings = {};  // of that search
 
@@ -74,10 +78,11 @@ struct FitResult {
   std::vector<Summary> summaries;              // of the parameters, where the back end has taken them already
   std::vector<double> acceptance_rate;         // per chain, after burn-in (during it, when interrupted before its end)
   std::vector<std::uint64_t> distinct_states;  // per chain, after burn-in
-  std::vector<Mode> modes;                     // by falling share
+  std::vector<Mode> modes;                     // by falling share; of `map` and `ml` by falling density
   std::vector<FrozenProposal> proposals;
   Settings settings;
   Findings findings;
+  bool search_told = false;  // `findings` hold those of the search, or what stands in their place
   bool interrupted = false;
   /// Set when there is no result at all (no finite start, a checkpoint of another run): an error for the user, with the reason.
   std::optional<Finding> failure;
@@ -87,6 +92,7 @@ struct BackendRow {
   std::string_view name;
   std::string_view summary;
   Needs needs;
+  Aim aim;  // what its modes are modes of
   std::span<SettingRow const> settings;
   /// Why values that are each allowed do not go together ("burn_in must be smaller than samples"); empty when they do.
   std::string (*refuse)(Settings const&);

@@ -105,7 +105,7 @@ nlohmann::json encode(Mode const& mode) {
           {"covariance", block(mode.covariance)},
           {"numbers", block({mode.log_density, mode.log_mass, mode.share})},
           {"hits", mode.hits},
-          {"well_defined", mode.well_defined}};
+          {"flat", block(mode.flat)}};
 }
 
 Mode decode_mode(nlohmann::json const& stored) {
@@ -118,7 +118,7 @@ Mode decode_mode(nlohmann::json const& stored) {
           numbers.at(1),
           numbers.at(2),
           stored.at("hits").get<int>(),
-          stored.at("well_defined").get<bool>()};
+          decode(stored.at("flat"))};
 }
 
 nlohmann::json encode(Findings const& findings) {

@@ -7,7 +7,10 @@
 namespace sysid {
 namespace {
 
-constexpr double difference_width = 1e-5;        // of a prior width: residuals bend over widths, rounding sits at 1e-11 of them
+// Of a prior width: residuals bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
+// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
+double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
+
 constexpr double prior_difference_width = 1e-3;  // second differences need more
 constexpr double most_step = 2;
 constexpr double worth_taking = 1e-8;  // predicted gain in log density below which a search is done
@@ -50,12 +53,13 @@ std::vector<Slope> slopes_of(Objective const& objective, std::vector<Climber*> c
   int const dimension = objective.dimension();
   int const columns = 2 * dimension + 1;
   int const rows = objective.target.residual_count();
+  double const width = difference_width(objective.target);
   LaneArray theta(dimension, columns * static_cast<int>(block.size()));
   for (std::size_t k = 0; k < block.size(); ++k) {
     for (int c = 0; c < columns; ++c) {
       for (int p = 0; p < dimension; ++p) {
         double const shift = c == 2 * p ? 1 : c == 2 * p + 1 ? -1 : 0;
-        theta(p, static_cast<int>(k) * columns + c) = block[k]->theta(p) + shift * difference_width * objective.scale(p);
+        theta(p, static_cast<int>(k) * columns + c) = block[k]->theta(p) + shift * width * objective.scale(p);
       }
     }
   }
@@ -69,14 +73,14 @@ std::vector<Slope> slopes_of(Objective const& objective, std::vector<Climber*> c
     int const first = static_cast<int>(k) * columns;
     for (int r = 0; r < rows; ++r) centre(r) = residuals(r, first + 2 * dimension);
     for (int p = 0; p < dimension; ++p) {
-      double const h = difference_width * objective.scale(p);
+      double const h = width * objective.scale(p);
       auto const finite = [&](int column) { return rows > 0 && std::isfinite(residuals(0, first + column)); };
       bool const ahead = finite(2 * p), behind = finite(2 * p + 1);
       for (int r = 0; r < rows; ++r) {
         double const up = ahead ? residuals(r, first + 2 * p) : centre(r);
         double const down = behind ? residuals(r, first + 2 * p + 1) : centre(r);
-        double const width = (ahead ? h : 0) + (behind ? h : 0);
-        jacobian(r, p) = width > 0 ? (up - down) / width : 0;  // both neighbours failed: leave the coordinate alone
+        double const apart = (ahead ? h : 0) + (behind ? h : 0);
+        jacobian(r, p) = apart > 0 ? (up - down) / apart : 0;  // both neighbours failed: leave the coordinate alone
       }
     }
     if (!jacobian.allFinite() || !centre.allFinite()) {

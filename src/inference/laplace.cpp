@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/elementary.hpp"
 
@@ -15,7 +16,7 @@ constexpr double difference_width = 0.3;  // conditional sds: log density falls 
 constexpr double close_enough = 1e-8;     // Newton decrement: 1e-4 sd from the optimum
 constexpr int most_steps = 30;
 
-/// Value, gradient and minus the second derivatives of the log density, in units of `width`.
+/// Value, gradient and minus the second derivatives of the log density, in units of the columns of `steps` [P x P].
 struct Local {
   double value = 0;
   Eigen::VectorXd gradient;
@@ -23,15 +24,12 @@ struct Local {
   bool finite = true;
 };
 
-Local local_shape(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& width, bool full,
+Local local_shape(Objective const& objective, Eigen::VectorXd const& theta, Eigen::MatrixXd const& steps, bool full,
                   Ledger& ledger) {
   Eigen::Index const n = theta.size();
   std::vector<Eigen::VectorXd> points = {theta};
   auto const moved = [&](Eigen::Index i, double a, Eigen::Index j, double b) {
-    Eigen::VectorXd x = theta;
-    x(i) += a * width(i);
-    x(j) += b * width(j);
-    return x;
+    return Eigen::VectorXd(theta + (a * steps.col(i) + b * steps.col(j)));
   };
   for (Eigen::Index i = 0; i < n; ++i) {
     points.push_back(moved(i, 1, i, 0));
@@ -60,31 +58,36 @@ Local local_shape(Objective const& objective, Eigen::VectorXd const& theta, Eige
   return local;
 }
 
-/// Eigenvalues of a curvature in prior widths, held at or above the prior's own order: a direction that the data leave alone is a
-/// few prior widths long, not infinite.
+/// Eigenvalues of a curvature, held at or above the prior's own order: a direction that the data leave alone is a few prior widths
+/// long, not infinite. Units are conditional widths where those are narrower than the prior's: a parameter known to a billionth
+/// would else leave its rounding in all others.
 struct Spectrum {
+  Eigen::VectorXd unit;     // [P]
   Eigen::VectorXd values;   // > 0
-  Eigen::MatrixXd vectors;  // columns, in prior widths
-  bool positive = true;
+  Eigen::MatrixXd vectors;  // columns, in units
+  std::vector<Eigen::Index> flat;
 };
 
 Spectrum spectrum_of(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& scale) {
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const solver(scale.asDiagonal() * curvature * scale.asDiagonal());
-  Spectrum spectrum{solver.eigenvalues(), solver.eigenvectors()};
-  constexpr double least = 1e-2;  // ten prior widths
-  // Beside a stiff direction, rounding leaves this much in the others.
-  double const noise = 1e-11 * solver.eigenvalues().cwiseAbs().maxCoeff();
-  for (double& value : spectrum.values) {
-    if (value < std::max(least, noise)) {
-      spectrum.positive = false;
-      value = std::max({std::fabs(value), least, noise});
-    }
+  Eigen::VectorXd unit = scale;
+  for (Eigen::Index i = 0; i < unit.size(); ++i)
+    if (curvature(i, i) > 0) unit(i) = std::min(scale(i), 1 / std::sqrt(curvature(i, i)));
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const solver(unit.asDiagonal() * curvature * unit.asDiagonal());
+  Spectrum spectrum{unit, solver.eigenvalues(), solver.eigenvectors(), {}};
+  constexpr double longest = 10;   // prior widths
+  constexpr double noise = 1e-11;  // what rounding leaves in second differences
+  for (Eigen::Index k = 0; k < unit.size(); ++k) {
+    double const length = spectrum.vectors.col(k).cwiseProduct(unit).cwiseQuotient(scale).norm();
+    double const least = std::max(length * length / (longest * longest), noise);
+    if (spectrum.values(k) >= least) continue;
+    spectrum.flat.push_back(k);
+    spectrum.values(k) = std::max(std::fabs(spectrum.values(k)), least);
   }
   return spectrum;
 }
 
-Eigen::MatrixXd inverse(Spectrum const& s, Eigen::VectorXd const& scale) {
-  Eigen::MatrixXd const vectors = scale.asDiagonal() * s.vectors;
+Eigen::MatrixXd inverse(Spectrum const& s) {
+  Eigen::MatrixXd const vectors = s.unit.asDiagonal() * s.vectors;
   return vectors * s.values.cwiseInverse().asDiagonal() * vectors.transpose();
 }
 
@@ -98,7 +101,41 @@ Eigen::VectorXd widths_from(Eigen::MatrixXd const& curvature, Eigen::VectorXd co
   return width;
 }
 
-void fill_declared(Target const& target, Eigen::VectorXd const& theta, Eigen::MatrixXd const& covariance, Mode& mode) {
+/// Where a shape is measured: along the parameters, or, where they are strongly correlated, along the axes of the ellipsoid. There
+/// a step along a parameter sees little but the narrow direction, and what rounding or a rough solver leaves in the log density
+/// drowns the wide one.
+struct Steps {
+  Eigen::MatrixXd columns;
+  bool along_parameters;
+};
+
+Steps steps_from(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& scale, bool full) {
+  constexpr double strongly = 1e-2;  // smallest eigenvalue of the scaled curvature: a correlation of 0.99
+  Spectrum const spectrum = spectrum_of(curvature, scale);
+  if (!full || !curvature.allFinite() || spectrum.values.minCoeff() > strongly)
+    return {Eigen::MatrixXd(widths_from(curvature, scale).asDiagonal()), true};
+  Steps steps{spectrum.unit.asDiagonal() * spectrum.vectors, false};
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    double const widths = steps.columns.col(k).cwiseQuotient(scale).norm();
+    steps.columns.col(k) *= difference_width * std::min(1 / std::sqrt(spectrum.values(k)), 1 / widths);
+  }
+  return steps;
+}
+
+/// Whether `steps` were right for a shape: each a third to three times as long as it asks for.
+bool fitting(Steps const& steps, Local const& local, Steps const& wanted) {
+  if (steps.along_parameters != wanted.along_parameters) return false;
+  if (steps.along_parameters) {
+    Eigen::ArrayXd const now = wanted.columns.diagonal().array(), former = steps.columns.diagonal().array();
+    return (now < 3 * former).all() && (now > former / 3).all();
+  }
+  constexpr double asked = difference_width * difference_width;
+  // Where the prior's width is the limit, the curvature may be as small as it likes.
+  return (local.curvature.diagonal().array() < 9 * asked).all();
+}
+
+/// Declared values and sds; the derivative [P x P] of the declared values.
+Eigen::MatrixXd fill_declared(Target const& target, Eigen::VectorXd const& theta, Eigen::MatrixXd const& covariance, Mode& mode) {
   Eigen::Index const n = theta.size();
   std::vector<Eigen::VectorXd> points = {theta};
   Eigen::VectorXd const step = 1e-3 * covariance.diagonal().cwiseSqrt();
@@ -122,6 +159,25 @@ void fill_declared(Target const& target, Eigen::VectorXd const& theta, Eigen::Ma
     mode.declared.push_back(declared(static_cast<int>(p), 0));
     mode.sd.push_back(std::sqrt(std::max(0.0, spread(p, p))));
   }
+  return slope;
+}
+
+/// log |det|, as a sum: the product may leave the range of numbers.
+double log_volume(Eigen::MatrixXd const& slope) {
+  Eigen::PartialPivLU<Eigen::MatrixXd> const factored(slope);
+  double sum = 0;
+  for (double const pivot : factored.matrixLU().diagonal()) sum += elementary::log(std::fabs(pivot));
+  return sum;
+}
+
+/// A flat direction as moves of the declared parameters, without those that hardly take part.
+void add_flat(Eigen::VectorXd move, Eigen::VectorXd const& scale, Eigen::MatrixXd const& slope, Mode& mode) {
+  Eigen::VectorXd const widths = move.cwiseQuotient(scale);
+  double const largest = widths.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < move.size(); ++i)
+    if (std::fabs(widths(i)) < 0.1 * largest) move(i) = 0;
+  Eigen::VectorXd const declared = slope * move * (0.1 / largest);
+  mode.flat.insert(mode.flat.end(), declared.begin(), declared.end());
 }
 
 }  // namespace
@@ -143,25 +199,26 @@ double distance(Mode const& a, Mode const& b) {
 Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger) {
   Eigen::VectorXd const& scale = objective.scale;
   bool const full = objective.dimension() <= most_parameters;
-  Eigen::VectorXd width = widths_from(guess, scale);
+  Steps steps = steps_from(guess, scale, full);
   Eigen::MatrixXd curvature = guess;
   double value = 0;
   for (int step = 0; step < most_steps; ++step) {
-    Local const local = local_shape(objective, theta, width, full, ledger);
+    Local const local = local_shape(objective, theta, steps.columns, full, ledger);
     value = local.value;
     if (!local.finite) {  // a failing region is near: look closer
-      width *= 0.25;
+      steps.columns *= 0.25;
       continue;
     }
-    Eigen::VectorXd const gradient = local.gradient.cwiseQuotient(width);
-    if (full) curvature = width.cwiseInverse().asDiagonal() * local.curvature * width.cwiseInverse().asDiagonal();
-    Eigen::MatrixXd const covariance = inverse(spectrum_of(curvature, scale), scale);
+    Eigen::MatrixXd const back = steps.along_parameters ? Eigen::MatrixXd(steps.columns.diagonal().cwiseInverse().asDiagonal())
+                                                        : Eigen::MatrixXd(steps.columns.partialPivLu().inverse());
+    Eigen::VectorXd const gradient = back.transpose() * local.gradient;
+    if (full) curvature = back.transpose() * local.curvature * back;
+    Eigen::MatrixXd const covariance = inverse(spectrum_of(curvature, scale));
     Eigen::VectorXd const move = covariance * gradient;
-    Eigen::VectorXd const former = width;
-    width = widths_from(curvature, scale);
-    // Widths far from what the curvature here asks for would blur it: measure again before believing.
-    bool const fitting = !full || ((width.array() < 3 * former.array()).all() && (width.array() > former.array() / 3).all());
-    if (gradient.dot(move) < close_enough && (fitting || step + 1 == most_steps)) break;
+    Steps const former = std::exchange(steps, steps_from(curvature, scale, full));
+    // Steps far from what the curvature here asks for would blur it: measure again before believing.
+    bool const believed = !full || fitting(former, local, steps);
+    if (gradient.dot(move) < close_enough && (believed || step + 1 == most_steps)) break;
     std::vector<Eigen::VectorXd> trials;
     for (double const part : {1.0, 0.5, 0.2, 0.05, 0.01}) trials.push_back(objective.clamp(theta + part * move));
     std::vector<double> const reached = log_density_in_blocks(objective, to_lanes(trials), ledger);
@@ -169,22 +226,23 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
     if (*best > value) {
       theta = trials[static_cast<std::size_t>(best - reached.begin())];
       value = *best;
-    } else if (fitting) {
+    } else if (believed) {
       break;
     }
   }
   Spectrum const spectrum = spectrum_of(curvature, scale);
-  Eigen::MatrixXd const covariance = inverse(spectrum, scale);
+  Eigen::MatrixXd const covariance = inverse(spectrum);
   Eigen::Index const n = theta.size();
   Mode mode;
   mode.theta.assign(theta.data(), theta.data() + n);
   mode.covariance.assign(covariance.data(), covariance.data() + n * n);
   mode.log_density = value;
-  mode.well_defined = spectrum.positive;
   mode.log_mass = value;
   for (Eigen::Index i = 0; i < n; ++i)
-    mode.log_mass += elementary::log(scale(i)) + 0.5 * elementary::log(2 * std::numbers::pi / spectrum.values(i));
-  fill_declared(objective.target, theta, covariance, mode);
+    mode.log_mass += elementary::log(spectrum.unit(i)) + 0.5 * elementary::log(2 * std::numbers::pi / spectrum.values(i));
+  Eigen::MatrixXd const slope = fill_declared(objective.target, theta, covariance, mode);
+  if (objective.aim != Aim::posterior) mode.log_mass += log_volume(slope);
+  for (Eigen::Index const k : spectrum.flat) add_flat(spectrum.unit.cwiseProduct(spectrum.vectors.col(k)), scale, slope, mode);
   return mode;
 }
 

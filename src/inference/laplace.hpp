@@ -12,9 +12,10 @@ namespace sysid {
 ///   log mass = log density + P/2 log 2 pi - 1/2 log det H,   H = -second derivatives of the log density          MacKay 2003, ch.
 ///   27
 ///
-/// over the sampler's coordinates. `guess` is a curvature to choose difference widths by (Gauss-Newton); above 40 parameters it is
-/// also the curvature used, as P^2 simulations cost more than they tell. Directions without positive curvature get the prior's
-/// width, and `well_defined` is false. Declared sds: first order, through the derivative of the declared values.
+/// over the sampler's coordinates, or for an objective that is a density of the declared parameters over those. `guess` is a
+/// curvature to choose difference widths by (Gauss-Newton); above 40 parameters it is also the curvature used, as P^2 simulations
+/// cost more than they tell. Directions along which the curvature leaves more than ten prior widths get those, and are listed in
+/// `flat`. Declared sds: first order, through the derivative of the declared values.
 Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger);
 
 /// Distance of two modes in units of their widths: sqrt((a - b)' (A + B)^-1 (a - b)), A and B the covariances.

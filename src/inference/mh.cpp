@@ -213,7 +213,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
     watch.look(state);
   }
-  context.progress.end();
+  context.progress.end(!stopped);
   if (stopped && context.checkpoint) context.checkpoint(store(state, context.ledger, identity));
   return stopped;
 }
@@ -278,6 +278,7 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
   add_proposals(target, plan, *state, result);
   result.modes = state->modes;
   result.findings = state->findings;
+  result.search_told = plan.global;
   if (plan.stride != 1)
     result.findings.push_back({Severity::note, "diagnostics_on_thinned",
                                "the run is too long to keep every iteration: diagnostics are of the thinned draws", ""});

@@ -63,10 +63,15 @@ Eigen::VectorXd column(ConstLanes theta, int lane) {
   return x;
 }
 
-std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger) {
+std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger,
+                                          std::function<bool()> const& stop) {
   constexpr int block = 512;
   std::vector<double> out;
   for (int first = 0; first < theta.width(); first += block) {
+    if (stop && stop()) {
+      out.resize(static_cast<std::size_t>(theta.width()), -std::numeric_limits<double>::infinity());
+      break;
+    }
     int const count = std::min(block, theta.width() - first);
     std::vector<double> const part = objective.log_density(theta.columns(first, count), ledger);
     out.insert(out.end(), part.begin(), part.end());

@@ -1,18 +1,14 @@
 // What a search climbs: a posterior or a likelihood over the sampler's coordinates, with the prior's widths as its yardstick.
 #pragma once
 #include <Eigen/Dense>
+#include <functional>
 #include <vector>
 
 #include "core/ledger.hpp"
+#include "inference/aim.hpp"
 #include "likelihood/target.hpp"
 
 namespace sysid {
-
-enum class Aim {
-  posterior,           // density on R^P, Jacobian included: what chains sample, so what modes and masses are about
-  declared_posterior,  // density of the declared parameters: `map`
-  likelihood,          // `ml`
-};
 
 struct Objective {
   Target const& target;
@@ -36,7 +32,9 @@ Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws);
 LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points);
 Eigen::VectorXd column(ConstLanes theta, int lane);
 
-/// Evaluates `density` over the columns in blocks of at most 512 lanes: enough to fill any machine, little enough to hold.
-std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger);
+/// The log density of the columns in blocks of at most 512 lanes: enough to fill any machine, little enough to hold. `stop` is
+/// asked before each; what it leaves out is -infinity.
+std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger,
+                                          std::function<bool()> const& stop = {});
 
 }  // namespace sysid

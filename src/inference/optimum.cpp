@@ -50,24 +50,32 @@ FitResult run(std::string_view backend, Target const& target, Aim aim, Settings 
   nlohmann::json const identity = checkpoint::identity(backend, settings, context.seed, target);
   if (context.resume) result.failure = checkpoint::refuse(*context.resume, identity);
   if (result.failure) return result;
-  SearchResult found = search(target, aim, context);
+  SearchResult found =
+      context.modes.empty() ? search(target, aim, context) : SearchResult{context.modes, context.mode_findings, {}, false};
   result.failure = found.failure;
   result.interrupted = found.interrupted;
   if (found.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
   if (found.failure || found.interrupted) return result;
   result.modes = std::move(found.modes);
   Mode const& best = result.modes.front();
+  result.findings = std::move(found.findings);
+  result.search_told = true;
   std::string const bound = parameters_at_bound(target, best);
-  if (!bound.empty())
+  if (!bound.empty()) {
+    // Coordinates end there at infinity: of course they are flat.
+    std::erase_if(result.findings, [](Finding const& each) { return each.code == "flat_direction"; });
     result.findings.push_back({Severity::warning, "at_bound",
                                fmt::format("the optimum lies at a bound of the prior: {}; its widths mean little", bound),
                                "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
-  else
-    result.findings = std::move(found.findings);
+  }
   write_draw(target, best, context, result);
   // One draw has no spread: the standard deviations are those of the Laplace approximation.
   result.summaries = summarise(result);
-  for (std::size_t p = 0; p < result.summaries.size(); ++p) result.summaries[p].sd = best.sd[p];
+  for (std::size_t p = 0; p < result.summaries.size(); ++p) {
+    Summary& summary = result.summaries[p];
+    summary.sd = best.sd[p];
+    summary.mad = summary.q5 = summary.q95 = std::nan("");
+  }
   return result;
 }
 

@@ -17,19 +17,24 @@ constexpr std::uint64_t refit_step = 2;
 
 }  // namespace
 
-std::vector<Mode> refit(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
+std::vector<Mode> refit(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
+                        std::function<bool()> const& stop) {
   LaneArray draws(target.dimension(), scale_draws);
   target.sample_prior({seed, Purpose::start, 0, refit_step}, draws);
-  Objective const objective = make_objective(target, Aim::posterior, draws);
+  Objective const objective = make_objective(target, aim, draws);
   std::vector<Climber> climbers;
   std::vector<Eigen::VectorXd> points;
   for (Mode const& mode : modes) points.push_back(theta_of(mode));
   if (points.empty()) return {};
   std::vector<double> const density = objective.log_density(to_lanes(points), ledger);
   for (std::size_t m = 0; m < modes.size(); ++m) climbers.push_back(climber_at(points[m], density[m]));
-  climb(objective, climbers, rounds, ledger, {});
+  climb(objective, climbers, rounds, ledger, stop);
   std::vector<Mode> result;
   for (std::size_t m = 0; m < modes.size(); ++m) {
+    if (stop && stop()) {
+      result.push_back(modes[m]);
+      continue;
+    }
     if (!std::isfinite(climbers[m].log_density)) {
       result.push_back(modes[m]);
       result.back().log_density = -std::numeric_limits<double>::infinity();
@@ -45,11 +50,16 @@ std::vector<Mode> refit(Target const& target, std::vector<Mode> const& modes, st
   return result;
 }
 
-double largest_move(Mode const& before, Mode const& after) {
-  if (!std::isfinite(after.log_density)) return std::numeric_limits<double>::infinity();
-  double most = 0;
-  for (std::size_t p = 0; p < before.declared.size(); ++p)
-    if (before.sd[p] > 0) most = std::max(most, std::abs(after.declared[p] - before.declared[p]) / before.sd[p]);
+Move largest_move(Mode const& before, Mode const& after) {
+  double const infinity = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(after.log_density)) return {0, infinity, infinity};
+  Move most;
+  for (std::size_t p = 0; p < before.declared.size(); ++p) {
+    if (!(before.sd[p] > 0)) continue;
+    double const value = std::abs(after.declared[p] - before.declared[p]) / before.sd[p];
+    double const size = value + std::abs(after.sd[p] - before.sd[p]) / before.sd[p];
+    if (size > most.size) most = {static_cast<int>(p), size, value};
+  }
   return most;
 }
 

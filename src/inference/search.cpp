@@ -10,6 +10,7 @@
 
 #include "core/elementary.hpp"
 #include "inference/descent.hpp"
+#include "inference/identifiability.hpp"
 #include "inference/laplace.hpp"
 
 namespace sysid {
@@ -17,7 +18,7 @@ namespace {
 
 constexpr int draws_per_pass = 2048;
 constexpr std::size_t likeliest = 96, others = 32;
-constexpr int early_rounds = 6, late_rounds = 100;
+constexpr int early_rounds = 6, late_rounds = 100, usual_rounds = 15;
 constexpr std::size_t finalists = 16;
 constexpr int most_passes = 4;
 constexpr double near = 0.05;      // prior widths: finalists closer than this search the same basin
@@ -38,8 +39,9 @@ void sort_best_first(std::vector<Climber>& climbers) {
 }
 
 /// The draws worth a local search: the likeliest, and the first of the rest.
-std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Ledger& ledger) {
-  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger);
+std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Ledger& ledger,
+                                   std::function<bool()> const& stop) {
+  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger, stop);
   std::vector<int> order;
   for (int w = 0; w < draws.width(); ++w)
     if (std::isfinite(density[static_cast<std::size_t>(w)])) order.push_back(w);
@@ -112,11 +114,14 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
       same->hits = hits;
     }
   }
-  // A likelihood has no mass over coordinates, nor the density of declared parameters: those rank by height.
+  // What is asked for is the highest point, except by chains; how much lies around it is another question.
   auto const rank = [&](Mode const& m) { return objective.aim == Aim::posterior ? m.log_mass : m.log_density; };
   std::stable_sort(modes.begin(), modes.end(), [&](Mode const& a, Mode const& b) { return rank(a) > rank(b); });
-  double sum = 0;
-  for (Mode& mode : modes) sum += mode.share = elementary::exp(rank(mode) - rank(modes.front()));
+  // A likelihood has no mass.
+  auto const weight = [&](Mode const& m) { return objective.aim == Aim::likelihood ? m.log_density : m.log_mass; };
+  double heaviest = -std::numeric_limits<double>::infinity(), sum = 0;
+  for (Mode const& mode : modes) heaviest = std::max(heaviest, weight(mode));
+  for (Mode& mode : modes) sum += mode.share = elementary::exp(weight(mode) - heaviest);
   for (Mode& mode : modes) mode.share /= sum;
   return modes;
 }
@@ -129,20 +134,40 @@ std::string describe(Target const& target, Mode const& mode) {
   return parameters.size() > 6 ? text + ", ..." : text;
 }
 
+// move [P]: of declared parameters.
+Finding flat_direction(Target const& target, std::span<double const> move) {
+  std::vector<std::string> names, moves;
+  for (std::size_t p = 0; p < move.size(); ++p) {
+    ParameterInfo const& parameter = target.parameters()[p];
+    if (move[p] == 0) continue;
+    names.push_back(parameter.name);
+    moves.push_back(fmt::format("{} by {:+.2g}{}", parameter.name, move[p], parameter.unit.empty() ? "" : " " + parameter.unit));
+  }
+  if (names.size() == 1)
+    return {Severity::warning, "flat_direction",
+            fmt::format("the data leave {} undetermined: its width is the prior's", names.front()),
+            "fix it to a value, give it a narrower prior, or measure what tells it"};
+  return {
+      Severity::warning, "flat_direction",
+      fmt::format("the data leave a combination of {} undetermined: moving {} together changes next to nothing, and its width is "
+                  "the prior's",
+                  listed(names), listed(moves)),
+      "fix one of them, give them narrower priors, or measure what tells them apart"};
+}
+
 void add_findings(Objective const& objective, SearchResult& result) {
   std::vector<Mode> const& modes = result.modes;
-  for (std::size_t i = 1; i < modes.size() && objective.aim == Aim::posterior; ++i) {
-    if (modes[i].share <= notable_share) break;
+  for (std::size_t i = 1; i < modes.size() && objective.aim != Aim::likelihood; ++i) {
+    if (modes[i].share <= notable_share) continue;
     result.findings.push_back(
         {Severity::warning, "second_mode",
          fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
                      describe(objective.target, modes[i])),
          "look at both solutions: add data or prior knowledge that tells them apart, or run more chains and report both"});
   }
-  if (!modes.empty() && !modes.front().well_defined)
-    result.findings.push_back({Severity::warning, "flat_direction",
-                               "the data leave some combination of parameters undetermined; its width is the prior's",
-                               "fix one of the parameters, or give them narrower priors, or measure something more"});
+  auto const parameters = static_cast<std::size_t>(objective.dimension());
+  for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters)
+    result.findings.push_back(flat_direction(objective.target, {modes.front().flat.data() + at, parameters}));
 }
 
 LaneArray draw_prior(Target const& target, StreamKey key, int count) {
@@ -155,27 +180,37 @@ LaneArray draw_prior(Target const& target, StreamKey key, int count) {
 
 SearchResult search(Target const& target, Aim aim, RunContext& context) {
   SearchResult result;
-  auto const stop = [&] { return context.stop_requested(); };
-  context.progress.begin("searching the prior", most_passes);
+  // All that a search of one pass does but its last rounds, of which a handful is usual.
+  auto const dimension = static_cast<std::uint64_t>(target.dimension());
+  std::uint64_t const round = 2 * dimension + 1 + 4,
+                      usual = draws_per_pass + (likeliest + others) * early_rounds * round + finalists * usual_rounds * round;
+  std::uint64_t const before = context.ledger.solves();
+  std::uint64_t expected = usual;
+  auto const stop = [&] {
+    context.progress.advance(std::min(context.ledger.solves() - before, expected - 1), "");
+    return context.stop_requested();
+  };
+  context.progress.begin("searching the prior", expected);
   StreamKey const key{context.seed, Purpose::start, 0, search_step};
   std::optional<Objective> objective;
   std::vector<Climber> ended;
   for (int pass = 0; pass < most_passes && !stop(); ++pass) {
     LaneArray const draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
     if (!objective) objective.emplace(make_objective(target, aim, draws));
-    std::vector<Climber> starts = choose_starts(*objective, draws, context.ledger);
+    std::vector<Climber> starts = choose_starts(*objective, draws, context.ledger, stop);
     climb(*objective, starts, early_rounds, context.ledger, stop);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts));
     climb(*objective, last, late_rounds, context.ledger, stop);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
-    context.progress.advance(static_cast<std::uint64_t>(pass + 1), "");
-    if (ended.empty()) continue;
-    result.modes = modes_of(*objective, ended, context);
+    if (!ended.empty()) result.modes = modes_of(*objective, ended, context);
     if (!result.modes.empty() && (result.modes.front().hits > 1 || ended.size() == 1)) break;
+    expected = context.ledger.solves() - before + usual;
+    context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, most_passes), expected);
   }
-  context.progress.end();
-  if (stop()) {
+  bool const stopped = stop();
+  context.progress.end(!stopped);
+  if (stopped) {
     result.interrupted = true;
     result.modes.clear();
     return result;
@@ -271,16 +306,17 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
 Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
   // Only the first failures are traced to a sub-expression; they are examples, their counts say little.
   std::vector<Failure> failures = ledger.failures();
-  std::erase_if(failures, [](Failure const& each) { return each.where == "not traced"; });
+  std::erase_if(failures, [](Failure const& each) { return each.where == Ledger::untraced; });
   std::stable_sort(failures.begin(), failures.end(), [](Failure const& a, Failure const& b) { return a.count > b.count; });
   std::string places;
   for (std::size_t i = 0; i < failures.size() && i < 3; ++i)
     places += fmt::format("{}{} in {} at t = {:.4g} s", i == 0 ? ": " : ", ", name(failures[i].kind), failures[i].where,
                           failures[i].time);
-  return {Severity::error, "no_finite_start",
-          fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, places),
-          "look at this part of the equations, narrow the priors towards values for which the model can be solved, take shorter "
-          "steps (substeps = 10), or fit with `solver = cvode` where the model is stiff"};
+  return {
+      Severity::error, "no_finite_start",
+      fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, places),
+      "look at this part of the equations, narrow the priors towards values for which the model can be solved, or let the solver "
+      "choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff"};
 }
 
 }  // namespace sysid

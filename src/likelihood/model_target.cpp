@@ -91,7 +91,7 @@ void ModelTarget::record_failures(Simulator const& simulator, std::size_t experi
     std::vector<double> example;
     for (int p = 0; p < declared.rows(); ++p) example.push_back(declared(p, static_cast<int>(w)));
     if (ledger.failed() >= traced_failures) {
-      ledger.add_failure(outcome[w].kind, "not traced", simulator.schedule().time(std::max(outcome[w].sample, 0)),
+      ledger.add_failure(outcome[w].kind, Ledger::untraced, simulator.schedule().time(std::max(outcome[w].sample, 0)),
                          std::move(example));
       continue;
     }
@@ -128,6 +128,10 @@ void ModelTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger
     }
     out[w] = good && !std::isnan(total) ? total : -infinity;
   }
+}
+
+double ModelTarget::roughness() const {
+  return compiled_->model.integrated() && !options_.solver.fixed_step() ? options_.solver.relative : 0;
 }
 
 int ModelTarget::residual_count() const { return static_cast<int>(places_.size()); }

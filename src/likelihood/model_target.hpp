@@ -40,6 +40,7 @@ class ModelTarget : public Target {
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override;
   int residual_count() const override;
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
+  double roughness() const override;
   void constrain(ConstLanes theta, Lanes declared) const override { space_->constrain(theta, declared); }
   void unconstrain(ConstLanes declared, Lanes theta) const override { space_->unconstrain(declared, theta); }
 

@@ -40,6 +40,9 @@ class Target {
   /// scored sample sign(y - centre) sqrt(2 (s - log p(y))), s the largest log density any location gives y, and per channel one row
   /// sqrt(2 (C - sum s)) that carries the scale. A failed lane is +infinity in every row.
   virtual void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const = 0;
+  /// How rough the log likelihood is as a function of theta: what a simulation leaves to chance, as a part of its size. 0 where it
+  /// is smooth but for rounding; the tolerance where steps are chosen by the error.
+  virtual double roughness() const { return 0; }
   /// Declared values [P x W] (declared units) of theta [P x W], and back.
   virtual void constrain(ConstLanes theta, Lanes declared) const = 0;
   virtual void unconstrain(ConstLanes declared, Lanes theta) const = 0;

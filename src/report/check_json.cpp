@@ -55,7 +55,11 @@ Json prior_object(PriorPage const& prior) {
                         {"range_median", channel.middle},
                         {"range_q95", channel.high},
                         {"measured_range", channel.measured}});
-  return {{"draws", prior.draws}, {"failed", prior.failed}, {"failures", failures}, {"channels", channels}};
+  return {{"draws", prior.draws},
+          {"failed", prior.failed},
+          {"failed_as_stated", prior.failed_as_stated},
+          {"failures", failures},
+          {"channels", channels}};
 }
 
 Json information_object(InformationPage const& page) {
@@ -69,14 +73,9 @@ Json information_object(InformationPage const& page) {
     parameters.push_back(std::move(each));
   }
   for (auto const& [solver, move] : page.moves) moves.push_back({{"solver", solver}, {"move_sd", move}});
-  return {{"draws", page.draws},
-          {"rows", page.rows},
-          {"rank", {page.rank_low, page.rank_high}},
-          {"noise", page.noise},
-          {"parameters", parameters},
-          {"null_directions", page.null_directions},
-          {"solvers", moves},
-          {"stated_solver", page.stated},
+  return {{"draws", page.draws},           {"rows", page.rows},        {"rank", {page.rank_low, page.rank_high}},
+          {"noise", page.noise},           {"parameters", parameters}, {"null_directions", page.null_directions},
+          {"ridges", page.ridges},         {"solvers", moves},         {"stated_solver", page.stated},
           {"advised_solver", page.advised}};
 }
 

@@ -28,8 +28,10 @@ struct ModelPage {
 struct CoveragePage {
   std::string name, file, made_by;  // made_by: the simulate task that makes the file, when it is not there yet
   int rows = 0, first = 0, last = 0, scored = 0, start_rows = 0;
-  double rate = 0;    // Hz, mean
-  bool equal = true;  // steps
+  double rate = 0;              // Hz, mean
+  bool equal = true;            // steps
+  std::string time_unit = "s";  // in which the record counts its time,
+  double time_scale = 1;        // [s] one of these
   struct Input {
     std::string name, unit, rule;
     double low = 0, high = 0;  // Hz: between them lies 99 % of the power
@@ -46,7 +48,9 @@ struct CoveragePage {
 
 /// What draws of the prior predict with the actual input.
 struct PriorPage {
-  int draws = 0, failed = 0;
+  int draws = 0, failed = 0;  // failed: with every solver that was tried
+  int failed_as_stated = 0;   // with the solver of the task,
+  std::string stated;         // this one
   std::vector<Failure> failures;
   struct Channel {
     std::string name, unit;                // "displacement", "displacement on bare.train" where there are several experiments
@@ -71,6 +75,7 @@ struct InformationPage {
   };
   std::vector<Line> lines;
   std::vector<std::string> null_directions;
+  std::vector<std::string> ridges;                    // pairs that trade against each other and are known all the same
   std::string refinement;                             // "half the step"
   std::vector<std::pair<std::string, double>> moves;  // solver, largest move of a parameter [sd] when it is refined
   std::string stated;                                 // in the file; empty: the fit chooses

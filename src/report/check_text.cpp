@@ -60,20 +60,26 @@ std::string model_text(ModelPage const& model) {
   return out;
 }
 
-std::string hertz(double value) { return significant(value, 3); }
+// Frequencies of records that count in longer units than seconds are told in those.
+bool slow(CoveragePage const& data) { return data.time_scale > 1; }
+std::string frequency_unit(CoveragePage const& data) { return slow(data) ? "1/" + data.time_unit : "Hz"; }
+double frequency(CoveragePage const& data, double hertz) { return slow(data) ? hertz * data.time_scale : hertz; }
 
 std::string coverage_text(CoveragePage const& data) {
   if (!data.made_by.empty())
     return entry("data", {fmt::format("{}: made by {}, not there yet: `sysid simulate` makes it", data.file, data.made_by)});
   std::vector<std::string> lines = {
-      fmt::format("{}: rows {}..{} of {} scored{}, {}{} Hz", data.file, data.first, data.last, data.rows,
+      fmt::format("{}: rows {}..{} of {} scored{}, {}{}", data.file, data.first, data.last, data.rows,
                   data.start_rows > 0 ? fmt::format(" ({} before them estimate the start)", data.start_rows) : std::string(),
-                  data.equal ? "" : "on average ", fmt::format("{:.6g}", data.rate))};
+                  data.equal ? "" : "on average ",
+                  slow(data) ? fmt::format("one every {:.6g} {}", 1 / (data.rate * data.time_scale), data.time_unit)
+                             : fmt::format("{:.6g} Hz", data.rate))};
   for (CoveragePage::Input const& input : data.inputs)
     lines.push_back(input.constant
                         ? fmt::format("input {}, {}: constant", input.name, input.rule)
-                        : fmt::format("input {}, {}: 99 % of its power between {} and {} Hz, up to {} of the sampling rate",
-                                      input.name, input.rule, hertz(input.low), hertz(input.high),
+                        : fmt::format("input {}, {}: 99 % of its power between {} and {} {}, up to {} of the sampling rate",
+                                      input.name, input.rule, significant(frequency(data, input.low), 3),
+                                      significant(frequency(data, input.high), 3), frequency_unit(data),
                                       fmt::format("{:.2f}", input.high / data.rate)));
   for (CoveragePage::Channel const& channel : data.channels)
     lines.push_back(channel.measured + channel.missing == 0
@@ -83,12 +89,14 @@ std::string coverage_text(CoveragePage const& data) {
   return entry("data", lines);
 }
 
-std::string prior_text(PriorPage const& prior) {
+std::string prior_text(PriorPage const& prior, std::string const& time_unit, double time_scale) {
   std::vector<std::string> lines = {prior.failed == 0 ? fmt::format("{} draws, all simulations stay finite", prior.draws)
                                                       : fmt::format("{} of {} simulations fail", prior.failed, prior.draws)};
+  if (prior.failed_as_stated > prior.failed)
+    lines.push_back(fmt::format("with {} {} of them fail: its steps are too long there", prior.stated, prior.failed_as_stated));
   for (Failure const& failure : prior.failures)
-    lines.push_back(fmt::format("  {} x {}: {} (first at t = {} s)", failure.count, name(failure.kind), failure.where,
-                                significant(failure.time, 4)));
+    lines.push_back(fmt::format("  {} x {}: {} (first at t = {} {})", failure.count, name(failure.kind), failure.where,
+                                significant(failure.time / time_scale, 4), time_unit));
   for (PriorPage::Channel const& channel : prior.channels)
     lines.push_back(fmt::format("{}: nine in ten predict a range of {} to {}, the middle one {}; measured {}", channel.name,
                                 significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
@@ -114,6 +122,7 @@ std::string information_text(InformationPage const& page) {
                               page.noise.empty() ? std::string() : "; noise as with " + page.noise));
   if (page.rows > 0) lines.push_back(fmt::format("over the first {} scored rows; the whole record tells more", page.rows));
   for (std::string const& direction : page.null_directions) lines.push_back(direction);
+  for (std::string const& ridge : page.ridges) lines.push_back(ridge);
   out += entry("", lines);
   std::string moves;
   for (auto const& [solver, move] : page.moves)
@@ -129,7 +138,7 @@ std::string information_text(InformationPage const& page) {
 std::string task_text(TaskPage const& task) {
   std::string out = fmt::format("task {}: {}\n", task.name, task.what);
   for (CoveragePage const& data : task.coverage) out += coverage_text(data);
-  if (task.prior) out += prior_text(*task.prior);
+  if (task.prior) out += prior_text(*task.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
   if (task.information) out += information_text(*task.information);
   if (!task.left_out.empty()) out += entry("left out", {task.left_out});
   for (Severity const severity : {Severity::error, Severity::warning, Severity::note})

@@ -101,14 +101,21 @@ std::string data_section(Report const& report) {
 std::string summary_section(Report const& report) {
   std::string out;
   if (!report.summary.empty()) {
+    bool const optimum = report.draws.total() == 1;
     std::vector<std::vector<std::string>> rows;
     for (Summary const& s : report.summary) {
       SummaryText const t = format_summary(s);
-      rows.push_back({"<b>" + escape(s.name) + "</b>", escape(pretty_unit(s.unit)), pretty_number(t.mean), pretty_number(t.sd),
-                      pretty_number(t.q5), pretty_number(t.median), pretty_number(t.q95)});
+      if (optimum)
+        rows.push_back({"<b>" + escape(s.name) + "</b>", escape(pretty_unit(s.unit)), pretty_number(t.mean), pretty_number(t.sd)});
+      else
+        rows.push_back({"<b>" + escape(s.name) + "</b>", escape(pretty_unit(s.unit)), pretty_number(t.mean), pretty_number(t.sd),
+                        pretty_number(t.q5), pretty_number(t.median), pretty_number(t.q95)});
     }
-    out += table({"", "unit", "mean", "sd", "5 %", "median", "95 %"}, rows, 2);
-    out += "<p class=\"caption\">Digits end where the Monte Carlo error begins.</p>\n";
+    if (optimum)
+      out += table({"", "unit", "optimum", "sd of its Laplace approximation"}, rows, 2);
+    else
+      out += table({"", "unit", "mean", "sd", "5 %", "median", "95 %"}, rows, 2) +
+             "<p class=\"caption\">Digits end where the Monte Carlo error begins.</p>\n";
   }
   for (ReportTable const& extra : report.tables) {
     std::vector<std::vector<std::string>> rows;

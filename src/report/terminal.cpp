@@ -14,11 +14,17 @@ namespace {
 
 std::string draws_line(Draws const& draws) {
   if (draws.chains.empty()) return "";
+  if (draws.total() == 1) return "one point, the optimum";
   std::size_t const chains = draws.chains.size();
   return fmt::format("{} chain{} of {} draws", chains, chains == 1 ? "" : "s", draws.chains[0].values.size());
 }
 
 std::string summary_table(Report const& report) {
+  if (report.draws.total() == 1) {
+    std::vector<std::vector<std::string>> rows = {{"", "unit", "optimum", "Laplace sd"}};
+    for (Summary const& s : report.summary) rows.push_back({s.name, s.unit, format_summary(s).mean, format_summary(s).sd});
+    return align_columns(rows, 2);
+  }
   std::vector<std::vector<std::string>> rows = {{"", "unit", "mean", "sd", "q5", "q95", "rhat", "ess_bulk", "ess_tail"}};
   for (Summary const& s : report.summary) {
     SummaryText const t = format_summary(s);
@@ -36,12 +42,20 @@ std::string scores_line(FitLine const& line) {
   return out;
 }
 
-std::string ledger_text(Ledger const& ledger) {
+// The unit that the records count their time in, and one of it in s.
+std::pair<std::string, double> time_unit(Report const& report) {
+  if (report.predictions.empty()) return {"s", 1};
+  return {report.predictions.front().time_unit, report.predictions.front().time_scale};
+}
+
+std::string ledger_text(Report const& report) {
+  Ledger const& ledger = report.ledger;
+  auto const [unit, scale] = time_unit(report);
   if (ledger.solves() == 0 && ledger.failed() == 0) return "";
   std::string out = fmt::format("{} simulations, {} failed\n", ledger.solves(), ledger.failed());
   for (Failure const& failure : ledger.failures())
-    out += fmt::format("  {} x {}: {} (first at t = {} s)\n", failure.count, name(failure.kind), failure.where,
-                       significant(failure.time, 4));
+    out += fmt::format("  {} x {}: {} (first at t = {} {})\n", failure.count, name(failure.kind), failure.where,
+                       significant(failure.time / scale, 4), unit);
   return out;
 }
 
@@ -60,7 +74,7 @@ std::string terminal_summary(Report const& report) {
   }
   std::string facts;
   for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what(), scores_line(line));
-  facts += ledger_text(report.ledger);
+  facts += ledger_text(report);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report)) {
     std::string const judged = judge(report.findings).text;

@@ -40,6 +40,17 @@ TEST_CASE("without a terminal there is a line per interval and none for a short 
         "posterior: done in 0:25\n");
 }
 
+TEST_CASE("a job that is stopped is not called done") {
+  Screen screen;
+  TerminalProgress progress(screen.means(false));
+  progress.begin("sampling", 100);
+  progress.advance(0, "");
+  screen.now = 11;
+  progress.advance(11, "");
+  progress.end(false);
+  CHECK(screen.text == "sampling: 11 % (11 of 100), 1/s, 1:29 left\nsampling: stopped after 0:11\n");
+}
+
 TEST_CASE("on a terminal the bar is redrawn in place, not too often, and wiped at the end") {
   Screen screen;
   TerminalProgress progress(screen.means(true));

@@ -28,6 +28,13 @@ TEST_CASE("a solver is spelt as a task states it") {
   CHECK(SolverSettings{.method = "heun"}.option() == "solver = heun");
 }
 
+TEST_CASE("a refined tolerance is the number that a person would write") {
+  SolverSettings const loose{.method = "cvode", .relative = 1e-5};
+  CHECK(loose.finer().relative == 1e-7);
+  CHECK(loose.finer().option() == "solver = cvode(relative = 1e-07)");
+  CHECK(loose.finer().finer().relative == 1e-9);
+}
+
 TEST_CASE("the error allowed near zero follows the size a state has reached, down to 1e-6 of its unit") {
   SolverSettings const solver{.relative = 1e-6};
   CHECK(solver.near_zero(2.0) == doctest::Approx(2e-9));

@@ -45,7 +45,7 @@ TEST_CASE("ledgers and modes survive storing") {
   CHECK(back.failures()[0].count == 7);
   CHECK(back.failures()[0].time == infinity);
 
-  Mode const mode{{1, 2}, {3, 4}, {5, 6}, {7, 8, 9, 10}, -1.5, 2.5, 0.125, 3, false};
+  Mode const mode{{1, 2}, {3, 4}, {5, 6}, {7, 8, 9, 10}, -1.5, 2.5, 0.125, 3, {0.5, -0.5}};
   Mode const read = checkpoint::decode_mode(checkpoint::encode(mode));
   CHECK(read.theta == mode.theta);
   CHECK(read.declared == mode.declared);
@@ -55,7 +55,7 @@ TEST_CASE("ledgers and modes survive storing") {
   CHECK(read.log_mass == mode.log_mass);
   CHECK(read.share == mode.share);
   CHECK(read.hits == mode.hits);
-  CHECK(read.well_defined == mode.well_defined);
+  CHECK(read.flat == mode.flat);
 }
 
 TEST_CASE("a checkpoint knows its run, and says what differs") {

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "inference/search.hpp"
 #include "inference/targets.hpp"
 #include "inference/verdict.hpp"
 
@@ -60,6 +61,20 @@ TEST_CASE("map is the maximum of the density of the declared parameters, whateve
   CHECK(flat.draws.chains[0].values[0][1] == doctest::Approx(1 / variance()).epsilon(2e-3));
 }
 
+TEST_CASE("modes that a search has found are not searched for again") {
+  TestTarget const target = normal_sample(sample, {Prior::log_uniform, 0.01, 1000});
+  Bench first, second;
+  SearchResult const found = search(target, Aim::declared_posterior, first.context);
+  second.context.modes = found.modes;
+  second.context.mode_findings = {{Severity::warning, "of_the_search", "", ""}};
+  auto const before = target.solves;
+  FitResult const result = optimum::run_map(target, Settings{}, second.context);
+  CHECK(target.solves == before + 1);  // its log likelihood
+  CHECK(result.draws.chains[0].values[0] == found.modes[0].declared);
+  CHECK(result.search_told);
+  CHECK(result.findings == second.context.mode_findings);
+}
+
 TEST_CASE("a point estimate has the standard deviations of its Laplace approximation") {
   Bench bench;
   FitResult const result = optimum::run_ml(normal_sample(sample, {Prior::uniform, 1e-4, 1e3}), Settings{}, bench.context);
@@ -67,6 +82,9 @@ TEST_CASE("a point estimate has the standard deviations of its Laplace approxima
   // Fisher information of a normal sample of n: n precision for the mean, n / (2 precision^2) for the precision.
   CHECK(result.summaries[0].sd == doctest::Approx(std::sqrt(variance() / n)).epsilon(1e-2));
   CHECK(result.summaries[1].sd == doctest::Approx(std::sqrt(2.0 / n) / variance()).epsilon(1e-2));
+  // One point has no quantiles.
+  CHECK(std::isnan(result.summaries[0].q5));
+  CHECK(std::isnan(result.summaries[0].q95));
 }
 
 TEST_CASE("an optimum at a bound of the prior is reported, one inside is not") {

@@ -52,7 +52,7 @@ TEST_CASE("Duffing's oscillator is found from draws two decades wide, for every 
       CHECK(best.sd[p] < 0.01 * truth[p]);
     }
     CHECK(best.share > 0.999);
-    CHECK(best.well_defined);
+    CHECK(best.flat.empty());
     CHECK(result.findings.empty());
   }
 }
@@ -114,8 +114,76 @@ TEST_CASE("a combination that the data leave alone is reported") {
   SearchResult const flat = search(target, Aim::likelihood, likelihood.context);
   REQUIRE(flat.findings.size() == 1);
   CHECK(flat.findings[0].code == "flat_direction");
-  CHECK_FALSE(flat.modes[0].well_defined);
+  CHECK(flat.findings[0].message.find("a combination of a and b") != std::string::npos);
+  // The direction is (1, -1): a tenth of a prior width of each, in opposite senses.
+  REQUIRE(flat.modes[0].flat.size() == 2);
+  CHECK(std::fabs(flat.modes[0].flat[0]) == doctest::Approx(0.1).epsilon(0.05));
+  CHECK(flat.modes[0].flat[1] == doctest::Approx(-flat.modes[0].flat[0]).epsilon(1e-3));
   CHECK(search(target, Aim::posterior, posterior.context).findings.empty());
+}
+
+TEST_CASE("a parameter that the data leave alone is named by itself") {
+  TestTarget const target({"a", "idle"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] - 1) / 0.01; });
+  Bench bench;
+  SearchResult const result = search(target, Aim::likelihood, bench.context);
+  REQUIRE(result.findings.size() == 1);
+  CHECK(result.findings[0].message == "the data leave idle undetermined: its width is the prior's");
+}
+
+TEST_CASE("a parameter known to a billionth leaves the others their widths") {
+  TestTarget const target({"stiff", "soft"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 2, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) {
+                            rows[0] = (w[0] - 0.5) / 1e-9;
+                            rows[1] = (w[1] - 1) / 0.1;
+                          });
+  Bench bench;
+  SearchResult const result = search(target, Aim::posterior, bench.context);
+  CHECK(result.findings.empty());
+  CHECK(result.modes.front().sd[0] == doctest::Approx(1e-9).epsilon(1e-3));
+  CHECK(result.modes.front().sd[1] == doctest::Approx(std::sqrt(1 / 101.0)).epsilon(1e-3));
+}
+
+TEST_CASE("an optimum is the highest mode, and a lower one that holds more is reported with its share") {
+  TestTarget const target = mixture({0.75, 0.25}, {-20, 10}, {2, 0.0894});
+  Bench bench;
+  SearchResult const result = search(target, Aim::declared_posterior, bench.context);
+  REQUIRE(result.modes.size() == 2);
+  CHECK(result.modes[0].declared[0] == doctest::Approx(10).epsilon(1e-3));
+  // By the prior's tilt 0.75 and 0.25 become 0.71 and 0.29 of their sum, see above.
+  double const wide = 0.75 * std::exp(-0.5 * 400 / 904) / std::sqrt(904.0), narrow = 0.25 * std::exp(-0.5 * 100 / 900) / 30;
+  CHECK(result.modes[1].share == doctest::Approx(wide / (wide + narrow)).epsilon(5e-3));
+  REQUIRE(result.findings.size() == 1);
+  CHECK(result.findings[0].code == "second_mode");
+}
+
+TEST_CASE("progress counts simulations up to those of a usual search") {
+  struct Counting : SilentProgress {
+    std::uint64_t total = 0, last = 0;
+    int calls = 0;
+    bool finished = false;
+    void begin(std::string_view, std::uint64_t of) override { total = of; }
+    void advance(std::uint64_t done, std::string_view) override {
+      CHECK(done >= last);
+      last = done;
+      ++calls;
+    }
+    void end(bool whole) override { finished = whole; }
+  } progress;
+  TestTarget const target = mixture({1}, {3}, {0.5});
+  Ledger ledger;
+  RunContext context{1, progress, ledger};
+  search(target, Aim::posterior, context);
+  CHECK(progress.calls > 10);
+  CHECK(progress.last < progress.total);
+  CHECK(progress.last > 2048);
+  CHECK(progress.finished);
+  Ledger again;
+  RunContext stopped{1, progress, again};
+  stopped.interrupted = [&] { return again.solves() > 3000; };
+  progress.last = 0;
+  CHECK(search(target, Aim::posterior, stopped).interrupted);
+  CHECK_FALSE(progress.finished);
 }
 
 TEST_CASE("a prior without a solvable point is a failure that names the place") {

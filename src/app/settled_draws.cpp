@@ -1,0 +1,104 @@
+// The task's own solver, then dopri5 for all draws, then cvode for those that are still open.
+#include "app/settled_draws.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double accuracy = 1e-4;                                          // of a range that is compared within orders of magnitude
+constexpr std::size_t explicit_steps = 200'000, implicit_steps = 200'000;  // in all: a lane each, all lanes together
+constexpr std::size_t fewest_steps = 20;                                   // between two samples: less is no attempt
+
+LaneArray gathered(ConstLanes from, std::vector<int> const& lanes) {
+  LaneArray to(from.rows(), static_cast<int>(lanes.size()));
+  for (int r = 0; r < to.rows(); ++r)
+    for (std::size_t w = 0; w < lanes.size(); ++w) to(r, static_cast<int>(w)) = from(r, lanes[w]);
+  return to;
+}
+
+class Settling {
+ public:
+  Settling(Session& session, FitTask const& what, std::shared_ptr<ParameterSpace const> const& space,
+           std::vector<Experiment> const& experiments, ConstLanes theta, ConstLanes points, SettledDraws& result)
+      : session_(session),
+        what_(what),
+        space_(space),
+        experiments_(experiments),
+        theta_(theta),
+        points_(points),
+        result_(result),
+        pool_(make_pool(session.options.execution)) {
+    for (Experiment const& each : experiments) samples_ += each.time.size();
+  }
+
+  // Tries the lanes; where the method follows one, its response is the answer.
+  void attempt(std::string const& method, std::size_t budget, std::vector<int> const& lanes) {
+    std::size_t const steps = budget / std::max<std::size_t>(1, samples_);
+    if (lanes.empty() || steps < fewest_steps) return;
+    auto const compiled = session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, method, what_.prediction);
+    SolverSettings const solver{
+        .method = method, .relative = accuracy, .steps = static_cast<int>(std::min<std::size_t>(steps, 10'000))};
+    LaneArray const theta = gathered(theta_, lanes);
+    LaneArray points = gathered(points_, lanes);
+    std::vector<double> density(lanes.size());
+    Ledger ledger;
+    make_fit_target(session_, what_, compiled, space_, experiments_, solver)->log_likelihood(theta, density, ledger);
+    Output const output(compiled, space_, experiments_, solver, start_rows(what_.start), session_.options.execution, pool_);
+    LaneArray centres(result_.centres.rows(), points.width());
+    output.start(points);
+    output.centres(points, centres);
+    for (std::size_t w = 0; w < lanes.size(); ++w) {
+      if (!std::isfinite(density[w])) continue;
+      result_.followed[static_cast<std::size_t>(lanes[w])] = true;
+      for (int r = 0; r < centres.rows(); ++r) result_.centres(r, lanes[w]) = centres(r, static_cast<int>(w));
+    }
+    result_.ledger = std::move(ledger);
+  }
+
+  std::vector<int> open() const {
+    std::vector<int> lanes;
+    for (std::size_t w = 0; w < result_.followed.size(); ++w)
+      if (!result_.followed[w]) lanes.push_back(static_cast<int>(w));
+    return lanes;
+  }
+
+ private:
+  Session& session_;
+  FitTask const& what_;
+  std::shared_ptr<ParameterSpace const> space_;
+  std::vector<Experiment> const& experiments_;
+  ConstLanes theta_, points_;
+  SettledDraws& result_;
+  std::shared_ptr<ThreadPool> pool_;
+  std::size_t samples_ = 0;
+};
+
+}  // namespace
+
+SettledDraws settle_draws(Session& session, FitTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
+                          std::shared_ptr<ParameterSpace const> const& space, std::vector<Experiment> const& experiments,
+                          Output const& stated, ConstLanes theta, ConstLanes points) {
+  auto const width = static_cast<std::size_t>(theta.width());
+  SettledDraws result{LaneArray(static_cast<int>(stated.places().size()), theta.width()), std::vector<bool>(width), 0, {}};
+  std::vector<double> density(width);
+  make_fit_target(session, what, compiled, space, experiments, what.solver)->log_likelihood(theta, density, result.ledger);
+  stated.centres(points, result.centres);
+  for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(density[w]);
+  result.failed_as_stated = static_cast<int>(std::count(result.followed.begin(), result.followed.end(), false));
+  Model const& model = compiled->model;
+  if (!model.integrated() || model.implicit || !what.solver.fixed_step()) return result;
+  Settling settling(session, what, space, experiments, theta, points, result);
+  std::vector<int> all(width);
+  std::iota(all.begin(), all.end(), 0);
+  settling.attempt("dopri5", explicit_steps, all);
+  std::vector<int> const left = settling.open();
+  if (!left.empty()) settling.attempt("cvode", implicit_steps / left.size(), left);
+  return result;
+}
+
+}  // namespace sysid

@@ -1,0 +1,12 @@
+// Which density an optimum is one of.
+#pragma once
+
+namespace sysid {
+
+enum class Aim {
+  posterior,           // density on R^P, Jacobian included: what chains sample, so what their modes and masses are about
+  declared_posterior,  // density of the declared parameters: `map`
+  likelihood,          // `ml`
+};
+
+}  // namespace sysid

@@ -1,0 +1,106 @@
+// What a run says of a point estimate: what its numbers are, whether its solver is accurate enough for them, and what a prediction
+// from it leaves out.
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/running.hpp"
+
+using namespace sysid;
+using nlohmann::json;
+
+namespace {
+
+std::filesystem::path const duffing = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
+
+// Duffing's oscillator by `map` with the options given, on the shipped record.
+std::string optimum_of(std::string const& options) {
+  std::string const text = read_file(duffing);
+  return with(text, "with mh(samples = 25000, burn_in = 5000, thin = 10, chains = 4)", "with map" + options);
+}
+
+struct Told {
+  RunResult run;
+  json fit, forecast;
+};
+
+Told run_optimum(std::string const& text) {
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  Told told{run_text(duffing, text, options, {"fit", "predict"}), {}, {}};
+  told.fit = json::parse(read_file(options.output / "posterior/summary.json"));
+  told.forecast = json::parse(read_file(options.output / "forecast/summary.json"));
+  return told;
+}
+
+int count(std::string const& text, std::string const& part) {
+  int found = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+bool found(json const& summary, std::string const& code) {
+  for (json const& finding : summary.at("findings"))
+    if (finding.at("code") == code) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("an optimum is called one, has no quantiles, and what is predicted from it says what it leaves out") {
+  Told const told = run_optimum(optimum_of(""));
+  CHECK(told.run.exit == 0);
+  CHECK(told.run.out.find("one point, the optimum") != std::string::npos);
+  CHECK(told.run.out.find("Laplace sd") != std::string::npos);
+  CHECK(told.run.out.find("q95") == std::string::npos);
+  json const& k = told.fit.at("parameters").at("k");
+  CHECK(k.at("mean").get<double>() == doctest::Approx(1e4).epsilon(0.01));
+  CHECK(k.at("sd").get<double>() > 0);
+  CHECK(k.at("q5").is_null());
+  CHECK(told.fit.at("parameters").at("fn").at("q5").is_null());
+  CHECK(found(told.forecast, "optimum_alone"));
+  CHECK_FALSE(found(told.fit, "integration_step"));
+}
+
+TEST_CASE("a stated tolerance too loose for the data is an error, a tight one is not") {
+  // Two swings between samples, known to 1e-5: errors of 1e-5 a step add up to more.
+  std::string const text = R"(
+model swing {
+  state y [m]; initial y = 1 [m], y' = 0
+  parameter k ~ log_uniform(100, 200)
+  parameter c ~ log_uniform(0.01, 1)
+  parameter sigma [m] ~ log_uniform(1e-7, 1e-2)
+  y'' + c*y' + k*y = 0
+  observe position ~ normal(y, sd = sigma)
+}
+data record { file "results/truth/swing.csv"; time t [s]; measure position = position [m] }
+truth = simulate swing with values(k = 150, c = 0.1, sigma = 1e-5), noise = model, samples = 40, rate = 1 [Hz], solver = dopri5(relative = 1e-12), seed = 1, file = "swing.csv"
+posterior = fit swing to record with map, solver = dopri5(relative = 1e-5), seed = 1
+)";
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "swing.sysid", text, options, {"simulate"});
+  auto const told = [&](std::string const& tolerance, std::string const& name) {
+    RunOptions own = options;
+    own.output = folder.path() / name;
+    run_text(folder.path() / "swing.sysid", with(text, "relative = 1e-5", "relative = " + tolerance), own, {"fit"});
+    return json::parse(read_file(own.output / "posterior/summary.json"));
+  };
+  CHECK(found(told("1e-5", "loose"), "integration_step"));
+  CHECK_FALSE(found(told("1e-11", "tight"), "integration_step"));
+}
+
+TEST_CASE("a parameter that nothing uses is said once, and the direction it leaves flat by its name") {
+  std::string const text = with(optimum_of(""), "  parameter c ", "  parameter idle ~ normal(0, sd = 1)\n  parameter c ");
+  std::string const used = text.substr(0, text.find("\ntruth")) + text.substr(text.find("\nposterior"));
+  Told const told = run_optimum(used);
+  CHECK(found(told.fit, "unused_parameter"));
+  CHECK(count(told.run.out, "idle enters no equation") == 1);
+  // Its prior has a width: the posterior has one, too.
+  CHECK_FALSE(found(told.fit, "flat_direction"));
+  std::string const likeliest = with(used, "with map", "with ml");
+  Told const flat = run_optimum(likeliest);
+  CHECK(count(flat.run.out, "the data leave idle undetermined") == 1);
+}
