@@ -155,6 +155,22 @@ TEST_CASE("no trajectory depends on the unit of a state") {
   }
 }
 
+TEST_CASE("a state whose rate begins at zero, on a kink, has a size") {
+  // y' = -1,  z' = |y| from 0: z = t^2/2. Neither the rate of z nor its slope says anything at t = 0.
+  SimulationSource source;
+  Graph& g = source.graph;
+  source.initial = {g.constant(0), g.constant(0)};
+  source.derivative = {g.constant(-1), g.unary(Operation::absolute, g.leaf(LeafKind::state, 0))};
+  source.records = {g.leaf(LeafKind::state, 1)};
+  Experiment const data = testing::experiment(testing::uniform_times(4, 1.0), {}, {});
+  for (char const* method : {"cvode", "ida", "dopri5"}) {
+    CAPTURE(method);
+    Run const result = run(source, {.method = method}, data, LaneArray(0, 1).view());
+    REQUIRE(result.outcome[0].ok);
+    for (int i = 0; i < 4; ++i) CHECK(result.records(i, 0) == doctest::Approx(0.5 * i * i).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("a state that rounding alone moves asks for no short steps") {
   // A mass hangs at rest on its spring: its acceleration g - k y/m is the rounding error of two forces of 9.81 N, or nothing.
   SimulationSource source;
