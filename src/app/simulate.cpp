@@ -30,8 +30,13 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
   Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.options.execution);
   Trajectory::Result const fine = finer.run(parameters, {});
+  if (fine.failed > 0) {
+    session.notices << fmt::format("{}: warning: with {} the simulation fails, so the error of this one is not known\n", task.name,
+                                   what.solver.finer_words());
+    return;
+  }
   double const tolerable = what.noise_fraction > 0 ? 0.1 * what.noise_fraction : 1e-3;
-  for (std::size_t q = 0; q < finer.quantities().size() && fine.failed == 0; ++q) {
+  for (std::size_t q = 0; q < finer.quantities().size(); ++q) {
     if (finer.quantities()[q].channel < 0) continue;
     std::vector<double> difference = result.values[q][0];
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= fine.values[q][0][i];

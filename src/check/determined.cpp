@@ -11,7 +11,8 @@ namespace {
 using Matrix = std::vector<std::vector<double>>;
 
 constexpr int points = 4;
-/// A pivot below this part of the largest entry is a rounding error: rows of a few terms each lose a few digits of sixteen.
+/// A pivot below this part of the largest entry is a rounding error: rows of a few terms each lose a few digits of sixteen. Rows
+/// and columns are of size 1 beforehand.
 constexpr double rounding = 1e-10;
 
 /// Between 0.5 and 1.5, different for every leaf and point (multiples of the golden ratio lie apart).
@@ -20,9 +21,34 @@ double value_at(NodeId leaf, int point) {
   return 0.5 + turns - std::floor(turns);
 }
 
+/// Divides rows and columns by powers of two near their largest entries until all are near 1: units of equations and unknowns say
+/// nothing of rank (Ruiz 2001).
+void equilibrate(Matrix& matrix) {
+  std::size_t const n = matrix.size();
+  auto const exponent = [](double largest) { return largest > 0 && std::isfinite(largest) ? std::ilogb(largest) : 0; };
+  for (int pass = 0; pass < 20; ++pass) {
+    bool changed = false;
+    std::vector<int> row(n), column(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      double in_row = 0, in_column = 0;
+      for (std::size_t j = 0; j < n; ++j) {
+        in_row = std::fmax(in_row, std::fabs(matrix[i][j]));
+        in_column = std::fmax(in_column, std::fabs(matrix[j][i]));
+      }
+      // Half of each, so that one scaling does not undo the other; the last factor of two is no matter.
+      row[i] = exponent(in_row) / 2, column[i] = exponent(in_column) / 2;
+      changed = changed || row[i] != 0 || column[i] != 0;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) matrix[i][j] = std::ldexp(matrix[i][j], -row[i] - column[j]);
+    if (!changed) return;
+  }
+}
+
 /// The column that elimination with full pivoting finds no pivot for; -1 when there is one for each; -2 when a number is not
 /// finite.
 int column_without_pivot(Matrix matrix) {
+  equilibrate(matrix);
   std::size_t const n = matrix.size();
   std::vector<std::size_t> columns;
   for (std::size_t j = 0; j < n; ++j) columns.push_back(j);

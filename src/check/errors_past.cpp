@@ -64,6 +64,13 @@ Diagnostic initial_past_missing(Span declaration, std::string const& state) {
                fmt::format("give one value for all lags, `initial {} = 0`, or the record's own: `initial {} = measured(CHANNEL)`",
                            state, state));
 }
+Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
+  return error(
+      "E3113", equation, fmt::format("this equation cannot be solved for the present sample of `{}`", state),
+      fmt::format("let `{0}` stand linearly, with past samples in the nonlinear terms: `{0} = a*lag({0}, 1) - b*lag({0}, 1)^3`",
+                  state),
+      fmt::format("not linear in `{}`", state));
+}
 
 Diagnostic prediction_without_lags(Span span, std::string const& model) {
   return error("E6016", span, fmt::format("model `{}` has no past samples to choose from: its time is not discrete", model),

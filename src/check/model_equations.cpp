@@ -45,6 +45,11 @@ void ModelChecker::equations() {
     diagnostics_.add(errors::undetermined(info.declaration->name.span, primed_name(name, info.order)));
     return;
   }
+  if (failure != nullptr && scope_.samples().discrete) {
+    auto const equation = static_cast<std::size_t>(failure->equation), unknown = static_cast<std::size_t>(failure->unknown);
+    diagnostics_.add(errors::implicit_in_discrete_time(trees[equation]->span, states_[unknown].first));
+    return;
+  }
   if (failure != nullptr)
     model_.implicit = Implicit{trees[static_cast<std::size_t>(failure->equation)]->span,
                                unknown_name(static_cast<std::size_t>(failure->unknown))};

@@ -34,8 +34,6 @@ std::string name(FailureClass kind) {
       return "non-finite";
     case FailureClass::step_limit:
       return "step limit";
-    case FailureClass::domain:
-      return "domain";
     case FailureClass::convergence:
       return "no convergence";
     case FailureClass::inconsistent:

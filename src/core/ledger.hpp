@@ -8,8 +8,7 @@ namespace sysid {
 
 enum class FailureClass {
   non_finite,
-  step_limit,  // the work budget is spent, or no step is short enough for the tolerance
-  domain,
+  step_limit,    // the work budget is spent, or no step is short enough for the tolerance
   convergence,   // an implicit step has no solution that its iteration finds
   inconsistent,  // no values of the algebraic states satisfy the constraints
 };

@@ -108,7 +108,7 @@ std::string SolverSettings::text() const {
 }
 
 double SolverSettings::near_zero(double reached) const {
-  return absolute > 0 ? absolute : relative * std::max(reached / 1000, 1e-9);
+  return absolute > 0 ? absolute : relative * std::max(reached, smallest_size) / 1000;
 }
 
 SolverSettings make_solver(SolverRow const& row, Settings const& values) {

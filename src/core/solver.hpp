@@ -29,6 +29,10 @@ std::span<SolverRow const> solvers();
 /// nullptr when there is none of that name.
 SolverRow const* find_solver(std::string_view name);
 
+/// Stands for the size of a state that has never moved, so that its error of 0 may be divided by something: far below any quantity
+/// in any unit, with squares of its inverse still finite.
+constexpr double smallest_size = 1e-120;
+
 /// A solver with its settings. Those that its method does not have are left at their defaults.
 struct SolverSettings {
   std::string method = "rk4";
@@ -50,7 +54,7 @@ struct SolverSettings {
   /// The settings that its method has, by name.
   Settings settings() const;
   /// The error allowed near zero for a state whose largest magnitude so far is `reached`: `absolute` where it is given, else
-  /// relative * max(reached / 1000, 1e-9).
+  /// relative * max(reached, smallest_size) / 1000.
   double near_zero(double reached) const;
 
   friend bool operator==(SolverSettings const&, SolverSettings const&) = default;

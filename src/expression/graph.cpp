@@ -37,7 +37,10 @@ bool same(Node const& left, Node const& right) {
          left.a == right.a && left.b == right.b && left.c == right.c;
 }
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
 double condition(bool holds) { return holds ? 1.0 : 0.0; }
+double compared(double a, double b, bool holds) { return a != a || b != b ? unknown : condition(holds); }
 
 }  // namespace
 
@@ -179,7 +182,10 @@ NodeId Graph::binary(Operation operation, NodeId a, NodeId b) {
 
 NodeId Graph::select(NodeId condition, NodeId then, NodeId otherwise) {
   if (then == otherwise) return then;
-  if (std::optional<double> const value = constant_value(condition)) return *value != 0 ? then : otherwise;
+  if (std::optional<double> const value = constant_value(condition)) {
+    if (std::isnan(*value)) return condition;
+    return *value != 0 ? then : otherwise;
+  }
   return intern({.operation = Operation::select, .a = condition, .b = then, .c = otherwise});
 }
 
@@ -199,7 +205,7 @@ NodeId Graph::rebuild(Node const& node, NodeId a, NodeId b, NodeId c) {
     case Operation::constant:
       return constant(node.value);
     case Operation::leaf:
-      return leaf(node.leaf_kind, node.index, node.stage);
+      return leaf(node.leaf_kind, node.index, node.stage, node.lag);
     case Operation::fused:
       return fused(a, b, c);
     case Operation::select:
@@ -319,27 +325,29 @@ double apply(Node const& node, double a, double b, double c) {
     case Operation::absolute:
       return std::fabs(a);
     case Operation::sign:
-      return condition(a > 0) - condition(a < 0);
+      return a != a ? unknown : condition(a > 0) - condition(a < 0);
     case Operation::minimum:
-      return a < b ? a : b;
+      return a != a || a < b ? a : b;
     case Operation::maximum:
-      return a > b ? a : b;
+      return a != a || a > b ? a : b;
     case Operation::floor:
       return std::floor(a);
     case Operation::less:
-      return condition(a < b);
+      return compared(a, b, a < b);
     case Operation::less_equal:
-      return condition(a <= b);
+      return compared(a, b, a <= b);
     case Operation::equal:
-      return condition(a == b);
+      return compared(a, b, a == b);
     case Operation::conjunction:
-      return condition(a != 0 && b != 0);
-    case Operation::disjunction:
-      return condition(a != 0 || b != 0);
+      return a == 0 || b == 0 ? 0 : compared(a, b, true);
+    case Operation::disjunction: {
+      bool const holds = (a == a && a != 0) || (b == b && b != 0);
+      return holds ? 1 : compared(a, b, false);
+    }
     case Operation::negation:
-      return condition(a == 0);
+      return compared(a, 0, a == 0);
     case Operation::select:
-      return a != 0 ? b : c;
+      return a != a ? a : a != 0 ? b : c;
     case Operation::call:
       return node.function->arity == 1 ? node.function->unary(a) : node.function->binary(a, b);
   }

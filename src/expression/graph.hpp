@@ -36,7 +36,7 @@ enum class Operation : std::uint8_t {
   minimum,
   maximum,
   floor,
-  // conditions are 1 or 0
+  // conditions are 1, 0, or NaN where a NaN was compared
   less,
   less_equal,
   equal,
@@ -141,8 +141,11 @@ class Graph {
 int operand_count(Node const& node);
 
 /// The value of one operation on operand values: what folding, `evaluate` and the executors agree on, bit for bit.
-/// sign is (a > 0) - (a < 0); minimum and maximum are (a < b ? a : b) and (a > b ? a : b), also for a NaN; select takes b where a
-/// != 0; power is elementary::pow (an executor that expands integer powers into products agrees to rounding only).
+/// sign is (a > 0) - (a < 0); minimum and maximum are (a < b ? a : b) and (a > b ? a : b); select takes b where a != 0; power is
+/// elementary::pow (an executor that expands integer powers into products agrees to rounding only).
+///
+/// A NaN is never lost: minimum, maximum, comparisons and sign of a NaN are NaN, and so is a select whose condition is NaN.
+/// Conditions follow Kleene: `and` with a 0 is 0, `or` with a true one is 1, whatever the other is, so that a guard guards.
 double apply(Node const& node, double a, double b, double c);
 
 }  // namespace sysid

@@ -81,6 +81,7 @@ std::vector<LaneArray> ModelTarget::simulation_parameters(ConstLanes theta) cons
 void ModelTarget::record_failures(Simulator const& simulator, std::size_t experiment, LaneArray const& parameters,
                                   std::span<Outcome const> outcome, ConstLanes theta, Ledger& ledger) const {
   ledger.add_solves(outcome.size());
+  std::string const on_experiment = parts_.size() > 1 ? fmt::format(" on `{}`", experiments_[experiment].name) : std::string();
   LaneArray declared;
   for (std::size_t w = 0; w < outcome.size(); ++w) {
     if (outcome[w].ok) continue;
@@ -95,13 +96,19 @@ void ModelTarget::record_failures(Simulator const& simulator, std::size_t experi
                          std::move(example));
       continue;
     }
+    // A start that no iteration found is not a number (StartState), whatever follows.
+    if (options_.start_rows > 0 && std::isnan(parameters(parameters.rows() - 1, static_cast<int>(w)))) {
+      ledger.add_failure(FailureClass::convergence, "the estimated start" + on_experiment, simulator.schedule().time(0),
+                         std::move(example));
+      continue;
+    }
     std::vector<double> column;
     for (int p = 0; p < parameters.rows(); ++p) column.push_back(parameters(p, static_cast<int>(w)));
     auto const found = simulator.diagnose(column);
     std::string where = !found              ? std::string("a sum over the samples")
                         : options_.describe ? options_.describe(found->node, simulator.program().source.graph)
                                             : std::string("the model");
-    if (parts_.size() > 1) where += fmt::format(" on `{}`", experiments_[experiment].name);
+    where += on_experiment;
     ledger.add_failure(found ? found->kind : outcome[w].kind, where,
                        found ? found->time : simulator.schedule().time(std::max(outcome[w].sample, 0)), std::move(example));
   }

@@ -1,15 +1,26 @@
-// Gauss-Newton for initial states, many parameter vectors at once: each iteration is one batch of (states + 1) W short simulations.
+// Gauss-Newton for initial states, many parameter vectors at once: each round is one batch of states + 1 short simulations per
+// parameter vector that is still at work.
 #include "likelihood/start_state.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sysid {
 namespace {
 
-constexpr int iterations = 6;
-// A perturbation should move the outputs by this fraction of their size: small against curvature, large against rounding.
+// A perturbation should move the outputs by this fraction of their size: small against curvature, large against rounding. One that
+// is within a factor of it serves to begin with.
 constexpr double relative_effect = 1e-4;
+constexpr double near_enough = 100;
+constexpr int most_probes = 12;
+constexpr int least_moves = 6, most_rounds = 40;
+
+// What a move does to the outputs, in units of their misfit; below the first it is the last one, above the second no start was
+// found. The other part is for records that a model meets exactly, in units of the outputs.
+double settled(double misfit, double size) { return 1e-6 * misfit + 1e-10 * size; }
+double doubtful(double misfit, double size) { return 1e-2 * misfit + 1e-6 * size; }
 
 Experiment window_of(Experiment const& experiment, int rows) {
   Experiment window = experiment;
@@ -69,6 +80,100 @@ void StartState::residuals(ConstLanes parameters, LaneArray& out) const {
     }
 }
 
+/// The iteration of one parameter vector.
+struct StartState::Search {
+  int lane = 0;
+  Eigen::VectorXd step;   // perturbation of each state; 0: nothing that the window shows
+  Eigen::VectorXd state;  // the best so far
+  Eigen::VectorXd move;   // on trial: state - move
+  double cost = std::numeric_limits<double>::infinity();
+  double predicted = 0;  // what the whole move does to the outputs, to first order
+  int moves = 0;
+  bool done = false;
+};
+
+void StartState::differences(ConstLanes parameters, std::span<Search* const> searches, std::vector<Slopes>& out) const {
+  int const states = static_cast<int>(compiled_->model.states.size()), first = parameters.rows() - states;
+  LaneArray batch(parameters.rows(), static_cast<int>(searches.size()) * (states + 1)), residual;
+  int column = 0;
+  for (Search const* search : searches)
+    for (int k = 0; k <= states; ++k, ++column) {
+      for (int r = 0; r < parameters.rows(); ++r) batch(r, column) = parameters(r, search->lane);
+      for (int s = 0; s < states; ++s)
+        batch(first + s, column) = search->state(s) - search->move(s) + (k == s + 1 ? search->step(s) : 0.0);
+    }
+  residuals(batch, residual);
+  out.assign(searches.size(), {Eigen::VectorXd(count_), Eigen::MatrixXd(count_, states)});
+  column = 0;
+  for (Slopes& slopes : out) {
+    for (int i = 0; i < count_; ++i) {
+      slopes.residual(i) = residual(i, column);
+      for (int s = 0; s < states; ++s) slopes.change(i, s) = residual(i, column + 1 + s) - residual(i, column);
+    }
+    column += states + 1;
+  }
+}
+
+void StartState::find_steps(ConstLanes parameters, std::span<Search> searches) const {
+  int const states = static_cast<int>(compiled_->model.states.size());
+  std::vector<Slopes> slopes;
+  std::vector<Eigen::Array<bool, Eigen::Dynamic, 1>> good(searches.size());
+  for (auto& each : good) each.setConstant(states, false);
+  for (int probe = 0; probe < most_probes; ++probe) {
+    std::vector<Search*> open;
+    for (std::size_t k = 0; k < searches.size(); ++k)
+      if (!searches[k].done && !good[k].all()) open.push_back(&searches[k]);
+    if (open.empty()) return;
+    differences(parameters, open, slopes);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      Search& search = *open[k];
+      auto& known = good[static_cast<std::size_t>(&search - searches.data())];
+      search.done = !slopes[k].residual.allFinite();  // it fails in the simulation that follows, and is counted there
+      for (int s = 0; s < states; ++s) {
+        double const effect = slopes[k].change.col(s).norm() / (relative_effect * data_norm_);
+        known(s) = known(s) || (effect >= 1 / near_enough && effect <= near_enough);
+        if (known(s)) continue;
+        search.step(s) *= !std::isfinite(effect) ? 1e-4 : std::clamp(effect > 0 ? 1 / effect : 1e6, 1e-6, 1e6);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < searches.size(); ++k)
+    for (int s = 0; s < states; ++s)
+      if (!good[k](s)) searches[k].step(s) = 0;
+}
+
+void StartState::advance(Search& search, Slopes const& slopes) const {
+  double const cost = slopes.residual.squaredNorm();
+  if (!(cost <= search.cost * (1 + 1e-9))) {  // not finite, or worse: a part of the move
+    search.move /= 2;
+    return;
+  }
+  Eigen::MatrixXd scaled = slopes.change;
+  Eigen::VectorXd effect(search.step.size());
+  for (Eigen::Index s = 0; s < effect.size(); ++s) {
+    double const moved = scaled.col(s).norm();
+    if (!std::isfinite(moved)) {  // the same place again
+      search.step(s) *= 1e-2;
+      return;
+    }
+    if (moved > 0) scaled.col(s) /= moved;
+    effect(s) = moved > 0 ? moved / search.step(s) : 0;
+    if (moved > 0) search.step(s) = relative_effect * data_norm_ / effect(s);
+  }
+  search.state -= search.move;
+  search.cost = cost;
+  ++search.moves;
+  Eigen::MatrixXd normal = scaled.transpose() * scaled;
+  for (Eigen::Index s = 0; s < effect.size(); ++s) normal(s, s) += effect(s) > 0 ? 1e-10 : 1.0;
+  Eigen::VectorXd const solved = normal.ldlt().solve(scaled.transpose() * slopes.residual);
+  search.predicted = (scaled * solved).norm();
+  for (Eigen::Index s = 0; s < effect.size(); ++s) search.move(s) = effect(s) > 0 ? solved(s) / effect(s) : 0;
+  double const misfit = std::sqrt(cost) / data_norm_;
+  if (search.moves <= least_moves || !(search.predicted <= settled(misfit, data_norm_))) return;
+  search.state -= search.move;
+  search.done = true;
+}
+
 void StartState::estimate(Lanes parameters) const {
   int const width = parameters.width(), states = static_cast<int>(compiled_->model.states.size());
   int const first = parameters.rows() - states;
@@ -80,37 +185,35 @@ void StartState::estimate(Lanes parameters) const {
     run(compiled_->initial, own, start);
   }
   if (count_ == 0) return;
-  // Columns: W unperturbed, then W per state.
-  LaneArray batch(parameters.rows(), width * (states + 1)), residual;
-  LaneArray step(states, width);
-  for (int s = 0; s < states; ++s)
-    for (int w = 0; w < width; ++w) step(s, w) = 1e-6;
-  for (int iteration = 0; iteration <= iterations; ++iteration) {
-    for (int r = 0; r < parameters.rows(); ++r)
-      for (int k = 0; k <= states; ++k)
-        for (int w = 0; w < width; ++w)
-          batch(r, k * width + w) = parameters(r, w) + (k > 0 && r == first + k - 1 ? step(k - 1, w) : 0.0);
-    residuals(batch, residual);
-    for (int w = 0; w < width; ++w) {
-      Eigen::MatrixXd jacobian(count_, states);
-      Eigen::VectorXd base(count_);
-      for (int i = 0; i < count_; ++i) {
-        base(i) = residual(i, w);
-        for (int s = 0; s < states; ++s) jacobian(i, s) = (residual(i, (s + 1) * width + w) - residual(i, w)) / step(s, w);
-      }
-      if (!base.allFinite() || !jacobian.allFinite())
-        continue;  // this lane fails in the simulation that follows, and is counted there
-      for (int s = 0; s < states; ++s) {
-        double const effect = jacobian.col(s).norm();
-        if (effect > 0) step(s, w) = relative_effect * data_norm_ / effect;
-      }
-      if (iteration == 0) continue;  // the first round only finds the sizes of the perturbations
-      Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-      for (int s = 0; s < states; ++s) normal(s, s) += 1e-10 * normal(s, s) + (normal(s, s) == 0 ? 1.0 : 0.0);
-      Eigen::VectorXd const move = normal.ldlt().solve(jacobian.transpose() * base);
-      if (!move.allFinite()) continue;
-      for (int s = 0; s < states; ++s) parameters(first + s, w) -= move(s);
+  std::vector<Search> searches(static_cast<std::size_t>(width));
+  for (int w = 0; w < width; ++w) {
+    Search& search = searches[static_cast<std::size_t>(w)];
+    search.lane = w;
+    search.state = search.step = search.move = Eigen::VectorXd::Zero(states);
+    for (int s = 0; s < states; ++s) {
+      search.state(s) = parameters(first + s, w);
+      search.step(s) = search.state(s) != 0 ? relative_effect * std::abs(search.state(s)) : 1e-6;
     }
+  }
+  find_steps(parameters, searches);
+  std::vector<bool> tried(searches.size());
+  for (std::size_t k = 0; k < searches.size(); ++k) tried[k] = !searches[k].done;
+  std::vector<Slopes> slopes;
+  for (int round = 0; round < most_rounds; ++round) {
+    std::vector<Search*> open;
+    for (Search& search : searches)
+      if (!search.done) open.push_back(&search);
+    if (open.empty()) break;
+    differences(parameters, open, slopes);
+    for (std::size_t k = 0; k < open.size(); ++k) advance(*open[k], slopes[k]);
+  }
+  for (std::size_t k = 0; k < searches.size(); ++k) {
+    Search const& search = searches[k];
+    if (!tried[k]) continue;
+    double const misfit = std::sqrt(search.cost) / data_norm_;
+    bool const found = search.moves > 0 && search.predicted <= doubtful(misfit, data_norm_);
+    for (int s = 0; s < states; ++s)
+      parameters(first + s, search.lane) = found ? search.state(s) : std::numeric_limits<double>::quiet_NaN();
   }
 }
 

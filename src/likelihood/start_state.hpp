@@ -1,6 +1,9 @@
 // The state at the first sample, fitted per parameter vector to the first rows of the record (`start = estimated(rows = 50)`).
 #pragma once
+#include <Eigen/Core>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "core/lanes.hpp"
 #include "likelihood/compiled_model.hpp"
@@ -9,8 +12,11 @@
 namespace sysid {
 
 /// Least squares by Gauss-Newton on the measured channels of the window, each weighted by its own variance there, from the model's
-/// initial values, a fixed number of iterations, slopes by finite differences: a smooth function of the parameters, the same for
-/// any lane. States the window does not determine stay where they are (a ridge of 1e-10 relative).
+/// initial values; slopes by finite differences, each perturbation as large as moves the outputs by 1e-4 of their size, whatever
+/// the unit of the state. A move that makes the fit worse is halved. At least six moves are made, more until one changes the
+/// outputs by no more than 1e-6 of the misfit: a smooth function of the parameters, the same for any lane. States the window does
+/// not determine stay where they are (a ridge of 1e-10 relative). Where no such move is found the state is NaN, so that the
+/// simulation from it fails and is counted.
 class StartState {
  public:
   /// compiled: with a free start. experiment: begins at the row whose state is wanted; its first `rows` rows are the window.
@@ -21,6 +27,17 @@ class StartState {
   void estimate(Lanes parameters) const;
 
  private:
+  struct Search;
+  /// Residuals at the place on trial, and their changes by the perturbation of each state: [residuals x states].
+  struct Slopes {
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd change;
+  };
+  void differences(ConstLanes parameters, std::span<Search* const> searches, std::vector<Slopes>& out) const;
+  /// Perturbations that show, from those that the searches begin with.
+  void find_steps(ConstLanes parameters, std::span<Search> searches) const;
+  /// Judges the move on trial and makes the next one.
+  void advance(Search& search, Slopes const& slopes) const;
   /// Predicted centres minus samples, weighted: [residuals x W].
   void residuals(ConstLanes parameters, LaneArray& out) const;
 

@@ -88,7 +88,7 @@ void drop_unread_states(Model& model) {
     states.push_back(std::move(model.states[static_cast<std::size_t>(index)]));
   }
   model.states = std::move(states);
-  // A past of which some registers go keeps none: what reads it has been replaced.
+  // Each register reads the one before it, so what stays of a past are its first ones, in order.
   for (Past& past : model.pasts) {
     std::vector<int> registers;
     for (int const index : past.registers)

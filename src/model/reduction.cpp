@@ -2,6 +2,7 @@
 #include "model/reduction.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sysid {
 namespace {
@@ -11,14 +12,13 @@ bool has_unknown(Graph const& graph, NodeId root) {
                        [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::unknown; });
 }
 
-// The smaller, the better a pivot: exact one, other constants, expressions of parameters, anything that moves with the state.
+// The smaller, the better a pivot: constants, expressions of parameters, anything that moves with the state.
 int pivot_rank(Graph const& graph, NodeId id) {
-  if (graph.is_constant(id, 0)) return 4;
-  if (graph.is_constant(id, 1) || graph.is_constant(id, -1)) return 0;
-  if (graph.constant_value(id)) return 1;
+  if (graph.is_constant(id, 0)) return 3;
+  if (graph.constant_value(id)) return 0;
   bool const moves = graph.depends(
       id, [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind != LeafKind::parameter; });
-  return moves ? 3 : 2;
+  return moves ? 2 : 1;
 }
 
 }  // namespace
@@ -43,11 +43,23 @@ std::variant<std::vector<NodeId>, ReductionFailure> solve_for_unknowns(Graph& gr
   }
   std::vector<std::size_t> row_of(n, n);  // the equation that determines unknown j
   std::vector<bool> used(n, false);
+  // A constant counts by its share of the largest one in its row, so that the units of an equation do not matter: one that is
+  // small there would drown what the others say (1e-20*a + b = 1, 2*a + b = 3).
+  auto const share = [&](std::size_t i, std::size_t j) {
+    double largest = 0;
+    for (std::size_t k = j; k < n; ++k) largest = std::max(largest, std::fabs(graph.constant_value(matrix[i][k]).value_or(0)));
+    return std::fabs(graph.constant_value(matrix[i][j]).value_or(0)) / largest;
+  };
+  auto const better = [&](std::size_t i, std::size_t than, std::size_t j) {
+    int const rank = pivot_rank(graph, matrix[i][j]), other = pivot_rank(graph, matrix[than][j]);
+    if (rank != other) return rank < other;
+    return rank == 0 && share(i, j) > share(than, j);
+  };
   for (std::size_t j = 0; j < n; ++j) {
     std::size_t best = n;
     for (std::size_t i = 0; i < n; ++i) {
       if (used[i] || graph.is_constant(matrix[i][j], 0)) continue;
-      if (best == n || pivot_rank(graph, matrix[i][j]) < pivot_rank(graph, matrix[best][j])) best = i;
+      if (best == n || better(i, best, j)) best = i;
     }
     if (best == n) return ReductionFailure{ReductionFailure::Kind::singular, 0, static_cast<int>(j)};
     used[best] = true;

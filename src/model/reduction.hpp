@@ -26,7 +26,7 @@ struct ReductionFailure {
 ///
 /// by elimination on expressions: exact, whatever the parameters are, except that a pivot which is zero for some parameter values
 /// gives non-finite derivatives there (counted as failed solves). Pivots are taken constant before parametric before
-/// state-dependent. Returns the n solutions, free of unknowns.
+/// state-dependent, of constants the one that is the largest part of its equation. Returns the n solutions, free of unknowns.
 std::variant<std::vector<NodeId>, ReductionFailure> solve_for_unknowns(Graph& graph, std::span<NodeId const> residuals);
 
 }  // namespace sysid

@@ -1,8 +1,11 @@
 // Stages, error, and the selections that accept a step, retry it or let an arrived lane rest.
 #include "program/embedded.hpp"
 
+#include <algorithm>
 #include <limits>
 
+#include "core/solver.hpp"
+#include "expression/function.hpp"
 #include "expression/switching.hpp"
 #include "program/frozen.hpp"
 
@@ -18,6 +21,13 @@ namespace {
 constexpr double near_an_end = 1e-9;
 constexpr double most_hunts = 8;
 constexpr double no_aim = std::numeric_limits<double>::max();
+
+// A condition that is never NaN, for what must go on beyond a failed attempt.
+double is_number(double a) { return a == a ? 1 : 0; }
+void is_number_lanes(double const* a, double* out, int width) {
+  for (int w = 0; w < width; ++w) out[w] = is_number(a[w]);
+}
+constexpr Function is_number_function{"is_number", 1, &is_number, &is_number_lanes, nullptr, nullptr, nullptr};
 
 class Writer {
  public:
@@ -49,18 +59,19 @@ class Writer {
     for (std::size_t i = 0; i < method.c.size(); ++i)
       slopes.push_back(evaluate(derivative_, advanced(slopes, method.a[i], h), along(position, taken, method.c[i], arrived)));
     std::vector<NodeId> const next = advanced(slopes, method.b, h);
-    NodeId const badness = mean_square(errors(slopes, method.e, h), next);
-
-    // x <= 1 is false for NaN, so an attempt that leaves the finite numbers is retried with the smallest factor.
+    NodeId const square = mean_square(errors(slopes, method.e, h), next);
+    std::vector<NodeId> const after = surface_values(next, arrived);
+    // An attempt that leaves what can be computed is retried with the smallest factor.
+    NodeId const badness = graph_.select(is_number_of(square), square, number(no_aim));
     NodeId const good = graph_.binary(Operation::less_equal, badness, one);
     NodeId const root = graph_.power(graph_.binary(Operation::maximum, badness, number(1e-20)), number(-0.5 / method.order));
     NodeId const grown = graph_.binary(Operation::minimum, number(5),
                                        graph_.binary(Operation::maximum, number(0.2), graph_.multiply(number(0.9), root)));
     NodeId const proposed = graph_.multiply(h, graph_.select(less(badness, number(1e300)), grown, number(0.2)));
 
-    // The first surface that the step crosses, as a part of the step. At its beginning: the lane was on the wrong side and nothing
-    // moves; inside: the step is tried again up to there; at its end, or not: the step is taken.
-    Crossing const crossing = find_crossing(next, arrived);
+    // The first surface that the step crosses, as a part of the step. At its beginning: the lane was on the wrong side of that one
+    // and nothing moves; inside: the step is tried again up to there; at its end, or not: the step is taken.
+    Crossing const crossing = find_crossing(after, slopes.front(), position, h);
     NodeId const at_once = both(crossing.any, graph_.binary(Operation::less_equal, crossing.place, number(near_an_end)));
     NodeId const inside = both(both(crossing.any, graph_.unary(Operation::negation, at_once)),
                                both(less(crossing.place, number(1 - near_an_end)), less(hunts, number(most_hunts))));
@@ -84,10 +95,12 @@ class Writer {
                                     graph_.select(accepted, zero, hunts))};
     for (std::size_t i = 0; i < states_.size(); ++i)
       result.control.push_back(graph_.binary(Operation::maximum, reached(i), graph_.unary(Operation::absolute, result.states[i])));
-    NodeId const changes = graph_.binary(Operation::disjunction, turning, accepted);
-    for (std::size_t k = 0; k < surfaces_.size(); ++k)
-      result.control.push_back(graph_.select(
-          active, graph_.select(both(changes, crossing.each[k]), graph_.negate(sides_[k]), sides_[k]), stored_side(k)));
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      // A lane that turns has not come to the surfaces that this step would have crossed later.
+      NodeId const turned = both(turning, graph_.binary(Operation::less_equal, crossing.places[k], number(near_an_end)));
+      NodeId const changes = both(graph_.binary(Operation::disjunction, turned, accepted), crossing.each[k]);
+      result.control.push_back(graph_.select(active, graph_.select(changes, graph_.negate(sides_[k]), sides_[k]), stored_side(k)));
+    }
     return result;
   }
 
@@ -99,6 +112,7 @@ class Writer {
   NodeId stored_side(std::size_t surface) { return rest(states_.size() + surface); }
   NodeId data(IntervalData which) { return graph_.leaf(LeafKind::interval, static_cast<int>(which)); }
   NodeId less(NodeId a, NodeId b) { return graph_.binary(Operation::less, a, b); }
+  NodeId is_number_of(NodeId a) { return graph_.call(is_number_function, a); }
   NodeId both(NodeId a, NodeId b) { return graph_.binary(Operation::conjunction, a, b); }
 
   // The position c of the way through the step.
@@ -131,49 +145,95 @@ class Writer {
   NodeId mean_square(std::vector<NodeId> const& errors, std::vector<NodeId> const& next) {
     NodeId const relative = data(IntervalData::relative), absolute = data(IntervalData::absolute);
     NodeId sum = number(0);
+    int moving = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      NodeId const typical = graph_.binary(Operation::maximum, graph_.multiply(number(1e-3), reached(i)), number(1e-9));
+      if (graph_.is_constant(errors[i], 0)) continue;  // what is remembered has no error that could make up for another's
+      ++moving;
+      NodeId const typical = graph_.multiply(number(1e-3), graph_.binary(Operation::maximum, reached(i), number(smallest_size)));
       NodeId const near_zero = graph_.select(less(number(0), absolute), absolute, graph_.multiply(relative, typical));
       NodeId const size = graph_.binary(Operation::maximum, graph_.unary(Operation::absolute, states_[i]),
                                         graph_.unary(Operation::absolute, next[i]));
       NodeId const ratio = graph_.divide(errors[i], graph_.add(near_zero, graph_.multiply(relative, size)));
       sum = graph_.add(sum, graph_.multiply(ratio, ratio));
     }
-    return graph_.multiply(number(1.0 / static_cast<double>(std::max<std::size_t>(1, errors.size()))), sum);
+    return graph_.multiply(number(1.0 / std::max(1, moving)), sum);
   }
 
   struct Crossing {
-    NodeId any, place;
-    std::vector<NodeId> each;
+    NodeId any, place;                 // of the first crossing, as a part of the step
+    std::vector<NodeId> each, places;  // of the surfaces: whether it is crossed, and where
   };
 
   // At the beginning of an interval, where an input may have jumped, a lane is where its values say; else where it was left.
   void find_sides(NodeId position) {
-    std::vector<NodeId> values;
-    for (SwitchingSurface const& surface : surfaces_) values.push_back(surface.value);
-    before_ = evaluate(values, states_, position);
+    before_ = surface_values(states_, position);
     NodeId const beginning =
         both(graph_.binary(Operation::less_equal, position, number(0)), less(control(Control::hunts), number(1)));
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-      NodeId const decided = both(beginning, less(number(0), graph_.unary(Operation::absolute, before_[k])));
+      NodeId const moved = both(is_number_of(before_[k]), less(number(0), graph_.unary(Operation::absolute, before_[k])));
+      NodeId const decided = both(beginning, moved);
       sides_.push_back(graph_.select(decided, graph_.unary(Operation::sign, before_[k]), stored_side(k)));
     }
   }
 
-  Crossing find_crossing(std::vector<NodeId> const& next, NodeId arrived) {
-    Crossing crossing{number(0), number(2), {}};
+  std::vector<NodeId> surface_values(std::vector<NodeId> const& states, NodeId position) {
     std::vector<NodeId> values;
     for (SwitchingSurface const& surface : surfaces_) values.push_back(surface.value);
-    std::vector<NodeId> const after = evaluate(values, next, arrived);
+    return evaluate(values, states, position);
+  }
+
+  Crossing find_crossing(std::vector<NodeId> const& after, std::vector<NodeId> const& slopes, NodeId position, NodeId h) {
+    Crossing crossing{number(0), number(2), {}, {}};
+    std::vector<NodeId> const rates = surface_rates(slopes, position);
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
       NodeId const begin = graph_.multiply(sides_[k], before_[k]), end = graph_.multiply(sides_[k], after[k]);
-      NodeId const crossed = less(end, number(0));
-      NodeId const place = graph_.select(less(number(0), begin), graph_.divide(begin, graph_.subtract(begin, end)), number(0));
+      // A surface without a value belongs to a branch that is not taken: where it is, the slopes have none either.
+      NodeId const crossed = both(is_number_of(end), less(end, number(0)));
+      NodeId const place = zero_of_parabola(begin, graph_.multiply(sides_[k], graph_.multiply(h, rates[k])), end);
       crossing.each.push_back(crossed);
+      crossing.places.push_back(place);
       crossing.any = graph_.binary(Operation::disjunction, crossing.any, crossed);
       crossing.place = graph_.binary(Operation::minimum, crossing.place, graph_.select(crossed, place, number(2)));
     }
     return crossing;
+  }
+
+  // Where b + r p + c p^2 leaves the positive numbers for good on its way to `end` < 0 at p = 1; 0 where it begins among the
+  // negative ones. The slope tells a lane that has just come here, and will be back before the step is over, from one that turns.
+  NodeId zero_of_parabola(NodeId b, NodeId r, NodeId end) {
+    NodeId const c = graph_.subtract(graph_.subtract(end, b), r);
+    NodeId const root = graph_.unary(Operation::square_root,
+                                     graph_.subtract(graph_.multiply(r, r), graph_.multiply(number(4), graph_.multiply(c, b))));
+    // Twice the same root, each without cancellation. c < 0 where r >= 0.
+    NodeId const rising = graph_.divide(graph_.add(r, root), graph_.multiply(number(-2), c));
+    NodeId const falling = graph_.divide(graph_.multiply(number(2), b), graph_.subtract(root, r));
+    NodeId const place = graph_.select(less(r, number(0)), falling, rising);
+    // The line where a slope has no value.
+    NodeId const line = graph_.divide(b, graph_.subtract(b, end));
+    NodeId const inside = graph_.select(is_number_of(place), place, line);
+    return graph_.select(less(b, number(0)), number(0), inside);
+  }
+
+  // Time derivatives of the surfaces where the attempt begins.
+  std::vector<NodeId> surface_rates(std::vector<NodeId> const& slopes, NodeId position) {
+    std::vector<NodeId> rates;
+    for (SwitchingSurface const& surface : surfaces_) {
+      NodeId sum = number(0);
+      for (NodeId const id : graph_.reachable({&surface.value, 1})) {
+        Node const leaf = graph_[id];
+        if (leaf.operation != Operation::leaf) continue;
+        std::optional<NodeId> rate;
+        if (leaf.leaf_kind == LeafKind::state) rate = slopes[static_cast<std::size_t>(leaf.index)];
+        if (leaf.leaf_kind == LeafKind::time) rate = number(1);
+        if (leaf.leaf_kind == LeafKind::input) rate = input(leaf.index, position, 1);
+        if (leaf.leaf_kind == LeafKind::input_rate) rate = input(leaf.index, position, 2);
+        if (!rate) continue;
+        NodeId const slope = graph_.differentiate(surface.value, id);
+        sum = graph_.add(sum, graph_.multiply(evaluate({&slope, 1}, states_, position).front(), *rate));
+      }
+      rates.push_back(sum);
+    }
+    return rates;
   }
 
   // Expressions at other states and another position in the interval.
@@ -184,9 +244,9 @@ class Writer {
         case LeafKind::state:
           return states[static_cast<std::size_t>(leaf.index)];
         case LeafKind::input:
-          return polynomial(leaf.index, position, false);
+          return input(leaf.index, position, 0);
         case LeafKind::input_rate:
-          return graph_.divide(polynomial(leaf.index, position, true), data(IntervalData::length));
+          return input(leaf.index, position, 1);
         case LeafKind::time:
           return graph_.add(data(IntervalData::begin), graph_.multiply(data(IntervalData::length), position));
         case LeafKind::control:  // place holders of sides
@@ -198,14 +258,17 @@ class Writer {
     });
   }
 
-  // Horner's form of an input's polynomial on the interval, or of its derivative.
-  NodeId polynomial(int input, NodeId position, bool derivative) {
+  // An input, or its first or second time derivative: Horner's form of its polynomial on the interval.
+  NodeId input(int index, NodeId position, int derivative) {
     NodeId sum = number(0);
-    for (int power = largest_input_degree; power >= (derivative ? 1 : 0); --power) {
-      NodeId const coefficient = graph_.leaf(LeafKind::coefficient, input * (largest_input_degree + 1) + power);
-      NodeId const term = derivative ? graph_.multiply(number(power), coefficient) : coefficient;
+    for (int power = largest_input_degree; power >= derivative; --power) {
+      double factor = 1;
+      for (int k = 0; k < derivative; ++k) factor *= power - k;
+      NodeId const coefficient = graph_.leaf(LeafKind::coefficient, index * (largest_input_degree + 1) + power);
+      NodeId const term = graph_.multiply(number(factor), coefficient);
       sum = power == largest_input_degree ? term : graph_.add(graph_.multiply(sum, position), term);
     }
+    for (int k = 0; k < derivative; ++k) sum = graph_.divide(sum, data(IntervalData::length));
     return sum;
   }
 

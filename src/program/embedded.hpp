@@ -14,7 +14,7 @@ namespace sysid {
 /// estimate h sum e_i k_i.
 struct EmbeddedMethod {
   std::string_view name;
-  int order;  // of the step; the error estimate is of order `order`, too
+  int order;  // of the step; the estimate, of the solution of order `order - 1`, is of size h^order
   std::vector<double> c;
   std::vector<std::vector<double>> a;
   std::vector<double> b, e;
@@ -54,7 +54,8 @@ struct Attempt {
 ///   r_i = error_i / (near_zero_i + relative max(|y_i|, |y_i new|)),  accepted when  mean r_i^2 <= 1,
 ///   next step = step * min(5, max(0.2, 0.9 (mean r^2)^(-1/(2 order))))               Hairer, Norsett & Wanner 1993, II.4
 ///
-/// near_zero_i: the absolute tolerance where it is above 0, else relative * max(reached_i / 1000, 1e-9).
+/// near_zero_i: SolverSettings::near_zero of the largest size reached. The mean is over the states that have an error: not over
+/// what is remembered from sample to sample, nor over constants.
 Attempt attempt(Graph& graph, EmbeddedMethod const& method, std::span<NodeId const> derivative);
 
 }  // namespace sysid

@@ -34,20 +34,32 @@ class Freezer {
     return place == side_of_.end() ? std::nullopt : std::optional(place->second);
   }
 
+  // What is held on a side has a value only where the surface has one: sqrt(h) > 2 does not hold for h < 0, nor its contrary.
+  NodeId where_known(NodeId held, NodeId surface) {
+    for (NodeId const id : graph_.reachable({&surface, 1})) {
+      Operation const operation = graph_[id].operation;
+      if (operation == Operation::square_root || operation == Operation::power || operation == Operation::divide ||
+          operation == Operation::call)
+        return graph_.add(held, graph_.binary(Operation::less, surface, surface));  // 0, or NaN
+    }
+    return held;
+  }
+
   std::optional<NodeId> decided(Node const& node, NodeId a, NodeId b) {
     switch (node.operation) {
       case Operation::absolute:
         if (auto const s = side(node.a)) return graph_.multiply(*s, a);
         return std::nullopt;
       case Operation::sign:
-        return side(node.a);
+        if (auto const s = side(node.a)) return where_known(*s, a);
+        return std::nullopt;
       case Operation::minimum:
       case Operation::maximum:
       case Operation::less:
       case Operation::less_equal: {
         auto const s = side(graph_.subtract(node.a, node.b));
         if (!s) return std::nullopt;
-        NodeId const below = graph_.binary(Operation::less, *s, graph_.constant(0));
+        NodeId const below = where_known(graph_.binary(Operation::less, *s, graph_.constant(0)), graph_.subtract(a, b));
         if (node.operation == Operation::minimum) return graph_.select(below, a, b);
         if (node.operation == Operation::maximum) return graph_.select(below, b, a);
         return below;

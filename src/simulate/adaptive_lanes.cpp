@@ -9,6 +9,7 @@
 
 #include "program/embedded.hpp"
 #include "simulate/lane_equations.hpp"
+#include "simulate/state_sizes.hpp"
 
 namespace sysid {
 namespace {
@@ -17,6 +18,7 @@ class AdaptiveLanes : public Stepper {
  public:
   explicit AdaptiveLanes(LaneFile const& file)
       : file_(file),
+        equations_(file.program, file.schedule),
         control_(file.rows(file.program.registers.first_control(), file.program.registers.control)),
         failure_(static_cast<std::size_t>(file.executor.width)) {}
 
@@ -37,6 +39,8 @@ class AdaptiveLanes : public Stepper {
   void step(int sample) override {
     Lanes const states = file_.states();
     double* const position = row(Control::position);
+    for (int w = 0; w < file_.executor.width; ++w)
+      if (sample == 0 || has_unknown_size(w)) find_sizes(sample, w);
     for (int w = 0; w < file_.executor.width; ++w) {
       bool finite = true;
       for (int i = 0; i < states.rows(); ++i) finite = finite && std::isfinite(states(i, w));
@@ -63,9 +67,30 @@ class AdaptiveLanes : public Stepper {
     return std::any_of(position, position + file_.executor.width, [](double p) { return p < 1; });
   }
 
+  // What is remembered has no error.
+  bool has_unknown_size(int lane) const {
+    int const moving = file_.states().rows() - static_cast<int>(file_.program.source.memories.size());
+    for (int i = 0; i < moving; ++i)
+      if (control_(static_cast<int>(Control::rest) + i, lane) == 0) return true;
+    return false;
+  }
+
+  void find_sizes(int sample, int lane) {
+    equations_.set_parameters(file_.parameters(), lane);
+    equations_.set_interval(sample);
+    std::vector<double> states, sizes;
+    for (int i = 0; i < file_.states().rows(); ++i) {
+      states.push_back(file_.states()(i, lane));
+      sizes.push_back(control_(static_cast<int>(Control::rest) + i, lane));
+    }
+    raise_sizes(equations_, equations_.time(sample), equations_.time(sample + 1), states, file_.schedule.solver(), sizes);
+    for (int i = 0; i < file_.states().rows(); ++i)
+      control_(static_cast<int>(Control::rest) + i, lane) = sizes[static_cast<std::size_t>(i)];
+  }
+
   // Where a lane got stuck: what is not finite there, else the equation of the state that moves fastest for its size.
   StepFailure look_into(int sample, int lane) {
-    LaneEquations equations(file_.program, file_.schedule);
+    LaneEquations& equations = equations_;
     equations.set_parameters(file_.parameters(), lane);
     equations.set_interval(sample);
     double const begin = equations.time(sample), end = equations.time(sample + 1);
@@ -85,6 +110,7 @@ class AdaptiveLanes : public Stepper {
   }
 
   LaneFile file_;
+  LaneEquations equations_;  // where sizes are looked up, and failures looked into
   Lanes control_;
   std::vector<std::optional<StepFailure>> failure_;
 };

@@ -66,6 +66,22 @@ bool AlgebraicStates::correction(double time, double const* states, bool new_mat
   return std::all_of(out.begin(), out.end(), [](double x) { return std::isfinite(x); });
 }
 
+bool AlgebraicStates::is_rounding(std::vector<double> const& correction, std::span<double const> states) const {
+  std::size_t const all = first_ + count_;
+  std::vector<double> allowed(count_), column(count_);
+  for (std::size_t k = 0; k < count_; ++k) {
+    double terms = 0;
+    for (std::size_t j = 0; j < all; ++j) terms += std::abs(jacobian_[j * all + first_ + k] * states[j]);
+    std::fill(column.begin(), column.end(), 0.0);
+    column[k] = 8 * std::numeric_limits<double>::epsilon() * terms;
+    back_substitute(column);
+    for (std::size_t i = 0; i < count_; ++i) allowed[i] += std::abs(column[i]);
+  }
+  for (std::size_t i = 0; i < count_; ++i)
+    if (!(std::abs(correction[i]) <= allowed[i])) return false;
+  return true;
+}
+
 double AlgebraicStates::weighted(std::vector<double> const& correction, double const* states) const {
   double largest = 0;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -106,7 +122,7 @@ std::optional<StepFailure> AlgebraicStates::iterate(double time, std::span<doubl
       for (std::size_t i = 0; i < count_; ++i) trial[first_ + i] = states[first_ + i] - part * step[i];
       smaller = size <= small_enough || (correction(time, trial.data(), false, next) && weighted(next, states.data()) < size);
     }
-    if (!smaller && size <= 1) return std::nullopt;
+    if (!smaller && (size <= 1 || is_rounding(step, states))) return std::nullopt;
     if (!smaller) return failed(time, states);
     std::copy(trial.begin(), trial.end(), states.begin());
     if (size <= small_enough) return std::nullopt;

@@ -15,7 +15,8 @@ namespace sysid {
 ///   smaller
 ///
 /// (the natural monotonicity test: it does not depend on how equations are scaled). Ends when a full correction is below
-/// a hundredth of what the solver's tolerances allow, or below what they allow and not halved by an iteration: rounding.
+/// a hundredth of what the solver's tolerances allow; or below what they allow, or below the rounding error of g, and not halved by
+/// an iteration.
 class AlgebraicStates {
  public:
   AlgebraicStates(LaneEquations& equations, SolverSettings const& solver);
@@ -28,6 +29,8 @@ class AlgebraicStates {
   bool correction(double time, double const* states, bool new_matrix, std::vector<double>& out);
   bool factor();
   void back_substitute(std::vector<double>& x) const;
+  /// Whether a correction that does not shrink any more is no more than |(dg/dy_a)^-1| times the rounding error of g.
+  bool is_rounding(std::vector<double> const& correction, std::span<double const> states) const;
   double weighted(std::vector<double> const& correction, double const* states) const;
   StepFailure failed(double time, std::span<double const> states);
 

@@ -20,12 +20,17 @@ void LaneEquations::set_parameters(ConstLanes parameters, int lane) {
     rates_[static_cast<std::size_t>(p)] = jacobian_[static_cast<std::size_t>(p)] = parameters(p, lane);
 }
 
-void LaneEquations::set_interval(int sample) { interval_ = std::min(sample, schedule_.samples() - 2); }
+void LaneEquations::set_interval(int sample) {
+  interval_ = std::min(sample, schedule_.samples() - 2);
+  beyond_ = sample > interval_;
+}
 
 double LaneEquations::data(UniformLeaf const& leaf, double time) const {
   if (leaf.kind == LeafKind::time) return schedule_.time(0) + time;
   double const begin = this->time(interval_), end = this->time(interval_ + 1);
   InputSignal const& signal = schedule_.experiment().inputs[static_cast<std::size_t>(leaf.index)];
+  // Nothing follows the last sample that its held value could be the limit of.
+  if (beyond_ && leaf.kind == LeafKind::input) return signal.sample(interval_ + 1);
   double const s = std::clamp((time - begin) / (end - begin), 0.0, 1.0);
   return leaf.kind == LeafKind::input ? signal.value(interval_, s) : signal.rate(interval_, s);
 }

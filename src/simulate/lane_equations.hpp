@@ -19,7 +19,8 @@ class LaneEquations {
   /// Times are counted from the first sample, so that a late clock costs no digits.
   double time(int sample) const { return schedule_.time(sample) - schedule_.time(0); }
 
-  /// The lane whose parameters are used, and the interval [sample, sample + 1] whose inputs are.
+  /// The lane whose parameters are used, and the interval [sample, sample + 1] whose inputs are. At the last sample it is that
+  /// sample alone: inputs are read from the right as at any other (Schedule::at_sample), rates from the left.
   void set_parameters(ConstLanes parameters, int lane);
   void set_interval(int sample);
 
@@ -41,6 +42,7 @@ class LaneEquations {
   Schedule const& schedule_;
   std::vector<double> rates_, jacobian_;  // registers of the kernels
   int interval_ = 0;
+  bool beyond_ = false;  // at the last sample, beyond its interval
 };
 
 }  // namespace sysid

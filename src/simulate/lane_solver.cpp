@@ -61,6 +61,7 @@ void LaneSolvers::step(int sample) {
     Lane& lane = lanes_[static_cast<std::size_t>(w)];
     if (lane.failure) continue;
     load(w);
+    lane.solver->enter(equations_.time(sample), equations_.time(sample + 1), states_);
     if (lane.fresh || jump) lane.failure = lane.solver->restart(equations_.time(sample), states_);
     lane.fresh = false;
     if (!lane.failure) lane.failure = lane.solver->advance(equations_.time(sample + 1), states_);

@@ -16,6 +16,8 @@ class LaneSolver {
   virtual ~LaneSolver() = default;
   /// Makes the algebraic states satisfy the constraints at `time`; nothing to do without any.
   virtual std::optional<StepFailure> settle(double, std::span<double>) { return std::nullopt; }
+  /// Told before each interval, which ends at `end`, where it begins.
+  virtual void enter(double time, double end, std::span<double const> states) = 0;
   /// Begins anew from `states`, which satisfy the constraints.
   virtual std::optional<StepFailure> restart(double time, std::span<double const> states) = 0;
   /// To `time`, never beyond it; writes the states there.

@@ -31,8 +31,6 @@ class CvodeLane : public SundialsLane {
 
   std::optional<StepFailure> restart(double time, std::span<double const> states) override {
     std::copy(states.begin(), states.end(), data(states_));
-    if (!begun_) reset_reached();
-    begun_ = true;
     // CVODE's own first call would say no more than that something failed.
     if (right_side(time, states_.get(), errors_.get(), static_cast<SundialsLane*>(this)) != 0) return not_finite();
     require(CVodeReInit(memory_, time, states_.get()), "CVodeReInit");
@@ -99,7 +97,6 @@ class CvodeLane : public SundialsLane {
 
   Vector errors_;
   void* memory_;
-  bool begun_ = false;
 };
 
 }  // namespace

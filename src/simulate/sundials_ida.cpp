@@ -45,8 +45,6 @@ class IdaLane : public SundialsLane {
 
   std::optional<StepFailure> restart(double time, std::span<double const> states) override {
     std::copy(states.begin(), states.end(), data(states_));
-    if (!begun_) reset_reached();
-    begun_ = true;
     if (!evaluate(time, states_.get())) return not_finite();
     for (std::size_t i = 0; i < count(); ++i) data(rates_)[i] = is_differential(i) ? evaluated_[i] : 0;
     require(IDAReInit(memory_, time, states_.get(), rates_.get()), "IDAReInit");
@@ -130,7 +128,6 @@ class IdaLane : public SundialsLane {
   std::vector<double> evaluated_;
   AlgebraicStates algebraic_;
   void* memory_;
-  bool begun_ = false;
 };
 
 }  // namespace

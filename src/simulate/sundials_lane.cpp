@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/diagnostic.hpp"
+#include "simulate/state_sizes.hpp"
 
 namespace sysid {
 
@@ -38,8 +40,10 @@ int SundialsLane::weights(N_Vector states, N_Vector result, void* self) {
   return 0;
 }
 
-void SundialsLane::reset_reached() {
-  for (std::size_t i = 0; i < count(); ++i) reached_[i] = std::abs(data(states_)[i]);
+void SundialsLane::enter(double time, double end, std::span<double const> states) {
+  bool const unknown = std::any_of(reached_.begin(), reached_.end(), [](double size) { return size == 0; });
+  if (!entered_ || unknown) raise_sizes(equations_, time, end, states, solver_, reached_);
+  entered_ = true;
 }
 
 bool SundialsLane::blocked(double reached, double last_step) const {

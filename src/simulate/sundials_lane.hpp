@@ -31,6 +31,8 @@ using LinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, Fre
 class SundialsLane : public LaneSolver {
  public:
   SundialsLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver);
+  /// Looks up the sizes of the states when the solve begins, and as long as there is one that has not moved.
+  void enter(double time, double end, std::span<double const> states) override;
 
  protected:
   Vector make_vector() const;
@@ -38,8 +40,6 @@ class SundialsLane : public LaneSolver {
   static void require(int flag, char const* call);
   /// Function handed to SUNDIALS: one over relative |y| + what is allowed near zero, from the largest |y| so far.
   static int weights(N_Vector states, N_Vector result, void* self);
-  /// `weights` starts again from the states as they are.
-  void reset_reached();
 
   /// Whether it is a value that is not finite which keeps the solver from going beyond `reached`; last_step: its last step. The
   /// value lies ahead, or the solver stands still beside it: in steps that the clock does not resolve it spent its budget.
@@ -55,6 +55,7 @@ class SundialsLane : public LaneSolver {
   LaneEquations& equations_;
   SolverSettings solver_;
   std::vector<double> reached_;
+  bool entered_ = false;
   Vector states_;
   Matrix matrix_;
   LinearSolver linear_;

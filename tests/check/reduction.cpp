@@ -138,3 +138,28 @@ TEST_CASE("equations find their states in any order") {
   CHECK(rate_of(model, "y1'", masses) == near(22 / 3.0));
   CHECK(rate_of(model, "y2'", masses) == near((5 - 22) / 7.0));
 }
+
+TEST_CASE("a small coefficient is no pivot where another equation has a large one") {
+  // a' = (3 - 1)/(2 - 1e-20), b' = 1 - 1e-20 a'; the second pair is the first with its equations in other units.
+  for (char const* equations :
+       {"1e-20*a' + b' = 1\n2*a' + b' = 3", "1e-20*a' + b' = 1\n2e-25*a' + 1e-25*b' = 3e-25", "2*a' + b' = 3\n1e-20*a' + b' = 1"}) {
+    CAPTURE(equations);
+    Model const model = model_of(std::string("state a, b\ninitial a = 0, b = 0\nparameter s ~ normal(0, sd = 1)\n") + equations +
+                                 "\nobserve d ~ normal(s*a, sd = 1)");
+    CHECK(rate_of(model, "a", {}) == near(1));
+    CHECK(rate_of(model, "b", {}) == near(1));
+  }
+}
+
+TEST_CASE("equations of very different size determine their unknowns; those that repeat one another do not") {
+  // A capacitance in farad beside a mass in kilogram.
+  std::string const piezo =
+      "input x [N]\nstate y [m], v [V]\ninitial y = 0, y' = 0, v = 0\nconstant C [F] = 1e-12\nparameter k [N/m] ~ log_uniform(1, "
+      "1e4)\n"
+      "1 [kg]*y'' + 5 [N s/m]*y' + k*y = x\nC*v' + 1e-9 [S]*v = 1e-9 [A s/m]*y'\nobserve u ~ normal(v, sd = 0.001)\n";
+  CHECK(messages("model m {\n" + piezo + "}\n").empty());
+  std::string const head_of_two = "state a, b\ninitial a = 0, b = 0\nparameter p ~ uniform(1, 2)\nobserve d ~ normal(a, sd = 1)\n";
+  CHECK(messages("model m {\n" + head_of_two + "a' + 1e-12*p*b' = -a\na' + 2e-12*p*b' = -b\n}\n").empty());
+  std::string const repeated = messages("model m {\n" + head_of_two + "a' + 1e-12*p*b' = -a\n3e-9*a'*p + 3e-21*p^2*b' = -b\n}\n");
+  CHECK(repeated.find("E3005") != std::string::npos);
+}

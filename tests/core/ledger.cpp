@@ -10,7 +10,7 @@ TEST_CASE("failures of one class and place are counted together and keep their f
   ledger.add_solves(10);
   ledger.add_failure(FailureClass::non_finite, "k3*y^3", 0.5, {1, 2});
   ledger.add_failure(FailureClass::non_finite, "k3*y^3", 0.1, {3, 4}, 2);
-  ledger.add_failure(FailureClass::domain, "k3*y^3", 0.2, {5, 6});
+  ledger.add_failure(FailureClass::convergence, "k3*y^3", 0.2, {5, 6});
   REQUIRE(ledger.failures().size() == 2);
   CHECK(ledger.failures()[0].count == 3);
   CHECK(ledger.failures()[0].time == 0.5);
@@ -24,7 +24,7 @@ TEST_CASE("merging ledgers adds their counts and keeps the order of first sight"
   a.add_solves(3);
   a.add_failure(FailureClass::step_limit, "solver", 1.0, {1});
   b.add_solves(4);
-  b.add_failure(FailureClass::domain, "sqrt(k)", 2.0, {2});
+  b.add_failure(FailureClass::convergence, "sqrt(k)", 2.0, {2});
   b.add_failure(FailureClass::step_limit, "solver", 3.0, {3}, 5);
   a.merge(b);
   CHECK(a.solves() == 7);
@@ -39,12 +39,12 @@ TEST_CASE("merging ledgers adds their counts and keeps the order of first sight"
 
 TEST_CASE("a failure that never happened leaves no trace") {
   Ledger ledger;
-  ledger.add_failure(FailureClass::domain, "log(c)", 0, {}, 0);
+  ledger.add_failure(FailureClass::convergence, "log(c)", 0, {}, 0);
   CHECK(ledger.failures().empty());
 }
 
 TEST_CASE("every failure class has a name") {
   CHECK(name(FailureClass::non_finite) == "non-finite");
   CHECK(name(FailureClass::step_limit) == "step limit");
-  CHECK(name(FailureClass::domain) == "domain");
+  CHECK(name(FailureClass::convergence) == "no convergence");
 }

@@ -102,6 +102,47 @@ TEST_CASE("a sum with a NaN stays NaN") {
   CHECK(std::isnan(g.evaluate(g.add(nan, l.x), [](NodeId) { return 1.0; })));
 }
 
+TEST_CASE("what compares a NaN is NaN, folded or evaluated, whichever operand it is") {
+  for (bool const folded : {true, false}) {
+    CAPTURE(folded);
+    Graph g;
+    auto const value = [&](Operation operation, double a, double b) {
+      if (folded) return *g.constant_value(g.binary(operation, g.constant(a), g.constant(b)));
+      NodeId const node = g.binary(operation, g.leaf(LeafKind::unknown, 0), g.leaf(LeafKind::unknown, 1));
+      return g.evaluate(node, [&](NodeId leaf) { return g[leaf].index == 0 ? a : b; });
+    };
+    double const nan = std::nan("");
+    for (Operation const operation :
+         {Operation::minimum, Operation::maximum, Operation::less, Operation::less_equal, Operation::equal})
+      for (double const other : {-1.0, 0.0, 1.0, HUGE_VAL, nan}) {
+        CHECK(std::isnan(value(operation, nan, other)));
+        CHECK(std::isnan(value(operation, other, nan)));
+      }
+    // A guard guards: what is decided by one operand does not need the other.
+    CHECK(value(Operation::conjunction, 0, nan) == 0);
+    CHECK(value(Operation::conjunction, nan, 0) == 0);
+    CHECK(std::isnan(value(Operation::conjunction, 1, nan)));
+    CHECK(std::isnan(value(Operation::conjunction, nan, 1)));
+    CHECK(value(Operation::disjunction, 1, nan) == 1);
+    CHECK(value(Operation::disjunction, nan, 1) == 1);
+    CHECK(std::isnan(value(Operation::disjunction, 0, nan)));
+    CHECK(std::isnan(value(Operation::disjunction, nan, 0)));
+  }
+  Graph g;
+  NodeId const nan = g.constant(std::nan("")), x = g.leaf(LeafKind::state, 0), y = g.leaf(LeafKind::state, 1);
+  for (Operation const operation : {Operation::sign, Operation::negation, Operation::floor, Operation::absolute})
+    CHECK(std::isnan(*g.constant_value(g.unary(operation, nan))));
+  CHECK(g.select(nan, x, y) == nan);
+  NodeId const chosen = g.select(x, g.constant(1), g.constant(2));
+  CHECK(std::isnan(g.evaluate(chosen, [](NodeId) { return std::nan(""); })));
+}
+
+TEST_CASE("a leaf is rebuilt as it was") {
+  Graph g;
+  NodeId const leaf = g.leaf(LeafKind::input, 2, Stage::middle, 3);
+  CHECK(g.rebuild(Node(g[leaf]), 0, 0, 0) == leaf);
+}
+
 TEST_CASE("evaluate agrees with the expression written in C++") {
   Leaves l;
   Graph& g = l.graph;

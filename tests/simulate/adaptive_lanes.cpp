@@ -141,3 +141,119 @@ TEST_CASE("a lane that needs more steps than it may take fails as step_limit") {
   CHECK_FALSE(outcome[1].ok);
   CHECK(outcome[1].kind == FailureClass::step_limit);
 }
+
+namespace {
+
+/// Records of dopri5 at the times of a record without inputs, one state or more.
+LaneArray trajectory(SimulationSource source, std::vector<double> const& times, double relative = 1e-9) {
+  source.integrator = "dopri5";
+  auto const program = std::make_shared<SimulationProgram const>(compile(std::move(source)));
+  int const samples = static_cast<int>(times.size());
+  Simulator const simulator(program,
+                            Schedule(*program, testing::experiment(times, {}, {}), {.method = "dopri5", .relative = relative}));
+  LaneArray out(samples * program->registers.records, 1);
+  Outcome outcome;
+  simulator.records(LaneArray(0, 1).view(), 0, samples, out, {&outcome, 1});
+  CHECK(outcome.ok);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("of two surfaces in one step only the one at its beginning is turned over there") {
+  // y' = -1,  z' = |y| + 10 max(-y - 1/2, 0) from 0: y = -t, and z = t^2/2 + 5 max(t - 1/2, 0)^2.
+  SimulationSource source;
+  Graph& g = source.graph;
+  NodeId const y = g.leaf(LeafKind::state, 0), z = g.leaf(LeafKind::state, 1);
+  source.initial = {g.constant(0), g.constant(0)};
+  NodeId const beyond = g.binary(Operation::maximum, g.subtract(g.negate(y), g.constant(0.5)), g.constant(0));
+  source.derivative = {g.constant(-1), g.add(g.unary(Operation::absolute, y), g.multiply(g.constant(10), beyond))};
+  source.records = {z};
+  LaneArray const found = trajectory(std::move(source), testing::uniform_times(4, 1.0));
+  CHECK(found(1, 0) == doctest::Approx(0.5 + 5 * 0.25).epsilon(1e-8));
+  CHECK(found(2, 0) == doctest::Approx(2 + 5 * 2.25).epsilon(1e-8));
+  CHECK(found(3, 0) == doctest::Approx(4.5 + 5 * 6.25).epsilon(1e-8));
+}
+
+TEST_CASE("an excursion to the other side that is shorter than a step is not lost") {
+  // y' = 1 while |t - 0.7| < 0.1, and while |t - 1.37| < 0.15: y = 0, 0.2, 0.5, 0.5. The solver is within one of the pulses where
+  // its next step, of a whole interval, would end beyond it again.
+  SimulationSource source;
+  Graph& g = source.graph;
+  NodeId const t = g.leaf(LeafKind::time), one = g.constant(1), zero = g.constant(0);
+  auto const pulse = [&](double middle, double half) {
+    NodeId const from_middle = g.unary(Operation::absolute, g.subtract(t, g.constant(middle)));
+    return g.select(g.binary(Operation::less, from_middle, g.constant(half)), one, zero);
+  };
+  source.initial = {zero};
+  source.derivative = {g.add(pulse(0.7, 0.1), pulse(1.37, 0.15))};
+  source.records = {g.leaf(LeafKind::state, 0)};
+  LaneArray const found = trajectory(std::move(source), testing::uniform_times(4, 1.0));
+  double const expected[] = {0, 0.2, 0.5, 0.5};
+  for (int i = 0; i < 4; ++i) CHECK(found(i, 0) == doctest::Approx(expected[i]).epsilon(1e-8));
+}
+
+TEST_CASE("a ball thrown up through a surface comes back through it") {
+  // y'' = -2 from y = -1/2, y' = 1.5: above 0 for t from 1/2 to 1, with 1 s between the samples; z' = 1 while y > 0.
+  SimulationSource source;
+  Graph& g = source.graph;
+  NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1);
+  source.initial = {g.constant(-0.5), g.constant(1.5), g.constant(0)};
+  NodeId const above = g.binary(Operation::less, g.constant(0), y);
+  source.derivative = {v, g.constant(-2), g.select(above, g.constant(1), g.constant(0))};
+  source.records = {g.leaf(LeafKind::state, 2)};
+  // The excursion ends within the interval: whether it is seen depends on where steps end, so that they are made to end inside.
+  LaneArray const found = trajectory(std::move(source), {0, 0.75, 3});
+  CHECK(found(1, 0) == doctest::Approx(0.25).epsilon(1e-7));
+  CHECK(found(2, 0) == doctest::Approx(0.5).epsilon(1e-7));
+}
+
+TEST_CASE("what is remembered takes no part in the error of a step") {
+  auto const source = [](bool remembers) {
+    SimulationSource result = oscillator();
+    Graph& g = result.graph;
+    result.parameters = result.inputs = 0;
+    NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1);
+    result.derivative = {v, g.negate(g.add(g.multiply(g.constant(0.5), v), g.multiply(g.constant(20), y)))};
+    if (!remembers) return result;
+    for (int i = 2; i < 10; ++i) {
+      result.initial.push_back(g.constant(1));
+      result.derivative.push_back(g.constant(0));
+      result.memories.push_back(y);
+    }
+    return result;
+  };
+  LaneArray const with = trajectory(source(true), testing::uniform_times(5, 1.0), 1e-5),
+                  without = trajectory(source(false), testing::uniform_times(5, 1.0), 1e-5);
+  for (int r = 0; r < 10; ++r) CHECK(with(r, 0) == without(r, 0));
+}
+
+TEST_CASE("a failed sub-expression is not lost in what compares it, whatever the order of operands") {
+  // h' = -max(sqrt(h), 0) - 1/10 and the like: the tank is empty before t = 3, and sqrt has no value beyond.
+  for (int form = 0; form < 5; ++form)
+    for (char const* method : {"rk4", "dopri5", "cvode"}) {
+      CAPTURE(form);
+      CAPTURE(method);
+      SimulationSource source;
+      Graph& g = source.graph;
+      NodeId const h = g.leaf(LeafKind::state, 0), zero = g.constant(0), one = g.constant(1);
+      NodeId const root = g.unary(Operation::square_root, h);
+      NodeId const flow = form == 0   ? g.binary(Operation::maximum, root, zero)
+                          : form == 1 ? g.binary(Operation::maximum, zero, root)
+                          : form == 2 ? g.unary(Operation::sign, root)
+                          : form == 3 ? g.select(g.binary(Operation::less, root, g.constant(0.01)), zero, one)
+                                      : g.binary(Operation::minimum, one, root);
+      source.initial = {one};
+      source.derivative = {g.negate(g.add(flow, g.constant(0.1)))};
+      source.records = {h};
+      source.integrator = method;
+      auto const program = std::make_shared<SimulationProgram const>(compile(std::move(source)));
+      SolverSettings solver{.method = method};
+      if (solver.fixed_step()) solver.substeps = 50;
+      Simulator const simulator(program, Schedule(*program, testing::experiment(testing::uniform_times(21, 1.0), {}, {}), solver));
+      LaneArray out(21, 1);
+      Outcome outcome;
+      simulator.records(LaneArray(0, 1).view(), 0, 21, out, {&outcome, 1});
+      CHECK_FALSE(outcome.ok);
+    }
+}

@@ -122,6 +122,79 @@ TEST_CASE("a stiff problem is followed in steps that its solution needs, where R
   CHECK_FALSE(run(source, rk4, data, LaneArray(0, 1).view()).outcome[0].ok);
 }
 
+TEST_CASE("no trajectory depends on the unit of a state") {
+  // y'' + 2 y' + (w + u) y = p and the reaction n' = -n^2/p, n(0) = p: with p smaller by a power of two all numbers of a
+  // solve are, so that not a bit may change. The oscillator begins at rest, where nothing but its force says how large it will be.
+  auto const scaled = [](double size) {
+    SimulationSource source;
+    Graph& g = source.graph;
+    NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1), n = g.leaf(LeafKind::state, 2);
+    NodeId const scale = g.constant(size), stiffness = g.add(g.constant(30), g.leaf(LeafKind::input, 0));
+    source.inputs = 1;
+    source.initial = {g.constant(0), g.constant(0), scale};
+    source.derivative = {v, g.subtract(scale, g.add(g.multiply(g.constant(2), v), g.multiply(stiffness, y))),
+                         g.negate(g.divide(g.multiply(n, n), scale))};
+    source.records = {y, n};
+    return source;
+  };
+  double const small = std::ldexp(1, -70);  // a zeptomole beside a mole
+  for (InputRule const rule : {InputRule::zero_order, InputRule::linear, InputRule::cubic}) {
+    Experiment const data =
+        testing::experiment(testing::uniform_times(21, 0.5), {[](double t) { return 10 * std::sin(t); }}, {}, rule);
+    for (char const* method : {"cvode", "ida", "dopri5", "rk4"}) {
+      CAPTURE(method);
+      Run const large = run(scaled(1), {.method = method}, data, LaneArray(0, 1).view());
+      Run const tiny = run(scaled(small), {.method = method}, data, LaneArray(0, 1).view());
+      REQUIRE(large.outcome[0].ok);
+      REQUIRE(tiny.outcome[0].ok);
+      for (int i = 0; i < 42; ++i) CHECK(tiny.records(i, 0) == small * large.records(i, 0));
+      if (std::string(method) == "rk4") continue;
+      for (int i = 0; i < 21; ++i)  // n = p/(1 + t)
+        CHECK(large.records(2 * i + 1, 0) == doctest::Approx(1 / (1 + 0.5 * i)).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("a state whose rate begins at zero, on a kink, has a size") {
+  // y' = -1,  z' = |y| from 0: z = t^2/2. Neither the rate of z nor its slope says anything at t = 0.
+  SimulationSource source;
+  Graph& g = source.graph;
+  source.initial = {g.constant(0), g.constant(0)};
+  source.derivative = {g.constant(-1), g.unary(Operation::absolute, g.leaf(LeafKind::state, 0))};
+  source.records = {g.leaf(LeafKind::state, 1)};
+  Experiment const data = testing::experiment(testing::uniform_times(4, 1.0), {}, {});
+  for (char const* method : {"cvode", "ida", "dopri5"}) {
+    CAPTURE(method);
+    Run const result = run(source, {.method = method}, data, LaneArray(0, 1).view());
+    REQUIRE(result.outcome[0].ok);
+    for (int i = 0; i < 4; ++i) CHECK(result.records(i, 0) == doctest::Approx(0.5 * i * i).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a state that rounding alone moves asks for no short steps") {
+  // A mass hangs at rest on its spring: its acceleration g - k y/m is the rounding error of two forces of 9.81 N, or nothing.
+  SimulationSource source;
+  Graph& g = source.graph;
+  NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1), k = g.leaf(LeafKind::parameter, 0);
+  source.parameters = 1;
+  source.initial = {g.divide(g.constant(9.81), k), g.constant(0)};
+  source.derivative = {v, g.subtract(g.constant(9.81), g.multiply(k, y))};
+  source.records = {y};
+  Experiment const data = testing::experiment(testing::uniform_times(11, 0.5), {}, {});
+  LaneArray stiffness(1, 9);
+  for (int w = 0; w < 9; ++w) stiffness(0, w) = 7 * std::pow(10, 0.25 * w);
+  for (char const* method : {"cvode", "ida", "dopri5"})
+    for (double const relative : {1e-6, 1e-10, 1e-13}) {
+      CAPTURE(method);
+      CAPTURE(relative);
+      Run const result = run(source, {.method = method, .relative = relative, .steps = 1000}, data, stiffness);
+      for (int w = 0; w < 9; ++w) {
+        REQUIRE(result.outcome[static_cast<std::size_t>(w)].ok);
+        CHECK(result.records(10, w) == doctest::Approx(9.81 / stiffness(0, w)).epsilon(10 * relative));  // one or two steps
+      }
+    }
+}
+
 TEST_CASE("Robertson's reaction over twelve decades of time: published and independently computed values") {
   // Mazzia and Magherini, Test Set for Initial Value Problem Solvers 2.4 (2008), problem ROBER.
   SimulationSource source;
@@ -218,6 +291,42 @@ TEST_CASE("algebraic states start consistent, on the branch of their guess, and 
   }
   // The other root: x' = 2 sqrt(x).
   CHECK(run(root(), solver, data, pair(4, -30)).records(2 * 10, 0) == doctest::Approx(9.0).epsilon(1e-6));
+}
+
+TEST_CASE("algebraic states read the input of their own row, the last one included, under every rule") {
+  // y' = z,  2 z = u:  z_i = u_i / 2 at every sample, and y follows as it does without the algebraic state.
+  SimulationSource implicit, explicit_one;
+  {
+    Graph& g = implicit.graph;
+    NodeId const z = g.leaf(LeafKind::state, 1);
+    implicit.inputs = 1;
+    implicit.initial = {g.constant(0), g.constant(0)};
+    implicit.derivative = {z};
+    implicit.constraints = {g.subtract(g.multiply(g.constant(2), z), g.leaf(LeafKind::input, 0))};
+    implicit.records = {g.leaf(LeafKind::state, 0), z};
+  }
+  {
+    Graph& g = explicit_one.graph;
+    NodeId const z = g.multiply(g.constant(0.5), g.leaf(LeafKind::input, 0));
+    explicit_one.inputs = 1;
+    explicit_one.initial = {g.constant(0)};
+    explicit_one.derivative = {z};
+    explicit_one.records = {g.leaf(LeafKind::state, 0), z};
+  }
+  int const samples = 12;
+  for (InputRule const rule : {InputRule::zero_order, InputRule::linear, InputRule::cubic, InputRule::band_limited}) {
+    CAPTURE(static_cast<int>(rule));
+    Experiment const data =
+        testing::experiment(testing::uniform_times(samples, 0.5), {[](double t) { return 1 + std::sin(2.5 * t); }}, {}, rule);
+    Run const ida = run(implicit, {.method = "ida", .relative = 1e-10}, data, LaneArray(0, 1).view());
+    Run const rk4 = run(explicit_one, {.substeps = 200}, data, LaneArray(0, 1).view());
+    REQUIRE(ida.outcome[0].ok);
+    for (int i = 0; i < samples; ++i) {
+      CAPTURE(i);
+      CHECK(ida.records(2 * i, 0) == doctest::Approx(rk4.records(2 * i, 0)).epsilon(1e-7));
+      CHECK(ida.records(2 * i + 1, 0) == doctest::Approx(rk4.records(2 * i + 1, 0)).epsilon(1e-9));
+    }
+  }
 }
 
 TEST_CASE("a constraint that nothing satisfies is named") {

@@ -26,14 +26,26 @@ inline Vec fused_both_of(Vec a, Vec b, Vec c) { return _mm256_fnmsub_pd(a, b, c)
 inline Vec square_root_of(Vec a) { return _mm256_sqrt_pd(a); }
 inline Vec absolute_of(Vec a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
 inline Vec floor_of(Vec a) { return _mm256_floor_pd(a); }
-inline Vec minimum_of(Vec a, Vec b) { return _mm256_min_pd(a, b); }  // a < b ? a : b, also for NaN and zeros
-inline Vec maximum_of(Vec a, Vec b) { return _mm256_max_pd(a, b); }
+inline Vec with_nan_of(Vec result, Vec a) { return _mm256_blendv_pd(result, a, _mm256_cmp_pd(a, a, _CMP_UNORD_Q)); }
+inline Vec minimum_of(Vec a, Vec b) {
+  return with_nan_of(_mm256_min_pd(a, b), a);
+}  // min_pd: a < b ? a : b, also for NaN and zeros
+inline Vec maximum_of(Vec a, Vec b) { return with_nan_of(_mm256_max_pd(a, b), a); }
 inline Vec condition(Vec mask) { return _mm256_and_pd(mask, _mm256_set1_pd(1.0)); }
-inline Vec less_of(Vec a, Vec b) { return condition(_mm256_cmp_pd(a, b, _CMP_LT_OQ)); }
-inline Vec less_equal_of(Vec a, Vec b) { return condition(_mm256_cmp_pd(a, b, _CMP_LE_OQ)); }
-inline Vec equal_of(Vec a, Vec b) { return condition(_mm256_cmp_pd(a, b, _CMP_EQ_OQ)); }
-inline Vec not_equal_of(Vec a, Vec b) { return condition(_mm256_cmp_pd(a, b, _CMP_NEQ_UQ)); }
-inline Vec select_of(Vec a, Vec b, Vec c) { return _mm256_blendv_pd(c, b, _mm256_cmp_pd(a, zero(), _CMP_NEQ_UQ)); }
+// All bits set is a NaN: where operands have no order, that is what a comparison leaves.
+inline Vec compared(Vec a, Vec b, Vec mask) { return _mm256_or_pd(condition(mask), _mm256_cmp_pd(a, b, _CMP_UNORD_Q)); }
+inline Vec less_of(Vec a, Vec b) { return compared(a, b, _mm256_cmp_pd(a, b, _CMP_LT_OQ)); }
+inline Vec less_equal_of(Vec a, Vec b) { return compared(a, b, _mm256_cmp_pd(a, b, _CMP_LE_OQ)); }
+inline Vec equal_of(Vec a, Vec b) { return compared(a, b, _mm256_cmp_pd(a, b, _CMP_EQ_OQ)); }
+inline Vec both_of(Vec a, Vec b) {
+  Vec const false_one = _mm256_or_pd(_mm256_cmp_pd(a, zero(), _CMP_EQ_OQ), _mm256_cmp_pd(b, zero(), _CMP_EQ_OQ));
+  return _mm256_andnot_pd(false_one, compared(a, b, _mm256_cmp_pd(zero(), zero(), _CMP_EQ_OQ)));
+}
+inline Vec either_of(Vec a, Vec b) {
+  Vec const true_one = _mm256_or_pd(_mm256_cmp_pd(a, zero(), _CMP_NEQ_OQ), _mm256_cmp_pd(b, zero(), _CMP_NEQ_OQ));
+  return _mm256_blendv_pd(_mm256_cmp_pd(a, b, _CMP_UNORD_Q), condition(true_one), true_one);
+}
+inline Vec select_of(Vec a, Vec b, Vec c) { return with_nan_of(_mm256_blendv_pd(c, b, _mm256_cmp_pd(a, zero(), _CMP_NEQ_UQ)), a); }
 
 #include "program/interpreter/lanes_handlers.hpp"
 

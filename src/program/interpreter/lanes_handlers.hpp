@@ -83,10 +83,10 @@ struct Equal {
   static Vec of(Vec a, Vec b, Vec) { return equal_of(a, b); }
 };
 struct Conjunction {
-  static Vec of(Vec a, Vec b, Vec) { return multiply_of(not_equal_of(a, zero()), not_equal_of(b, zero())); }
+  static Vec of(Vec a, Vec b, Vec) { return both_of(a, b); }
 };
 struct Disjunction {
-  static Vec of(Vec a, Vec b, Vec) { return maximum_of(not_equal_of(a, zero()), not_equal_of(b, zero())); }
+  static Vec of(Vec a, Vec b, Vec) { return either_of(a, b); }
 };
 struct Negation {
   static Vec of(Vec a, Vec, Vec) { return equal_of(a, zero()); }

@@ -1,5 +1,6 @@
 // The scalar executor: the meaning of the bytecode, plainly; the lane executors are held to it bit for bit.
 #include <cmath>
+#include <limits>
 
 #include "core/diagnostic.hpp"
 #include "program/interpreter/executor.hpp"
@@ -8,6 +9,9 @@ namespace sysid {
 namespace {
 
 double condition(bool holds) { return holds ? 1.0 : 0.0; }
+double compared(double a, double b, bool holds) {
+  return a != a || b != b ? std::numeric_limits<double>::quiet_NaN() : condition(holds);
+}
 
 double compute(Instruction const& i, double a, double b, double c) {
   switch (i.opcode) {
@@ -36,27 +40,27 @@ double compute(Instruction const& i, double a, double b, double c) {
     case Opcode::absolute:
       return std::fabs(a);
     case Opcode::sign:
-      return condition(a > 0) - condition(a < 0);
+      return compared(a, 0, a > 0) - condition(a < 0);
     case Opcode::minimum:
-      return a < b ? a : b;
+      return a != a || a < b ? a : b;
     case Opcode::maximum:
-      return a > b ? a : b;
+      return a != a || a > b ? a : b;
     case Opcode::floor:
       return std::floor(a);
     case Opcode::less:
-      return condition(a < b);
+      return compared(a, b, a < b);
     case Opcode::less_equal:
-      return condition(a <= b);
+      return compared(a, b, a <= b);
     case Opcode::equal:
-      return condition(a == b);
+      return compared(a, b, a == b);
     case Opcode::conjunction:
-      return condition(a != 0 && b != 0);
+      return a == 0 || b == 0 ? 0 : compared(a, b, true);
     case Opcode::disjunction:
-      return condition(a != 0 || b != 0);
+      return (a == a && a != 0) || (b == b && b != 0) ? 1 : compared(a, b, false);
     case Opcode::negation:
-      return condition(a == 0);
+      return compared(a, 0, a == 0);
     case Opcode::select:
-      return a != 0 ? b : c;
+      return a != a ? a : a != 0 ? b : c;
     case Opcode::call_unary:
       return i.function->unary(a);
     case Opcode::call_binary:
