@@ -5,6 +5,7 @@
 
 #include "app/experiments.hpp"
 #include "app/readiness.hpp"
+#include "syntax/parse.hpp"
 
 namespace sysid {
 namespace {
@@ -85,7 +86,9 @@ CheckResult check_file(Session& session) {
   CheckResult result;
   result.page.file = session.source.name();
   result.page.data_blocks = static_cast<int>(session.file.data.size());
-  for (Model const& model : session.file.models) result.page.models.push_back(describe_structure(session.source, model));
+  Diagnostics known_to_parse;
+  if (auto const tree = parse(session.source, known_to_parse))
+    for (Model const& model : session.file.models) result.page.models.push_back(describe_structure(*tree, model));
   Readiness const readiness = check_readiness(session, [&](Task const& task) {
     // Data that a simulate task makes anew are checked when they are there.
     auto const* made = std::get_if<SimulateTask>(&task.what);

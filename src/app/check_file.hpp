@@ -3,6 +3,7 @@
 #include "app/experiments.hpp"
 #include "app/session.hpp"
 #include "report/check_page.hpp"
+#include "syntax/ast.hpp"
 
 namespace sysid {
 
@@ -17,7 +18,7 @@ struct CheckResult {
 CheckResult check_file(Session& session);
 
 /// Equations, unknowns and everything declared, in the user's words where the text has them.
-ModelPage describe_structure(Source const& source, Model const& model);
+ModelPage describe_structure(ast::File const& tree, Model const& model);
 
 /// Rows, gaps, rates and the band of each input.
 CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model);

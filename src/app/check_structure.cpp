@@ -4,7 +4,6 @@
 #include <map>
 
 #include "app/check_file.hpp"
-#include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
@@ -15,13 +14,10 @@ struct Texts {
   std::map<std::string, std::string> parameters, channels, derived;
 };
 
-Texts texts_of(Source const& source, std::string const& model) {
+Texts texts_of(ast::File const& tree, std::string const& model) {
   Texts texts;
-  Diagnostics ignored;
-  auto const tree = parse(source, ignored);
-  if (!tree) return texts;
   auto const call = [](ast::Call const& use) { return unparse(ast::Expression{{}, ast::Box<ast::Call>(use)}); };
-  for (ast::Item const& item : tree->items) {
+  for (ast::Item const& item : tree.items) {
     auto const* found = std::get_if<ast::Model>(&item);
     if (found == nullptr || found->name.text != model) continue;
     for (ast::ModelStatement const& statement : found->statements) {
@@ -49,11 +45,11 @@ std::string text_of(std::map<std::string, std::string> const& texts, std::string
 
 }  // namespace
 
-ModelPage describe_structure(Source const& source, Model const& model) {
+ModelPage describe_structure(ast::File const& tree, Model const& model) {
   ModelPage page;
   page.name = model.name;
   page.title = model.title;
-  Texts texts = texts_of(source, model.name);
+  Texts texts = texts_of(tree, model.name);
   page.equations = std::move(texts.equations);
   // "y", "y'", "y''" are one state of order 3; its unknown is y'''.
   std::vector<std::pair<State const*, int>> orders;
