@@ -179,6 +179,15 @@ Diagnostic statement_too_long(Span where, int most) {
                "name parts of it with `let`");
 }
 
+Diagnostic text_too_large(Span where, std::size_t most) {
+  return error("E1126", where, fmt::format("the text is longer than {} bytes, which is more than is read", most),
+               "numbers by the thousand belong into a data file; models that recur belong into a module, used with arguments");
+}
+
+Diagnostic word_too_long(Span where, std::ptrdiff_t most) {
+  return error("E1127", where, fmt::format("this name is longer than {} characters", most), "choose a shorter name");
+}
+
 Diagnostic unknown_escape(Span where, std::string_view escape) {
   return error("E1124", where, fmt::format("`{}` is not an escape", escape), "a text knows `\\\"`, `\\\\` and `\\n`");
 }

@@ -59,6 +59,8 @@ Diagnostic prime_apart(Span where);
 Diagnostic nesting_too_deep(Span where, int most);
 /// E1123
 Diagnostic statement_too_long(Span where, int most);
+Diagnostic text_too_large(Span where, std::size_t most);
+Diagnostic word_too_long(Span where, std::ptrdiff_t most);
 /// E1124: `"\q"`.
 Diagnostic unknown_escape(Span where, std::string_view escape);
 /// E1125: a line that ends in an operator, and a declaration on the next.

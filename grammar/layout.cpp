@@ -2,6 +2,7 @@
 #include "grammar/layout.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "grammar/errors.hpp"
 #include "syntax/words.hpp"
@@ -85,7 +86,7 @@ class LayoutPass {
       // To the rules all that follows stands in the block.
       if (!open_.empty() && tokens_[open_.back()].is("{") && begins_task(i)) {
         leave_block(i);
-        for (std::size_t j = i; j < tokens_.size(); ++j) spoilt_.push_back(j);
+        all_spoilt_from_ = std::min(all_spoilt_from_, i);
       }
     }
     close_unclosed(tokens_.size());
@@ -168,6 +169,7 @@ class LayoutPass {
     std::uint32_t end = 0;
     int statement = 0;
     bool in_block = false;
+    std::size_t before = 0;  // one behind the last token that is no `;`
     for (std::size_t i = 0; i <= tokens_.size(); ++i) {
       std::uint32_t const begin = i < tokens_.size() ? tokens_[i].span.begin : static_cast<std::uint32_t>(out_.text.size());
       bool const both = i > 0 && i < tokens_.size();
@@ -181,12 +183,11 @@ class LayoutPass {
       Token& token = tokens_[i];
       if (separator || (token.newline_before && !joined) || token.is("}")) ++statement;
       token.statement = statement;
-      std::size_t before = i;
-      while (before > 0 && tokens_[before - 1].is(";")) --before;
       token.joins_before =
           before > 0 && !tokens_[before - 1].is("{") && !tokens_[before - 1].is("}") && joins(before - 1, i, in_block);
       if (token.is("{") || token.is("}")) in_block = token.is("{");
       end = token.span.end;
+      if (!token.is(";")) before = i + 1;
     }
   }
 
@@ -213,12 +214,14 @@ class LayoutPass {
         diagnostics.add(std::move(mistake.diagnostic));
     }
     for (std::size_t const token : spoilt_) out_.reported.insert(tokens_[token].statement);
+    for (std::size_t token = all_spoilt_from_; token < tokens_.size(); ++token) out_.reported.insert(tokens_[token].statement);
   }
 
   Source const& source_;
   Scan scan_;
   std::vector<Token>& tokens_;
   std::vector<std::size_t> open_, spoilt_;
+  std::size_t all_spoilt_from_ = std::numeric_limits<std::size_t>::max();
   std::size_t line_ = 0;  // the first token of the line
   std::vector<int> inside_;
   Layout out_;

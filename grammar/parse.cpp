@@ -7,6 +7,7 @@
 #include "grammar/actions.hpp"
 #include "grammar/candidates.hpp"
 #include "grammar/data.hpp"
+#include "grammar/errors.hpp"
 #include "grammar/model.hpp"
 #include "grammar/task.hpp"
 
@@ -54,6 +55,10 @@ struct Reading {
 template <class Rule>
 Reading<typename Rule::attribute_type> read_all(Rule const& rule, Source const& source, Diagnostics& diagnostics) {
   std::size_t const before = diagnostics.all().size();
+  if (source.text().size() > most_text_bytes) {
+    diagnostics.add(errors::text_too_large({most_text_bytes, most_text_bytes + 1}, most_text_bytes));
+    return std::nullopt;
+  }
   Layout const layout = lay_out(source, diagnostics, before + most_errors);
   State state(layout, diagnostics, before + most_errors);
   Reading<typename Rule::attribute_type> reading;

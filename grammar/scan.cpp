@@ -45,6 +45,9 @@ constexpr std::array<Foreign, 16> foreign_operators{{
     {"||", "write `or`"},
     {"!", "write `not`"},
 }};
+/// Names of elements are made of it by the thousand, and primes make a state of each.
+constexpr std::ptrdiff_t longest_word = 200;
+
 constexpr std::array<std::string_view, 5> two_character_operators{"==", "!=", "<=", ">=", ".."};
 constexpr std::string_view one_character_operators = "+-*/^<>=~,;(){}[].'%";
 
@@ -188,6 +191,15 @@ class Scanner {
   }
 
   void word_token() {
+    std::size_t const begin = at_;
+    word_characters();
+    auto const length =
+        std::count_if(text_.begin() + static_cast<std::ptrdiff_t>(begin), text_.begin() + static_cast<std::ptrdiff_t>(at_),
+                      [](char c) { return !continues_character(c); });
+    if (length > longest_word) mistake(errors::word_too_long(from(begin), longest_word));
+  }
+
+  void word_characters() {
     while (at_ < text_.size() && words::continues_name(peek())) {
       if (find_look_alike() != nullptr) return;
       std::size_t const character = at_;

@@ -5,6 +5,7 @@
 
 #include "app/experiments.hpp"
 #include "app/readiness.hpp"
+#include "syntax/parse.hpp"
 
 namespace sysid {
 namespace {
@@ -85,8 +86,10 @@ CheckResult check_file(Session& session) {
   CheckResult result;
   result.page.file = session.source.name();
   result.page.data_blocks = static_cast<int>(session.file.data.size());
-  for (Model const& model : session.file.models)
-    result.page.models.push_back(describe_structure(session.source, session.file.tree, model));
+  Diagnostics known_to_parse;
+  if (auto const written = parse(session.source, known_to_parse))
+    for (Model const& model : session.file.models)
+      result.page.models.push_back(describe_structure(*written, session.file.tree, model));
   Readiness const readiness = check_readiness(session, [&](Task const& task) {
     // Data that a simulate task makes anew are checked when they are there.
     auto const* made = std::get_if<SimulateTask>(&task.what);

@@ -3,6 +3,7 @@
 #include "app/experiments.hpp"
 #include "app/session.hpp"
 #include "report/check_page.hpp"
+#include "syntax/ast.hpp"
 
 namespace sysid {
 
@@ -18,7 +19,7 @@ CheckResult check_file(Session& session);
 
 /// Equations, unknowns and everything declared, in the user's words where the text has them. flat: the models with their parts
 /// written out (CheckedFile::tree), for what stands in modules.
-ModelPage describe_structure(Source const& source, ast::File const& flat, Model const& model);
+ModelPage describe_structure(ast::File const& written, ast::File const& flat, Model const& model);
 
 /// Rows, gaps, rates and the band of each input.
 CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model);

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "app/check_file.hpp"
-#include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
@@ -38,10 +37,9 @@ void add_texts(ast::File const& tree, std::string const& model, bool equations, 
 
 // The user's own text first; what that leaves open from the model with its parts written out: all of one that stands in a module,
 // what parts bring to one of the file.
-Texts texts_of(Source const& source, ast::File const& flat, std::string const& model) {
+Texts texts_of(ast::File const& written, ast::File const& flat, std::string const& model) {
   Texts texts;
-  Diagnostics ignored;
-  if (auto const tree = parse(source, ignored)) add_texts(*tree, model, true, texts);
+  add_texts(written, model, true, texts);
   add_texts(flat, model, texts.equations.empty() && texts.channels.empty(), texts);
   return texts;
 }
@@ -55,11 +53,11 @@ std::string text_of(std::map<std::string, std::string> const& texts, std::string
 
 }  // namespace
 
-ModelPage describe_structure(Source const& source, ast::File const& flat, Model const& model) {
+ModelPage describe_structure(ast::File const& written, ast::File const& flat, Model const& model) {
   ModelPage page;
   page.name = model.name;
   page.title = model.title;
-  Texts texts = texts_of(source, flat, model.name);
+  Texts texts = texts_of(written, flat, model.name);
   page.equations = std::move(texts.equations);
   // "y", "y'", "y''" are one state of order 3; its unknown is y'''.
   std::vector<std::pair<State const*, int>> orders;

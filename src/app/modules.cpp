@@ -46,7 +46,7 @@ class Loader {
     if (!seen_.insert(name.text).second) return;
     std::string file = (folder_ / (name.text + ".sysid")).string();
     std::optional<std::string> text;
-    if (!from_library && !own_name && std::filesystem::exists(file)) text = read_file(file);
+    if (!from_library && !own_name && std::filesystem::exists(file)) text = read_file(file, most_text_bytes + 1);
     bool const of_library = !text.has_value();
     if (of_library) {
       LibraryModule const* module = in_library(name.text);

@@ -96,6 +96,7 @@ class Scope {
   std::optional<Typed> sum(ast::Expression const& tree, std::vector<UnitOperand>& terms, int side = 0);
   std::optional<Typed> other_than_sum(ast::Expression const& tree);
   std::optional<Typed> binary(ast::Binary const& binary);
+  Typed combined(ast::Binary const& binary, Typed const& left, Typed const& right);
   Typed compared(Operation operation, UnitOperand left, UnitOperand right);
   std::optional<Typed> function_call(ast::Call const& call);
   Typed built_in(FunctionRow const& row, std::span<UnitOperand const> arguments);
@@ -109,6 +110,9 @@ class Scope {
   std::optional<Typed> channel_call(ast::Call const& call);
   std::optional<Typed> change_call(ast::Call const& call);
 
+  /// False when expanding functions and definitions takes more work or stack than can be spent.
+  bool affordable(Span span);
+
   using Arguments = std::map<std::string, Typed>;  // names that hide the others while a function is expanded
   Graph& graph_;
   Diagnostics& diagnostics_;
@@ -116,6 +120,8 @@ class Scope {
   std::map<std::string, ast::FunctionDefinition const*> functions_;
   std::map<ast::Definition const*, std::optional<Typed>> resolved_;
   std::vector<std::string> resolving_;
+  std::size_t looked_at_ = 0, depth_ = 0;  // expressions so far; those being looked at, one inside the other
+  bool too_large_ = false;                 // and said so
   Arguments const* arguments_ = nullptr;
   UnitCheck units_;
   SampleNames samples_;

@@ -2,17 +2,30 @@
 #include <algorithm>
 #include <utility>
 
+#include "check/elaborate/errors.hpp"
 #include "check/errors.hpp"
 #include "check/scope.hpp"
 #include "function/table.hpp"
 
 namespace sysid {
 
+namespace {
+
+constexpr std::size_t most_expressions = 2'000'000;
+// Each takes up to 3 kB of a stack of 8 MB.
+constexpr std::size_t most_depth = 1000;
+// Of one file; twenty are shown.
+constexpr std::size_t most_messages = 1000;
+
+bool is_sum(ast::Binary const& binary) { return binary.symbol == "+" || binary.symbol == "-"; }
+
+}  // namespace
+
 std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<UnitOperand>& terms, int side) {
   std::optional<Typed> value;
   auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
   auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node);
-  if (binary != nullptr && ((*binary)->symbol == "+" || (*binary)->symbol == "-")) {
+  if (binary != nullptr && is_sum(**binary)) {
     auto left = sum(*(*binary)->left, terms, side), right = sum(*(*binary)->right, terms, side);
     if (left && right) value = add(graph_, *left, *right, (*binary)->symbol == "-");
   } else if (unary != nullptr && (*unary)->symbol == "-") {
@@ -75,14 +88,31 @@ std::optional<Typed> Scope::binary(ast::Binary const& binary) {
     diagnostics_.add(errors::range_out_of_place(binary.span));
     return std::nullopt;
   }
-  auto left = expression(*binary.left), right = expression(*binary.right);
-  if (!left || !right) return std::nullopt;
-  UnitOperand const a{settled(*left), &*binary.left}, b{settled(*right), &*binary.right};
-  if (symbol == "*") return multiply(graph_, *left, *right);
-  if (symbol == "/") return divide(graph_, *left, *right);
+  // A long product leans to the left: it is walked, not descended.
+  std::vector<ast::Binary const*> spine = {&binary};
+  while (auto const* inner = std::get_if<ast::Box<ast::Binary>>(&spine.back()->left->node)) {
+    if (is_sum(**inner) || (*inner)->symbol == "..") break;
+    spine.push_back(&**inner);
+  }
+  auto value = expression(*spine.back()->left);
+  for (; !spine.empty(); spine.pop_back()) {
+    auto const right = expression(*spine.back()->right);
+    value = value && right ? std::optional(combined(*spine.back(), *value, *right)) : std::nullopt;
+    if (!value || spine.size() == 1) continue;
+    value->span = spine[spine.size() - 2]->left->span;
+    graph_.set_span(value->node, value->span);
+  }
+  return value;
+}
+
+Typed Scope::combined(ast::Binary const& binary, Typed const& left, Typed const& right) {
+  std::string const& symbol = binary.symbol;
+  UnitOperand const a{settled(left), &*binary.left}, b{settled(right), &*binary.right};
+  if (symbol == "*") return multiply(graph_, left, right);
+  if (symbol == "/") return divide(graph_, left, right);
   if (symbol == "^") {
-    bool const good = units_.power(a, b, graph_.constant_value(right->node));
-    Typed result = power(graph_, *left, *right);
+    bool const good = units_.power(a, b, graph_.constant_value(right.node));
+    Typed result = power(graph_, left, right);
     if (!good) result.kind = Typed::Kind::wrong;
     return result;
   }
@@ -214,8 +244,18 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
   return result;
 }
 
+bool Scope::affordable(Span span) {
+  if (diagnostics_.all().size() >= most_messages && diagnostics_.has_errors()) return false;
+  if (!too_large_ && ++looked_at_ <= most_expressions && depth_ <= most_depth) return true;
+  if (!too_large_) diagnostics_.add(errors::model_too_large(span));
+  too_large_ = true;
+  return false;
+}
+
 std::optional<Typed> Scope::other_than_sum(ast::Expression const& tree) {
   std::optional<Typed> value;
+  if (!affordable(tree.span)) return value;
+  ++depth_;
   if (auto const* number = std::get_if<ast::Number>(&tree.node)) {
     if (!number->unit) {
       value = literal(graph_, number->value, tree.span);
@@ -241,6 +281,7 @@ std::optional<Typed> Scope::other_than_sum(ast::Expression const& tree) {
   } else {
     diagnostics_.add(errors::list_here(tree.span));
   }
+  --depth_;
   return value;
 }
 

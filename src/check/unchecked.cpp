@@ -23,11 +23,15 @@ std::string consequence(std::vector<std::string> const& terms) {
 
 }  // namespace
 
+// A longer list of names helps nobody.
+constexpr std::size_t most_open_names = 100;
+
 // The names that leave the unit of `tree` open; seen: definitions already looked into.
 void Scope::open_names(ast::Expression const& tree, std::set<std::string>& names, std::set<std::string>& seen) const {
   each_reference(tree, [&](ast::Reference const& reference) {
     std::string const& name = reference.name.text;
     Symbol const* symbol = find(name);
+    if (seen.size() == most_open_names) return;
     if (symbol == nullptr || symbol->unit || !seen.insert(name).second) return;
     auto const* definition = std::get_if<DefinitionSymbol>(&symbol->what);
     if (definition == nullptr) {

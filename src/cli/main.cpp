@@ -18,6 +18,7 @@
 #include "core/interrupt.hpp"
 #include "core/progress_terminal.hpp"
 #include "syntax/format.hpp"
+#include "syntax/parse.hpp"
 
 namespace sysid {
 namespace {
@@ -54,7 +55,7 @@ void show(Diagnostics const& diagnostics, Source const& source, CommandLine cons
     std::cerr << render(diagnostics, source, colour());
 }
 
-Source read_source(std::string const& path) { return Source(path, read_file(path)); }
+Source read_source(std::string const& path) { return Source(path, read_file(path, most_text_bytes + 1)); }
 
 /// What concerns no place in a text: "sysid: cannot read ...", or the same as JSON with `severity` error and no code.
 void complain(CommandLine const& line, std::string const& message, std::string const& help = "") {

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t shown_errors = 20;
 constexpr int tab_width = 4;
+// Of the user's text in a message, and of a line as shown: a file may be one line of a million characters.
+constexpr std::size_t longest_words = 2000, longest_line = 600, before_mark = 200;
 
 std::string_view word(Severity severity) {
   switch (severity) {
@@ -45,19 +47,44 @@ struct Paint {
   std::string gutter(std::string_view text) const { return (*this)("34", text); }
 };
 
-/// A line as shown: tabs become blanks, and `column[i]` is where byte i stands.
+bool continues(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
+/// Not within a character.
+std::size_t boundary(std::string_view text, std::size_t at) {
+  while (at > 0 && at < text.size() && continues(text[at])) --at;
+  return std::min(at, text.size());
+}
+
+std::string shortened(std::string_view text) {
+  if (text.size() <= longest_words) return std::string(text);
+  return fmt::format("{} ... {}", text.substr(0, boundary(text, longest_words / 2)),
+                     text.substr(boundary(text, text.size() - longest_words / 2)));
+}
+
+/// A line as shown: tabs become blanks, and `column[i]` is where byte first + i stands. Of a very long line the part around `mark`.
 struct ShownLine {
   std::string text;
+  std::size_t first = 0;
   std::vector<int> column;
 };
 
-ShownLine shown(std::string_view line) {
+ShownLine shown(std::string_view line, std::size_t mark) {
   ShownLine out;
+  bool const cut = line.size() > longest_line;
+  std::size_t const end = line.size();
+  if (cut) {
+    out.first = boundary(line, mark > before_mark ? std::min(mark - before_mark, end) : 0);
+    line = line.substr(out.first, boundary(line, out.first + longest_line) - out.first);
+  }
+  bool const ends_early = out.first + line.size() < end;
   int column = 0;
+  if (out.first > 0) {
+    out.text = "... ";
+    column = 4;
+  }
   for (char const byte : line) {
-    bool const continues_character = (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
-    out.column.push_back(continues_character ? std::max(column - 1, 0) : column);
-    if (continues_character) {
+    out.column.push_back(continues(byte) ? std::max(column - 1, 0) : column);
+    if (continues(byte)) {
       out.text += byte;
     } else if (byte == '\t') {
       int const blanks = tab_width - column % tab_width;
@@ -69,6 +96,7 @@ ShownLine shown(std::string_view line) {
     }
   }
   out.column.push_back(column);
+  if (ends_early) out.text += " ...";
   return out;
 }
 
@@ -81,11 +109,12 @@ struct Mark {
 
 Mark mark_on(Label const& label, bool primary, std::uint32_t line_begin, ShownLine const& line) {
   std::size_t const last = line.column.size() - 1;
-  std::size_t const begin = std::min<std::size_t>(label.span.begin - line_begin, last);
+  line_begin += static_cast<std::uint32_t>(line.first);
+  std::size_t const begin = label.span.begin > line_begin ? std::min<std::size_t>(label.span.begin - line_begin, last) : 0;
   // A span that runs on into later lines is underlined to the end of its first.
   std::size_t const end = std::clamp<std::size_t>(label.span.end > line_begin ? label.span.end - line_begin : 0, begin, last);
   int const first = line.column[begin];
-  return {first, std::max(line.column[end], first + 1), primary, label.text};
+  return {first, std::max(line.column[end], first + 1), primary, shortened(label.text)};
 }
 
 /// The rows under a line: all underlines with the text of the rightmost, then the other texts from right to left, each on the
@@ -156,10 +185,11 @@ std::string excerpt(Diagnostic const& diagnostic, Source const& source, Paint pa
       out += paint.gutter("...") + "\n";
     previous = number;
     previous_file = file_key;
-    ShownLine const line = shown(source.line(number, file));
+    std::uint32_t const line_begin = source.line_begin(number, file);
+    ShownLine const line = shown(source.line(number, file), labels.front().first->span.begin - line_begin);
     out += fmt::format("{} {}\n", paint.gutter(fmt::format("{:>{}} |", number, digits)), line.text);
     std::vector<Mark> marks;
-    for (auto const& [label, primary] : labels) marks.push_back(mark_on(*label, primary, source.line_begin(number, file), line));
+    for (auto const& [label, primary] : labels) marks.push_back(mark_on(*label, primary, line_begin, line));
     for (std::string const& row : mark_rows(std::move(marks), diagnostic.severity, paint))
       out += fmt::format("{} {}\n", paint.gutter(fmt::format("{:>{}} |", "", digits)), row);
   }
@@ -209,9 +239,9 @@ std::string render(Diagnostic const& diagnostic, Source const& source, bool colo
   std::string kind(word(diagnostic.severity));
   if (!diagnostic.code.empty()) kind += fmt::format("[{}]", diagnostic.code);
   std::string out = fmt::format("{}{}{}: {}\n", paint("1", where), where.empty() ? "" : ": ",
-                                paint.severity(diagnostic.severity, kind), paint("1", diagnostic.message));
+                                paint.severity(diagnostic.severity, kind), paint("1", shortened(diagnostic.message)));
   if (diagnostic.primary) out += excerpt(diagnostic, source, paint);
-  if (!diagnostic.help.empty()) out += fmt::format("{} {}\n", paint("1;32", "help:"), diagnostic.help);
+  if (!diagnostic.help.empty()) out += fmt::format("{} {}\n", paint("1;32", "help:"), shortened(diagnostic.help));
   if (!diagnostic.code.empty()) out += fmt::format("{} sysid explain {}\n", paint("1", "more:"), diagnostic.code);
   return out;
 }
@@ -240,7 +270,7 @@ std::string render_json(Diagnostic const& diagnostic, Source const& source) {
                                     {"end_column", end.column},
                                     {"begin", label.span.begin - file_begin},
                                     {"end", label.span.end - file_begin},
-                                    {"label", label.text}};
+                                    {"label", shortened(label.text)}};
     if (begin.file != file) place["file"] = source.name(begin.file);
     return place;
   };
@@ -248,11 +278,11 @@ std::string render_json(Diagnostic const& diagnostic, Source const& source) {
   out["file"] = source.name(file);
   out["severity"] = word(diagnostic.severity);
   out["code"] = diagnostic.code;
-  out["message"] = diagnostic.message;
+  out["message"] = shortened(diagnostic.message);
   out["primary"] = diagnostic.primary ? place_of(*diagnostic.primary) : nlohmann::ordered_json(nullptr);
   out["secondary"] = nlohmann::ordered_json::array();
   for (Label const& label : diagnostic.secondary) out["secondary"].push_back(place_of(label));
-  out["help"] = diagnostic.help;
+  out["help"] = shortened(diagnostic.help);
   // The user's text may hold any bytes: what is not UTF-8 is replaced, never thrown at the user.
   return out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

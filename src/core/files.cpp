@@ -74,15 +74,15 @@ void flush_folder(std::filesystem::path const& folder) {
 
 }  // namespace
 
-std::string read_file(std::filesystem::path const& path) {
+std::string read_file(std::filesystem::path const& path, std::size_t most) {
   int const descriptor = open_file(path, O_RDONLY);
   if (descriptor < 0) fail("read", path, errno);
   std::string bytes;
   struct stat facts = {};
-  if (::fstat(descriptor, &facts) == 0 && facts.st_size > 0) bytes.reserve(static_cast<std::size_t>(facts.st_size));
+  if (::fstat(descriptor, &facts) == 0 && facts.st_size > 0) bytes.reserve(std::min(most, static_cast<std::size_t>(facts.st_size)));
   char buffer[1 << 16];
   int error = 0;
-  for (;;) {
+  while (bytes.size() < most) {
     ssize_t const got = ::read(descriptor, buffer, sizeof buffer);
     if (got == 0) break;
     if (got > 0) {

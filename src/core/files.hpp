@@ -1,6 +1,8 @@
 // Files read whole and written whole: a reader never sees half a file, a failed write leaves the old one and names the reason.
 #pragma once
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,8 +12,9 @@ namespace sysid {
 /// Paths of the files beside `path`, spelt as it is, in order: for "did you mean".
 std::vector<std::string> files_beside(std::filesystem::path const& path);
 
-/// The bytes of a file. IoError "cannot read `PATH`: reason" otherwise.
-std::string read_file(std::filesystem::path const& path);
+/// The bytes of a file; of one that holds `most` or more (a device may have no end), at least the first `most`. IoError
+/// "cannot read `PATH`: reason" otherwise.
+std::string read_file(std::filesystem::path const& path, std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Writes `bytes` under a temporary name in the same folder (PATH.partial), flushes them to the disk and renames: `path` holds
 /// either the old bytes or all of the new. On failure the temporary file is removed and IoError "cannot write `PATH`: reason" is

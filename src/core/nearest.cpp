@@ -44,7 +44,8 @@ std::vector<std::string> nearest(std::string_view text, std::vector<std::string>
     int const cutoff = longer < 2 ? 0 : longer < 5 ? 1 : longer < 9 ? 2 : 3;
     std::string const lower_name = lower(name);
     // Differences in capitals cost nothing unless everything else is equal.
-    int const distance = edit_distance(lower_text, lower_name);
+    std::size_t const surplus = longer - std::min(text.size(), name.size());  // as many edits at least
+    int const distance = surplus > static_cast<std::size_t>(cutoff) ? cutoff + 1 : edit_distance(lower_text, lower_name);
     if (distance <= cutoff)
       near.emplace_back(distance, name);
     else if (text.size() >= 3 && lower_name.starts_with(lower_text))

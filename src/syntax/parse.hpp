@@ -1,5 +1,6 @@
 // Text to syntax tree. Implemented in grammar/, the only folder that knows Boost.Spirit.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,9 @@
 #include "syntax/ast.hpp"
 
 namespace sysid {
+
+/// More is refused: what is written by hand stays far below, and all that the stages do is bounded by it.
+inline constexpr std::size_t most_text_bytes = 1'000'000;
 
 /// The tree of a whole file, or nothing when anything was reported. Up to 20 independent syntax errors (E1...); never throws on any
 /// bytes.

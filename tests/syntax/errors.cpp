@@ -63,6 +63,7 @@ TEST_CASE("an example shows its own code first, and every code has an example") 
       CHECK_MESSAGE(content(path.string().substr(0, path.string().size() - 6) + ".expected").find(code) != std::string::npos, path);
   }
   codes.insert("E1123");  // its example would hold thousands of operators; tested below
+  codes.insert("E1126");  // a million bytes
   std::string const wording = content(std::filesystem::path(SYSID_SOURCE_DIR) / "grammar/errors.cpp");
   for (std::size_t at = wording.find("\"E1"); at != std::string::npos; at = wording.find("\"E1", at + 1))
     CHECK_MESSAGE(codes.contains(wording.substr(at + 1, 5)), wording.substr(at + 1, 5));
@@ -121,4 +122,21 @@ TEST_CASE("an expression alone reports what follows it") {
   Diagnostics empty;
   CHECK_FALSE(parse_expression(Source("--set", ""), empty).has_value());
   CHECK(empty.all().at(0).message == "expected a value but found the end of the file");
+}
+
+TEST_CASE("a million bytes are read, one more is refused") {
+  std::string const text = "use hysteresis";
+  CHECK(messages(text + std::string(1'000'000 - text.size(), ' ')).empty());
+  CHECK(messages(text + std::string(1'000'001 - text.size(), ' ')).find("error[E1126]: the text is longer than 1000000 bytes") !=
+        std::string::npos);
+}
+
+TEST_CASE("a message shows of a very long line what lies around the mark") {
+  std::string const blanks(5000, ' ');
+  std::string const shown = messages("use hysteresis;" + blanks + "use ;" + blanks + "use damping");
+  CHECK(shown.find("^") != std::string::npos);
+  CHECK(shown.find(" ... ") != std::string::npos);
+  CHECK(shown.size() < 2000);
+  CHECK(shown.find("use ;") != std::string::npos);
+  CHECK(shown.find("damping") == std::string::npos);
 }

@@ -40,6 +40,7 @@ ast::Expression as_expression(Array array, Span span);
 class ArrayAlgebra {
  public:
   ArrayAlgebra(Diagnostics& diagnostics, std::size_t most_nodes) : diagnostics_(diagnostics), left_(most_nodes) {}
+  std::size_t left() const { return left_; }
 
   /// Nothing, with a diagnostic, when the shapes do not fit.
   std::optional<Array> unary(std::string const& symbol, Array operand, Span span);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "check/elaborate/candidates.hpp"
 #include "check/elaborate/errors.hpp"
@@ -14,6 +15,9 @@
 
 namespace sysid {
 namespace {
+
+// All models together, each with each of its arguments.
+constexpr std::size_t most_nodes_of_file = 2'000'000;
 
 class Elaborator {
  public:
@@ -69,7 +73,9 @@ class Elaborator {
       if (!part.model.home->from_library) made_of.push_back(request(part, true));
     bool const sound = std::none_of(made_of.begin(), made_of.end(),
                                     [&](std::string const& each) { return result_.lineage.failed.contains(each); });
-    auto flat = sound ? flatten(instance, diagnostics_) : std::nullopt;
+    if (left_ == 0 && !result_.lineage.failed.contains(name) && !std::exchange(said_too_large_, true))
+      diagnostics_.add(errors::models_too_large(instance.model.tree->name.span));
+    auto flat = sound && left_ > 0 ? flatten(instance, left_, diagnostics_) : std::nullopt;
     if (flat) {
       flat->tree.name.text = name;
       result_.tree.items.emplace_back(std::move(flat->tree));
@@ -239,6 +245,8 @@ class Elaborator {
   Diagnostics& diagnostics_;
   Environments environments_;
   Elaborated result_;
+  std::size_t left_ = most_nodes_of_file;
+  bool said_too_large_ = false;
   std::set<std::string> made_;
   std::map<ast::Model const*, std::string> first_instance_;
   std::map<std::string, std::map<std::string, Shape>> shapes_;

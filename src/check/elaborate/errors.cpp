@@ -79,6 +79,11 @@ Diagnostic model_too_large(Span span) {
                "make vectors and matrices smaller, or nest fewer parts and functions");
 }
 
+Diagnostic models_too_large(Span span) {
+  return error("E2709", span, "written out in numbers, the models of this file are too large to be handled together",
+               "begin another file from here on, or use fewer models with large arguments");
+}
+
 Diagnostic part_cycle(Span span, Names const& loop) {
   return error("E2801", span, fmt::format("this model is a part of itself: {}", fmt::join(loop, " -> ")),
                "break the loop; what both need is a third model");

@@ -21,6 +21,7 @@ Diagnostic index_out_of_range(Span span, std::string const& name, Shape const& s
 Diagnostic index_count(Span span, std::string const& name, Shape const& shape, std::size_t given);
 Diagnostic array_arguments(ast::Name const& function, std::size_t given, std::string const& usage);
 Diagnostic model_too_large(Span span);
+Diagnostic models_too_large(Span span);
 
 // models inside models (E28)
 Diagnostic part_cycle(Span span, Names const& loop);

@@ -15,15 +15,19 @@ namespace {
 
 // Enough for two thousand terms in each of a hundred equations; some tens of megabytes.
 constexpr std::size_t most_nodes = 400'000;
+constexpr std::size_t nodes_of_a_model = 100;  // what one costs that says nothing
 // Solving for the highest derivatives takes work with the cube of their number.
 constexpr std::size_t most_states = 200;
+constexpr std::size_t most_states_written_out = 500;
 
 class Flattener {
  public:
-  Flattener(Instance const& instance, Diagnostics& diagnostics)
-      : diagnostics_(diagnostics), before_(diagnostics.all().size()), evaluator_(diagnostics, most_nodes) {
+  Flattener(Instance const& instance, std::size_t most, Diagnostics& diagnostics)
+      : diagnostics_(diagnostics), before_(diagnostics.all().size()), evaluator_(diagnostics, most) {
     root_ = FrameBuilder(diagnostics).build(instance);
   }
+
+  std::size_t left() { return evaluator_.algebra().left(); }
 
   std::optional<FlatModel> run() {
     ast::Model const& model = root_->model();
@@ -138,7 +142,7 @@ class Flattener {
     states_ += flat.names.size();
     // A user who writes every name has the patience for it; what vectors and parts make in a few lines is bounded.
     bool const written_out = frame.outer == nullptr && flat.names.size() == states.names.size();
-    if (states_ > most_states && !written_out)
+    if (states_ > (written_out ? most_states_written_out : most_states))
       evaluator_.algebra().refuse(states.span);
     else
       add(std::move(flat), states.span);
@@ -339,8 +343,12 @@ std::vector<Instance> parts_of(Instance const& instance) {
   return instances;
 }
 
-std::optional<FlatModel> flatten(Instance const& instance, Diagnostics& diagnostics) {
-  return Flattener(instance, diagnostics).run();
+std::optional<FlatModel> flatten(Instance const& instance, std::size_t& left, Diagnostics& diagnostics) {
+  std::size_t const most = std::min(most_nodes, left);
+  Flattener flattener(instance, most, diagnostics);
+  auto model = flattener.run();
+  left -= std::min(left, most - flattener.left() + nodes_of_a_model);
+  return model;
 }
 
 }  // namespace sysid

@@ -33,7 +33,7 @@ struct FlatModel {
 /// The instances of the model's parts, parts of parts included; what is wrong with them is left to `flatten`.
 std::vector<Instance> parts_of(Instance const& instance);
 
-/// Nothing when a diagnostic was added.
-std::optional<FlatModel> flatten(Instance const& instance, Diagnostics& diagnostics);
+/// Nothing when a diagnostic was added. left: nodes of expressions that the models of a file may still be written out into.
+std::optional<FlatModel> flatten(Instance const& instance, std::size_t& left, Diagnostics& diagnostics);
 
 }  // namespace sysid

@@ -13,6 +13,7 @@ namespace {
 
 constexpr long most_elements = 10000;
 constexpr std::size_t most_frames = 1000;
+constexpr std::size_t most_depth = 50;
 
 }  // namespace
 
@@ -151,15 +152,19 @@ void FrameBuilder::add_part(Frame& frame, ast::Part const& part) {
     return;
   }
   errors::Names loop = {model->second.tree->name.text};
+  std::size_t depth = 1;
   for (Frame const* outer = &frame; outer != nullptr; outer = outer->outer) {
+    ++depth;
     loop.push_back(outer->model().name.text);
     if (&outer->model() != model->second.tree) continue;
     std::reverse(loop.begin(), loop.end());
     diagnostics_.add(errors::part_cycle(part.model.function.span, loop));
     return;
   }
-  if (++frames_ > most_frames) {
-    if (frames_ == most_frames + 1) diagnostics_.add(errors::model_too_large(part.name.span));
+  if (too_large_) return;
+  if (++frames_ > most_frames || depth > most_depth) {
+    too_large_ = true;
+    diagnostics_.add(errors::model_too_large(part.name.span));
     return;
   }
   auto arguments =

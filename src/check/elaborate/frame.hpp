@@ -62,6 +62,7 @@ class FrameBuilder {
 
   Diagnostics& diagnostics_;
   std::size_t frames_ = 0;
+  bool too_large_ = false;  // and said so
 };
 
 /// Expressions of a model in terms of numbers.
