@@ -9,33 +9,12 @@
 #include "syntax/unparse.hpp"
 
 namespace sysid {
-namespace {
-
-std::string value_text(SettingValue const& value) {
-  return std::visit(
-      [](auto const& v) -> std::string {
-        using Value = std::decay_t<decltype(v)>;
-        if constexpr (std::is_same_v<Value, std::int64_t>)
-          return fmt::format("{}", v);
-        else if constexpr (std::is_same_v<Value, double>)
-          return shortest(v);
-        else if constexpr (std::is_same_v<Value, bool>)
-          return v ? "yes" : "no";
-        else if constexpr (std::is_same_v<Value, std::vector<double>>)
-          return numbers_text(v);
-        else
-          return v;
-      },
-      value);
-}
-
-}  // namespace
-
 std::string settings_text(std::string const& backend, Settings const& settings) {
   std::string arguments;
   for (auto const& [name, value] : settings.all()) {
-    if (auto const* numbers = std::get_if<std::vector<double>>(&value); numbers != nullptr && numbers->empty()) continue;
-    arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, value_text(value));
+    auto const* list = std::get_if<std::vector<double>>(&value);
+    if (list == nullptr || !list->empty())  // an empty list has no text
+      arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, setting_text(value));
   }
   return arguments.empty() ? backend : fmt::format("{}({})", backend, arguments);
 }
