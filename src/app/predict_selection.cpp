@@ -50,11 +50,16 @@ class PredictSelection {
 
   ExitCode run() {
     if (what_.redraw_each_step)
-      throw UserError({Severity::error, "E6403", "parameters cannot be redrawn at each step where models differ", Label{task_.span, {}},
-                       {}, "leave `redraw = step` out"});
-    std::size_t const lead = static_cast<std::size_t>(
-        std::max_element(candidates_.begin(), candidates_.end(), [](auto const& a, auto const& b) { return a.probability < b.probability; }) -
-        candidates_.begin());
+      throw UserError({Severity::error,
+                       "E6403",
+                       "parameters cannot be redrawn at each step where models differ",
+                       Label{task_.span, {}},
+                       {},
+                       "leave `redraw = step` out"});
+    std::size_t const lead =
+        static_cast<std::size_t>(std::max_element(candidates_.begin(), candidates_.end(),
+                                                  [](auto const& a, auto const& b) { return a.probability < b.probability; }) -
+                                 candidates_.begin());
     std::vector<int> const counts = shares(candidates_, what_.draws);
     Report report = begin_report(session_, task_, select_.fits[lead].model,
                                  fmt::format("predict {} on {} with draws({})", select_task_.name,
@@ -123,12 +128,13 @@ class PredictSelection {
       report.findings.push_back({Severity::note, "averaged_over_models", fmt::format("trajectories: {}", of_models), ""});
     report.findings.push_back({Severity::note, "without_noise",
                                "the bands are of the response alone: a selection by distance says nothing about the noise", ""});
+    all.noisy.resize(leading_model->channels.size());  // none
     report.predictions.push_back(bands_along(*leading, all, experiment, *leading_model));
     if (all.failed > 0)
-      report.findings.push_back({all.failed * 5 > what_.draws ? Severity::error : Severity::warning, "failed_predictions",
-                                 fmt::format("{} of {} trajectories do not stay finite and are left out of the bands", all.failed,
-                                             what_.draws),
-                                 "the posterior reaches where a model diverges on this input"});
+      report.findings.push_back(
+          {all.failed * 5 > what_.draws ? Severity::error : Severity::warning, "failed_predictions",
+           fmt::format("{} of {} trajectories do not stay finite and are left out of the bands", all.failed, what_.draws),
+           "the posterior reaches where a model diverges on this input"});
     return all.failed;
   }
 

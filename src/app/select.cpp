@@ -69,8 +69,12 @@ class Select {
   ExitCode run() {
     SelectorRow const& selector = *find_selector(what_.backend);
     if (std::string const why = selector.refuse(what_.settings); !why.empty())
-      throw UserError({Severity::error, "E6203", fmt::format("these settings of `{}` do not go together: {}", selector.name, why),
-                       Label{task_.span, {}}, {}, "change one of them"});
+      throw UserError({Severity::error,
+                       "E6203",
+                       fmt::format("these settings of `{}` do not go together: {}", selector.name, why),
+                       Label{task_.span, {}},
+                       {},
+                       "change one of them"});
     ModelSelectionTarget const target = make_target(false);
     RunContext context{seed_,
                        session_.progress,
@@ -334,7 +338,8 @@ class Select {
       Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
                                   session_.options.execution);
       Trajectory::Result result = trajectory.run(parameters, prediction_noise(seed_, static_cast<int>(e)));
-      if (candidate.space->dimension() != candidate.simulated->dimension()) result.noisy.clear();  // the noise has no particles
+      if (candidate.space->dimension() != candidate.simulated->dimension())
+        std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
       report.predictions.push_back(bands_along(trajectory, result, experiment, candidate.compiled->model));
     }
   }

@@ -39,9 +39,9 @@ class Session {
   CheckedFile const& file;
   RunOptions const& options;
   Progress& progress;
-  std::ostream& out;                  // summaries
-  std::ostream& notices;              // one line each: what was chosen, what was written
-  std::map<int, FittedModel> fitted;  // by index of the fit task
+  std::ostream& out;                                       // summaries
+  std::ostream& notices;                                   // one line each: what was chosen, what was written
+  std::map<int, FittedModel> fitted;                       // by index of the fit task
   std::map<int, std::vector<SelectedCandidate>> selected;  // by index of the select task
 
   /// The folder of the .sysid file, from which data paths are relative.

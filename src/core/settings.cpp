@@ -144,9 +144,4 @@ bool Settings::flag(std::string const& name) const {
   throw InternalError(fmt::format("setting `{}` is not true or false", name));
 }
 
-std::vector<double> const& Settings::numbers(std::string const& name) const {
-  if (auto const* const value = std::get_if<std::vector<double>>(&at(name))) return *value;
-  throw InternalError(fmt::format("setting `{}` is not a list of numbers", name));
-}
-
 }  // namespace sysid
