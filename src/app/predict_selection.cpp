@@ -51,7 +51,7 @@ class PredictSelection {
   ExitCode run() {
     if (what_.redraw_each_step)
       throw UserError({Severity::error,
-                       "E6403",
+                       "E6519",
                        "parameters cannot be redrawn at each step where models differ",
                        Label{task_.span, {}},
                        {},

@@ -31,22 +31,48 @@ std::string start_text(StartRule start) {
   return "?";
 }
 
-std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
-                         SolverSettings const& solver, std::uint64_t seed) {
-  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
+namespace {
+
+// The file as written, without its tasks.
+std::string without_tasks(Session const& session) {
   Diagnostics ignored;
   auto tree = parse(session.source, ignored);
   if (!tree) throw InternalError("a checked file does not parse again");
   std::erase_if(tree->items, [](ast::Item const& item) { return std::holds_alternative<ast::Task>(item); });
+  return unparse(*tree);
+}
+
+// What a fit says of its simulations.
+std::string simulation_text(Model const& model, FitTask const& what, SolverSettings const& solver) {
+  return fmt::format("start = {}{}{}", start_text(what.start), model.integrated() ? ", solver = " + solver.text() : std::string(),
+                     what.prediction == PredictionRule::as_written
+                         ? std::string()
+                         : fmt::format(", prediction = {}", prediction_name(what.prediction)));
+}
+
+}  // namespace
+
+std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
+                         SolverSettings const& solver, std::uint64_t seed) {
+  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
-      "start = {}{}{}, seed = {}\n",
-      task.name, unparse(*tree), task.name, model.name, data_names(session.file, what.experiments),
-      settings_text(what.backend, settings), start_text(what.start),
-      model.integrated() ? ", solver = " + solver.text() : std::string(),
-      what.prediction == PredictionRule::as_written ? std::string()
-                                                    : fmt::format(", prediction = {}", prediction_name(what.prediction)),
-      seed);
+      "{}, seed = {}\n",
+      task.name, without_tasks(session), task.name, model.name, data_names(session.file, what.experiments),
+      settings_text(what.backend, settings), simulation_text(model, what, solver), seed);
+}
+
+std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed) {
+  FitTask const& first = what.fits.front();
+  std::string weights;
+  for (std::size_t c = 0; c < what.distance.channels.size(); ++c)
+    weights += fmt::format("{}{} = {}", c == 0 ? "" : ", ", what.distance.channels[c], what.distance.weights[c]);
+  return fmt::format(
+      "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = select {} to {} with {}, "
+      "distance = {}, weights({}), {}, seed = {}\n",
+      task.name, without_tasks(session), task.name, session.file.candidates[static_cast<std::size_t>(what.candidates)].name,
+      data_names(session.file, first.experiments), settings_text(what.backend, what.settings), what.distance.text, weights,
+      simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first, first.solver), seed);
 }
 
 }  // namespace sysid

@@ -89,7 +89,7 @@ class Select {
     SelectionResult result = selector.run(target, what_.settings, context);
     if (result.failure)
       throw UserError({Severity::error,
-                       result.failure->code == "no_population" ? "E6402" : "E6206",
+                       result.failure->code == "no_population" ? "E6518" : "E6206",
                        result.failure->message,
                        Label{task_.span, {}},
                        {},
@@ -246,6 +246,15 @@ class Select {
                           "none of the models is the right one"});
   }
 
+  Settings polish_settings() const {
+    Settings settings(mh::settings());
+    std::int64_t const samples = what_.settings.integer("polish_samples");
+    settings.set("samples", samples);
+    settings.set("burn_in", samples / 5);
+    settings.set("thin", std::max<std::int64_t>(1, samples / 2500));
+    return settings;
+  }
+
   /// Chains on the exact likelihood, from the modes that the particles lead to.
   void polish(std::vector<std::vector<Mode>> const& modes, SelectionReport& selection, Findings& findings) {
     selection.polished.resize(candidates_.size());
@@ -256,7 +265,7 @@ class Select {
       auto const target = likelihood_target(k);
       Ledger extra;
       RunContext context{seed_, session_.progress, extra, [this] { return session_.interrupted(); }, {}, 60, {}, modes[k], {}};
-      FitResult chains = mh::run(*target, Settings(mh::settings()), context);
+      FitResult chains = mh::run(*target, polish_settings(), context);
       if (chains.failure || chains.interrupted || chains.draws.total() == 0) {
         findings.push_back({Severity::warning, "not_polished",
                             fmt::format("`{}` was not polished: {}", model.name,
@@ -378,16 +387,18 @@ class Select {
     if (interrupted)
       report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: this is its last whole population",
                                  "go on with --resume; it ends with the bytes of an unbroken run"});
-    report.findings.push_back(
-        {Severity::note, "width_of_threshold",
-         "the sd of particles is the width that the threshold leaves around the posterior, not that of the posterior itself",
-         polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
+    report.findings.push_back({Severity::note, "width_of_threshold",
+                               "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
+                               "after an early stop, smaller "
+                               "after a late one",
+                               polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
     if (!interrupted) add_predictions(selection, report);
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : selection.result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("distance", selection.distance);
     report.settings.emplace_back("start_state", start_text(first.fit->start));
     if (first.compiled->model.integrated()) add_solver(first.fit->solver, report.settings);
+    report.resolved_text = resolved_select(session_, task_, what_, seed_);
     report.ledger = ledger_;
     report.tables = selection_tables(selection);
     report.verdict = headline(selection, report.findings);

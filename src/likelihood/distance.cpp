@@ -64,7 +64,7 @@ Distance::Distance(Model const& model, DistanceMeasure const& measure, std::span
     double const weight = count > 0 ? measure.weights[c] : 0;
     if (kind_ == DistanceKind::nmse && weight > 0 && !(spread > 0))
       throw UserError({Severity::error,
-                       "E6401",
+                       "E6517",
                        fmt::format("channel `{}` does not vary in the scored rows, so there is no NMSE", model.channels[c].name),
                        std::nullopt,
                        {},

@@ -31,7 +31,7 @@ std::shared_ptr<SimulationProgram const> compile_distance(CompiledModel const& c
 /// Turns channel sums into the distance. Grows with each of them, so a part of the sums gives a lower bound.
 class Distance {
  public:
-  /// UserError E6401 when a channel does not vary in the data: it has no NMSE.
+  /// UserError E6517 when a channel does not vary in the data: it has no NMSE.
   Distance(Model const& model, DistanceMeasure const& measure, std::span<Schedule const* const> experiments);
   /// sums: per channel, over all experiments, SI.
   double operator()(std::span<double const> sums) const;

@@ -76,8 +76,7 @@ ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
   SelectedModel const& model = selection.result.models[m];
   bool const polished = m < selection.polished.size() && !selection.polished[m].empty();
   ReportTable table{"parameters of " + model.name,
-                    "The sd of particles is the width that the threshold leaves, not that of the posterior; it is the larger of "
-                    "the two.",
+                    "The sd of particles is the width that the threshold leaves, not that of the posterior.",
                     {"", "unit", "mean", "sd", "q5", "median", "q95"},
                     {}};
   if (polished) table.header.push_back("from");

@@ -37,6 +37,8 @@ constexpr SettingRow rows[] = {
     {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after so many"},
     {"cross_check", SettingKind::flag, "true", 0, 0, "", "set Laplace's model probabilities from the likelihood beside these"},
     {"polish", SettingKind::flag, "false", 0, 0, "", "go on from the particles with Metropolis-Hastings on the likelihood"},
+    {"polish_samples", SettingKind::integer, "25000", 100, 1e12, "",
+     "iterations of each of its four chains, a fifth of them burn-in"},
 };
 
 }  // namespace
