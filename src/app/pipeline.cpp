@@ -13,8 +13,8 @@
 #include "app/session.hpp"
 #include "check/check.hpp"
 #include "check/independent.hpp"
-#include "inference/abc/settings.hpp"
 #include "inference/backend.hpp"
+#include "inference/selector.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "model/dump.hpp"
 #include "syntax/parse.hpp"
@@ -29,7 +29,11 @@ std::vector<BackendSettings> backend_settings() {
   return rows;
 }
 
-std::vector<BackendSettings> selector_settings() { return {{"abc_smc", abc::settings()}}; }
+std::vector<BackendSettings> selector_settings() {
+  std::vector<BackendSettings> rows;
+  for (SelectorRow const& row : selectors()) rows.push_back({row.name, row.settings});
+  return rows;
+}
 
 std::string verb_of(Task const& task) {
   return std::holds_alternative<SimulateTask>(task.what) ? "simulate"
@@ -43,15 +47,6 @@ std::string dump(CandidateSet const& set) {
   for (CandidateModel const& each : set.models) text += fmt::format("  {} probability {}\n", each.name, each.probability);
   if (!set.shared.empty()) text += fmt::format("  shared {}\n", fmt::join(set.shared, ", "));
   return text;
-}
-
-UserError selection_without_backend(Task const& task, SelectTask const& what) {
-  return UserError({Severity::error,
-                    "E6008",
-                    fmt::format("there is no back end `{}` in this program", what.backend),
-                    Label{task.span, {}},
-                    {},
-                    "fit each candidate with `mh`"});
 }
 
 // Names of the file in a task that it could have, so that the line can be copied.
@@ -163,9 +158,9 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
           else if constexpr (std::is_same_v<What, FitTask>)
             return run_fit(session, static_cast<int>(i), task, what);
           else if constexpr (std::is_same_v<What, SelectTask>)
-            throw selection_without_backend(task, what);
-          else if (auto const* selection = std::get_if<SelectTask>(&file.tasks[static_cast<std::size_t>(what.fit)].what))
-            throw selection_without_backend(task, *selection);
+            return run_select(session, static_cast<int>(i), task, what);
+          else if (std::holds_alternative<SelectTask>(file.tasks[static_cast<std::size_t>(what.fit)].what))
+            return run_predict_selection(session, task, what);
           else
             return run_predict(session, task, what);
         },

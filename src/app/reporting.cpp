@@ -56,6 +56,23 @@ std::vector<ExperimentUse> const& experiments_of(Task const& task) {
 
 }  // namespace
 
+namespace {
+
+// Of the models that a task is about: one, or all candidates.
+std::string task_digest(Session const& session, Task const& task, std::string const& model) {
+  Task const* subject = &task;
+  if (auto const* prediction = std::get_if<PredictTask>(&task.what))
+    subject = &session.file.tasks[static_cast<std::size_t>(prediction->fit)];
+  auto const* selection = std::get_if<SelectTask>(&subject->what);
+  if (selection == nullptr) return model_digest(session, model);
+  std::string all;
+  for (FitTask const& fit : selection->fits)
+    all += model_digest(session, session.file.models[static_cast<std::size_t>(fit.model)].name);
+  return sha256(all);
+}
+
+}  // namespace
+
 Report begin_report(Session const& session, Task const& task, int model_index, std::string what, std::uint64_t seed) {
   Report report;
   report.version = SYSID_VERSION;
@@ -67,7 +84,7 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   report.model_title = model.title;
   report.versions = {{"sysid", std::string(SYSID_VERSION)},
                      {"random_numbers", std::string("Philox4x64-10")},
-                     {"model_sha256", model_digest(session, model.name)}};
+                     {"model_sha256", task_digest(session, task, model.name)}};
   ast::Model const* flat = find_model(session.file.tree, model.name);
   if (flat == nullptr) return report;
   report.model_text = std::string(session.source.text(flat->span));
@@ -116,7 +133,7 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   };
   if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
   std::string const& name = session.file.models[static_cast<std::size_t>(model)].name;
-  if (summary["versions"].value("model_sha256", "") != model_digest(session, name)) return refuse("text of model `" + name + "`");
+  if (summary["versions"].value("model_sha256", "") != task_digest(session, task, name)) return refuse("text of model `" + name + "`");
   std::vector<ExperimentUse> const& experiments = experiments_of(task);
   auto const stored = summary.value("data", nlohmann::json::array());
   if (stored.size() != experiments.size()) return refuse("set of experiments");

@@ -9,33 +9,12 @@
 #include "syntax/unparse.hpp"
 
 namespace sysid {
-namespace {
-
-std::string value_text(SettingValue const& value) {
-  return std::visit(
-      [](auto const& v) -> std::string {
-        using Value = std::decay_t<decltype(v)>;
-        if constexpr (std::is_same_v<Value, std::int64_t>)
-          return fmt::format("{}", v);
-        else if constexpr (std::is_same_v<Value, double>)
-          return shortest(v);
-        else if constexpr (std::is_same_v<Value, bool>)
-          return v ? "yes" : "no";
-        else if constexpr (std::is_same_v<Value, std::vector<double>>)
-          return numbers_text(v);
-        else
-          return v;
-      },
-      value);
-}
-
-}  // namespace
-
 std::string settings_text(std::string const& backend, Settings const& settings) {
   std::string arguments;
   for (auto const& [name, value] : settings.all()) {
-    if (auto const* numbers = std::get_if<std::vector<double>>(&value); numbers != nullptr && numbers->empty()) continue;
-    arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, value_text(value));
+    auto const* list = std::get_if<std::vector<double>>(&value);
+    if (list == nullptr || !list->empty())  // an empty list has no text
+      arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, setting_text(value));
   }
   return arguments.empty() ? backend : fmt::format("{}({})", backend, arguments);
 }
@@ -52,22 +31,48 @@ std::string start_text(StartRule start) {
   return "?";
 }
 
-std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
-                         SolverSettings const& solver, std::uint64_t seed) {
-  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
+namespace {
+
+// The file as written, without its tasks.
+std::string without_tasks(Session const& session) {
   Diagnostics ignored;
   auto tree = parse(session.source, ignored);
   if (!tree) throw InternalError("a checked file does not parse again");
   std::erase_if(tree->items, [](ast::Item const& item) { return std::holds_alternative<ast::Task>(item); });
+  return unparse(*tree);
+}
+
+// What a fit says of its simulations.
+std::string simulation_text(Model const& model, FitTask const& what, SolverSettings const& solver) {
+  return fmt::format("start = {}{}{}", start_text(what.start), model.integrated() ? ", solver = " + solver.text() : std::string(),
+                     what.prediction == PredictionRule::as_written
+                         ? std::string()
+                         : fmt::format(", prediction = {}", prediction_name(what.prediction)));
+}
+
+}  // namespace
+
+std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
+                         SolverSettings const& solver, std::uint64_t seed) {
+  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
-      "start = {}{}{}, seed = {}\n",
-      task.name, unparse(*tree), task.name, model.name, data_names(session.file, what.experiments),
-      settings_text(what.backend, settings), start_text(what.start),
-      model.integrated() ? ", solver = " + solver.text() : std::string(),
-      what.prediction == PredictionRule::as_written ? std::string()
-                                                    : fmt::format(", prediction = {}", prediction_name(what.prediction)),
-      seed);
+      "{}, seed = {}\n",
+      task.name, without_tasks(session), task.name, model.name, data_names(session.file, what.experiments),
+      settings_text(what.backend, settings), simulation_text(model, what, solver), seed);
+}
+
+std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed) {
+  FitTask const& first = what.fits.front();
+  std::string weights;
+  for (std::size_t c = 0; c < what.distance.channels.size(); ++c)
+    weights += fmt::format("{}{} = {}", c == 0 ? "" : ", ", what.distance.channels[c], what.distance.weights[c]);
+  return fmt::format(
+      "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = select {} to {} with {}, "
+      "distance = {}, weights({}), {}, seed = {}\n",
+      task.name, without_tasks(session), task.name, session.file.candidates[static_cast<std::size_t>(what.candidates)].name,
+      data_names(session.file, first.experiments), settings_text(what.backend, what.settings), what.distance.text, weights,
+      simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first, first.solver), seed);
 }
 
 }  // namespace sysid

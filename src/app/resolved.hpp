@@ -7,6 +7,8 @@ namespace sysid {
 std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
                          SolverSettings const& solver, std::uint64_t seed);
 
+std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed);
+
 /// "mh(samples = 25000, ...)", every setting in the order of the table.
 std::string settings_text(std::string const& backend, Settings const& settings);
 

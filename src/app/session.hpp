@@ -23,6 +23,12 @@ struct FittedModel {
   SolverSettings solver;
 };
 
+/// What a selection leaves: per candidate its probability and particles of equal weight (parameters that the simulation reads).
+struct SelectedCandidate {
+  double probability = 0;
+  Draws draws;
+};
+
 class Session {
  public:
   Session(Source const& source, CheckedFile const& file, RunOptions const& options, Progress& progress, std::ostream& out,
@@ -33,9 +39,10 @@ class Session {
   CheckedFile const& file;
   RunOptions const& options;
   Progress& progress;
-  std::ostream& out;                  // summaries
-  std::ostream& notices;              // one line each: what was chosen, what was written
-  std::map<int, FittedModel> fitted;  // by index of the fit task
+  std::ostream& out;                                       // summaries
+  std::ostream& notices;                                   // one line each: what was chosen, what was written
+  std::map<int, FittedModel> fitted;                       // by index of the fit task
+  std::map<int, std::vector<SelectedCandidate>> selected;  // by index of the select task
 
   /// The folder of the .sysid file, from which data paths are relative.
   std::filesystem::path folder() const { return std::filesystem::path(source.name()).parent_path(); }
@@ -63,6 +70,9 @@ class Session {
 
 ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what);
 ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what);
+ExitCode run_select(Session& session, int index, Task const& task, SelectTask const& what);
 ExitCode run_predict(Session& session, Task const& task, PredictTask const& what);
+/// Of a selection: each candidate's particles as often as it is probable, the tutorial's (8.8).
+ExitCode run_predict_selection(Session& session, Task const& task, PredictTask const& what);
 
 }  // namespace sysid

@@ -14,7 +14,9 @@
 #include "app/solver_record.hpp"
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
+#include "likelihood/simulated_parameters.hpp"
 #include "report/csv.hpp"
+#include "report/selection.hpp"
 
 namespace sysid {
 namespace {
@@ -98,26 +100,73 @@ FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::st
   return fitted;
 }
 
-FittedModel const& fitted_model(Session& session, int fit) {
-  if (auto const place = session.fitted.find(fit); place != session.fitted.end()) return place->second;
-  Task const& task = session.file.tasks[static_cast<std::size_t>(fit)];
-  auto const folder = session.result_folder(task);
+namespace {
+
+/// The folder of a task's complete results; UserError when there are none or they are of another text.
+std::filesystem::path stored_results(Session& session, Task const& task, int model, std::string_view verb) {
+  auto folder = session.result_folder(task);
   if (!complete(folder))
     throw UserError({Severity::error,
                      "E6202",
                      fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
                      std::nullopt,
                      {},
-                     "run the fit first: sysid run FILE, or sysid fit FILE"});
-  if (auto wrong = stored_otherwise(session, task, std::get<FitTask>(task.what).model, std::nullopt)) {
+                     fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb)});
+  if (auto wrong = stored_otherwise(session, task, model, std::nullopt)) {
     wrong->code = "E6201";
     throw UserError(*wrong);
   }
-  FitTask const& what = std::get<FitTask>(task.what);
-  auto const space = parameter_space(session.file.models[static_cast<std::size_t>(what.model)], what.experiments);
+  return folder;
+}
+
+std::vector<std::string> names_of(ParameterSpace const& space) {
   std::vector<std::string> names;
-  for (ParameterInfo const& parameter : space->infos()) names.push_back(parameter.name);
-  return session.fitted[fit] = read_fitted(folder, names);
+  for (ParameterInfo const& parameter : space.infos()) names.push_back(parameter.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<SelectedCandidate> const& selected_candidates(Session& session, int select) {
+  if (auto const place = session.selected.find(select); place != session.selected.end()) return place->second;
+  Task const& task = session.file.tasks[static_cast<std::size_t>(select)];
+  SelectTask const& what = std::get<SelectTask>(task.what);
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
+  auto const folder = stored_results(session, task, what.fits.front().model, "select");
+  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  std::vector<SelectedCandidate> candidates;
+  for (std::size_t k = 0; k < set.models.size(); ++k) {
+    SelectedCandidate candidate;
+    std::string const& name = set.models[k].name;
+    if (!summary.is_object() || !summary.contains("models") || !summary["models"].contains(name))
+      throw UserError({Severity::error,
+                       "E6201",
+                       fmt::format("`{}` has no model `{}`", (folder / "summary.json").string(), name),
+                       std::nullopt,
+                       {},
+                       "run the selection again, with --force or another -o"});
+    candidate.probability = summary["models"][name].value("probability", 0.0);
+    auto const path = folder / fmt::format("draws_{}.csv", model_file_name(name));
+    if (std::filesystem::exists(path)) {
+      FitTask const& fit = what.fits[k];
+      auto const space =
+          parameter_space(without_noise_parameters(session.file.models[static_cast<std::size_t>(fit.model)]), fit.experiments);
+      candidate.draws.names = names_of(*space);
+      candidate.draws.parameter_count = static_cast<int>(candidate.draws.names.size());
+      candidate.draws.chains.push_back(read_chain(read_file(path), candidate.draws.names, path.string()));
+    }
+    candidates.push_back(std::move(candidate));
+  }
+  return session.selected[select] = std::move(candidates);
+}
+
+FittedModel const& fitted_model(Session& session, int fit) {
+  if (auto const place = session.fitted.find(fit); place != session.fitted.end()) return place->second;
+  Task const& task = session.file.tasks[static_cast<std::size_t>(fit)];
+  FitTask const& what = std::get<FitTask>(task.what);
+  auto const folder = stored_results(session, task, what.model, "fit");
+  auto const space = parameter_space(session.file.models[static_cast<std::size_t>(what.model)], what.experiments);
+  return session.fitted[fit] = read_fitted(folder, names_of(*space));
 }
 
 }  // namespace sysid

@@ -13,4 +13,7 @@ FittedModel const& fitted_model(Session& session, int fit);
 /// summary.json and draws_N.csv of a folder. parameters: names the draws must have, in order.
 FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::string> const& parameters);
 
+/// What a select task left, per candidate: from this run, else from its result folder. UserError as for a fit.
+std::vector<SelectedCandidate> const& selected_candidates(Session& session, int select);
+
 }  // namespace sysid

@@ -11,8 +11,8 @@
 #include "core/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
-#include "inference/abc/settings.hpp"
 #include "inference/backend.hpp"
+#include "inference/selector.hpp"
 
 namespace sysid {
 namespace {
@@ -52,8 +52,7 @@ std::string list(std::string const& topic) {
     for (SolverRow const& row : solvers()) text += with_settings(row.name, row.summary, row.settings);
   } else {
     for (BackendRow const& row : backends()) text += with_settings(row.name, row.summary, row.settings);
-    text +=
-        with_settings("abc_smc", "selection: sequential Monte Carlo without a likelihood, over candidate models", abc::settings());
+    for (SelectorRow const& row : selectors()) text += with_settings(row.name, row.summary, row.settings);
   }
   return text;
 }

@@ -19,6 +19,7 @@ enum class Purpose : std::uint32_t {
   test = 9,
   prediction = 10,  // measurement noise of predictions
   population = 11,  // parameters of an experiment that was not fitted, from their prior
+  particle = 12,    // proposals of populations of particles
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

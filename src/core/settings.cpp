@@ -1,7 +1,7 @@
 // Named settings: reading defaults from their table, and typed access.
 #include "core/settings.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -34,7 +34,7 @@ SettingValue fallback_value(SettingRow const& row) {
     case SettingKind::flag:
       return row.fallback == "true";
     case SettingKind::numbers:
-      return std::vector<double>();
+      return std::vector<double>{};
   }
   throw InternalError(fmt::format("setting `{}` has no kind", row.name));
 }
@@ -60,6 +60,20 @@ std::string allowed_range(SettingRow const& row) {
 
 }  // namespace
 
+std::string setting_text(SettingValue const& value) {
+  return std::visit(
+      [](auto const& v) -> std::string {
+        using Value = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<Value, bool>)
+          return v ? "yes" : "no";
+        else if constexpr (std::is_same_v<Value, std::vector<double>>)
+          return fmt::format("({})", fmt::join(v, ", "));
+        else
+          return fmt::format("{}", v);  // numbers: the shortest decimal that reads back as the same
+      },
+      value);
+}
+
 SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_view name) {
   for (SettingRow const& row : rows)
     if (row.name == name) return &row;
@@ -84,19 +98,13 @@ std::string refuse(SettingRow const& row, SettingValue const& value) {
     case SettingKind::flag:
       if (std::holds_alternative<bool>(value)) return {};
       return "it must be true or false";
-    case SettingKind::numbers: {
-      auto const* const numbers = std::get_if<std::vector<double>>(&value);
-      if (numbers && std::all_of(numbers->begin(), numbers->end(), inside)) return {};
+    case SettingKind::numbers:
+      if (auto const* const list = std::get_if<std::vector<double>>(&value);
+          list && std::all_of(list->begin(), list->end(), inside))
+        return {};
       return fmt::format("it must be a list of numbers{}", allowed_range(row));
-    }
   }
   return {};
-}
-
-std::string numbers_text(std::vector<double> const& values) {
-  std::string text;
-  for (double const value : values) text += fmt::format("{}{}", text.empty() ? "" : ", ", value);
-  return "(" + text + ")";
 }
 
 Settings::Settings(std::span<SettingRow const> rows) {

@@ -16,7 +16,7 @@ enum class SettingKind {
   real,
   word,
   flag,
-  numbers,  // a list of reals, none by default: `(100, 10, 1)`
+  numbers,  // a list `(3, 2, 1)`; by default empty
 };
 
 struct SettingRow {
@@ -31,14 +31,14 @@ struct SettingRow {
 
 using SettingValue = std::variant<std::int64_t, double, std::string, bool, std::vector<double>>;
 
+/// As the user would write it: `0.2`, `gaussian`, `yes`, `(3, 2, 1)`.
+std::string setting_text(SettingValue const& value);
+
 /// The row of a name, or nullptr.
 SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_view name);
 
 /// Why `value` cannot be given to the row's setting ("it must be a whole number of at least 1"); empty when it can.
 std::string refuse(SettingRow const& row, SettingValue const& value);
-
-/// "(100, 10, 1)": a list of numbers as the user would write it; "()" for none.
-std::string numbers_text(std::vector<double> const& values);
 
 /// Values by name; every row of the table has one, given or default.
 class Settings {

@@ -23,12 +23,6 @@ constexpr SettingRow adaptive_settings[] = {
     {"steps", SettingKind::integer, "10000", 1, 1e9, "", "most steps between two samples: then the solve has failed"},
 };
 
-// Shortest decimals that read back as the same number.
-std::string value_text(SettingValue const& value) {
-  if (auto const* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
-  return fmt::format("{}", std::get<double>(value));
-}
-
 // To the digits that a person would write: 1e-5/100 is not the number nearest to 1e-7.
 double hundredth(double value) { return std::stod(fmt::format("{:.12e}", value / 100)); }
 
@@ -80,7 +74,7 @@ std::string SolverSettings::option() const {
   for (SettingRow const& each : row().settings) {
     std::string const name(each.name);
     if (values.all().at(name) != defaults.all().at(name))
-      arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, value_text(values.all().at(name)));
+      arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, setting_text(values.all().at(name)));
   }
   return fmt::format("solver = {}{}", method, arguments.empty() ? "" : "(" + arguments + ")");
 }
@@ -103,7 +97,7 @@ std::string SolverSettings::text() const {
   std::string arguments;
   for (SettingRow const& each : row().settings)
     arguments +=
-        fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", each.name, value_text(values.all().at(std::string(each.name))));
+        fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", each.name, setting_text(values.all().at(std::string(each.name))));
   return fmt::format("{}({})", method, arguments);
 }
 

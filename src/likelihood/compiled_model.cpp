@@ -250,6 +250,16 @@ std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::
   return compiled;
 }
 
+std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compiled, Graph grown,
+                                                      std::span<NodeId const> per_channel) {
+  Model model = compiled.model;
+  model.graph = std::move(grown);
+  Folded folded(model, keeps_unknowns(compiled));
+  SimulationSource source = dynamics(folded, compiled);
+  for (NodeId const expression : per_channel) source.channels.push_back({{folded(expression)}});
+  return finish(folded, std::move(source));
+}
+
 std::string dump_program(CompiledModel const& compiled) {
   return fmt::format("{}\n# likelihood\n{}", ParameterSpace(compiled.model, {{}}).dump(),
                      dump(*compiled.likelihood, names_of(compiled)));

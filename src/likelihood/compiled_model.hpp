@@ -2,6 +2,7 @@
 // once, used by every view and every experiment.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,11 @@ struct CompiledModel {
 
 /// free_start: the initial state is read from extra parameter rows instead of the model's initial values. method: a solver's name.
 std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method);
+
+/// A program that sums, over the scored samples of each channel, an expression of `grown`: the model's graph and what was added to
+/// it.
+std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compiled, Graph grown,
+                                                      std::span<NodeId const> per_channel);
 
 /// What `--dump program` prints: the likelihood program and the kernels of the prior.
 std::string dump_program(CompiledModel const& compiled);

@@ -159,10 +159,19 @@ class Compilation {
         }
         terms.push_back({factor, place->second});
       }
+      program_.running_sums.push_back(running(terms));
       sums_.push_back(std::move(terms));
     }
     program_.observe.push_back(section(goals));
     program_.data_sums.push_back(table(data_terms));
+  }
+
+  std::optional<RunningSum> running(std::vector<SumTerm> const& terms) const {
+    if (terms.size() != 1) return std::nullopt;
+    Node const& place = graph_[terms.front().term];
+    auto const factor = graph_.constant_value(terms.front().factor);
+    if (!factor || place.leaf_kind != LeafKind::unknown || place.index >= epilogue_uniform_leaf) return std::nullopt;
+    return RunningSum{place.index - accumulator_leaf, *factor};
   }
 
   void compile_records() {

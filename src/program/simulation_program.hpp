@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,12 @@ struct UniformTable {
   Kernel kernel;                    // outputs: the uniforms of one row
 };
 
+/// A sum that is `factor` times one accumulator, so it can be read before the last sample.
+struct RunningSum {
+  int accumulator = 0;
+  double factor = 1;
+};
+
 /// Straight-line code over the register file, and the row of uniforms it reads.
 struct Section {
   Code code;
@@ -70,6 +77,8 @@ struct RegisterLayout {
   int first_sum() const { return first_record() + records; }
   int first_temporary() const { return first_sum() + sums; }
   int total() const { return first_temporary() + temporaries; }
+  /// What a fixed-step solver carries from sample to sample: the rows before this one.
+  int carried() const { return first_record(); }
 };
 
 struct SimulationProgram {
@@ -88,6 +97,7 @@ struct SimulationProgram {
   Section record;                // one sample into the record registers
   Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums
   std::vector<UniformTable> data_sums;  // per channel: terms of data alone, summed once per data set over the summed samples
+  std::vector<std::optional<RunningSum>> running_sums;  // per row of the sums
 
   // The step as expressions, before algebra: where a failed solve is looked into.
   Graph graph;                      // source.graph, grown

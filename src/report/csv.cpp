@@ -37,30 +37,6 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string text_of(SettingValue const& value) {
-  if (auto const* text = std::get_if<std::string>(&value)) return *text;
-  if (auto const* number = std::get_if<double>(&value)) return shortest(*number);
-  if (auto const* numbers = std::get_if<std::vector<double>>(&value)) return numbers_text(*numbers);
-  if (auto const* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  return std::to_string(std::get<std::int64_t>(value));
-}
-
-std::string head(Report const& report) {
-  std::string out;
-  auto const add = [&](std::string_view name, std::string const& value) {
-    out += fmt::format("# {} = {}\n", name, one_line(value));
-  };
-  add("program", "sysid");
-  add("sysid_version", report.version);
-  add("model", report.model_name);
-  add("task", report.task);
-  add("what", report.what);
-  add("seed", std::to_string(report.seed));
-  for (DataInfo const& data : report.data) add("data", fmt::format("{} ({}) sha256 {}", data.name, data.file, data.sha256));
-  for (auto const& [name, value] : report.settings) add("setting " + name, text_of(value));
-  return out;
-}
-
 std::string units(std::vector<std::string> const& names, std::vector<std::string> const& values) {
   std::string out = "# units =";
   for (std::size_t i = 0; i < names.size(); ++i) out += fmt::format("{} {} [{}]", i == 0 ? "" : ",", names[i], values[i]);
@@ -73,9 +49,25 @@ double value_at(std::vector<double> const& values, std::size_t i) {
 
 }  // namespace
 
+std::string csv_head(Report const& report) {
+  std::string out;
+  auto const add = [&](std::string_view name, std::string const& value) {
+    out += fmt::format("# {} = {}\n", name, one_line(value));
+  };
+  add("program", "sysid");
+  add("sysid_version", report.version);
+  add("model", report.model_name);
+  add("task", report.task);
+  add("what", report.what);
+  add("seed", std::to_string(report.seed));
+  for (DataInfo const& data : report.data) add("data", fmt::format("{} ({}) sha256 {}", data.name, data.file, data.sha256));
+  for (auto const& [name, value] : report.settings) add("setting " + name, setting_text(value));
+  return out;
+}
+
 std::string draws_csv(Report const& report, int chain) {
   Chain const& draws = report.draws.chains[static_cast<std::size_t>(chain)];
-  std::string out = head(report);
+  std::string out = csv_head(report);
   out += fmt::format("# id = {}\n# num_samples = {}\n", chain + 1, draws.values.size());
   out += units(report.draws.names, report.draws.units);
   out += "lp__,accept_stat__,log_prior__,log_likelihood__";
@@ -91,7 +83,7 @@ std::string draws_csv(Report const& report, int chain) {
 }
 
 std::string predict_csv(Report const& report, Prediction const& prediction) {
-  std::string out = head(report);
+  std::string out = csv_head(report);
   out += fmt::format("# experiment = {}\n", one_line(prediction.experiment));
   std::vector<std::string> names, unit_texts;
   std::vector<std::vector<double> const*> columns;

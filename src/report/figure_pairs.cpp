@@ -146,10 +146,16 @@ bool repeats_a_channel(Prediction const& prediction, PredictedQuantity const& qu
 
 std::vector<Figure> figures(Report const& report) {
   std::vector<Figure> out;
+  if (report.selection) out.push_back(population_figure(*report.selection));
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (!quantity.response.mean.empty() && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
         out.push_back(fit_figure(prediction, quantity));
+  if (report.selection) {
+    Report const leading = leading_model(report);
+    if (leading.draws.total() > 1) out.push_back(posterior_figure(leading));
+    if (leading.draws.total() > 1 && leading.draws.names.size() > 1) out.push_back(pair_figure(leading.draws));
+  }
   bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
   if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
   if (has_draws && report.draws.names.size() > 1) out.push_back(pair_figure(report.draws));

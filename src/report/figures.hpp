@@ -22,6 +22,8 @@ plot::Figure posterior_figure(Report const& report);
 plot::Figure trace_figure(Draws const& draws);
 /// How the ranks of each chain's draws spread over those of all (Vehtari et al. 2021).
 plot::Figure rank_figure(Draws const& draws);
+/// Model probabilities and thresholds over the populations of a selection.
+plot::Figure population_figure(SelectionReport const& selection);
 /// Draws of each two parameters against each other.
 plot::Figure pair_figure(Draws const& draws);
 

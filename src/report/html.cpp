@@ -14,14 +14,6 @@ namespace sysid {
 
 namespace {
 
-std::string text_of(SettingValue const& value) {
-  if (auto const* text = std::get_if<std::string>(&value)) return *text;
-  if (auto const* number = std::get_if<double>(&value)) return shortest(*number);
-  if (auto const* numbers = std::get_if<std::vector<double>>(&value)) return numbers_text(*numbers);
-  if (auto const* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
-  return std::to_string(std::get<std::int64_t>(value));
-}
-
 /// Cells already HTML; the first `left` columns are words, the rest numbers.
 std::string table(std::vector<std::string> const& header, std::vector<std::vector<std::string>> const& rows, std::size_t left) {
   auto const row_html = [&](std::vector<std::string> const& row, std::string_view tag) {
@@ -44,7 +36,7 @@ std::string section(std::string_view title, std::string const& body) {
 std::string facts_table(Facts const& facts) {
   if (facts.empty()) return "";
   std::vector<std::vector<std::string>> rows;
-  for (auto const& [name, value] : facts) rows.push_back({escape(name), escape(text_of(value))});
+  for (auto const& [name, value] : facts) rows.push_back({escape(name), escape(setting_text(value))});
   return table({}, rows, 2);
 }
 

@@ -78,6 +78,10 @@ std::string summary_json(Report const& report) {
   out["what"] = report.what;
   out["model"] = report.model_name;
   out["parameters"] = parameters(report.summary);
+  if (report.selection) {
+    out["models"] = models_json(*report.selection);
+    out["populations"] = populations_json(*report.selection);
+  }
   if (has_verdict(report)) out["verdict"] = {{"pass", grade(report) != Severity::error}, {"text", verdict_headline(report)}};
   out["findings"] = Json::array();
   for (Finding const& finding : report.findings)

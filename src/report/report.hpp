@@ -2,6 +2,7 @@
 // Nothing in it depends on the host or the hour but `timing`.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "inference/draws.hpp"
 #include "inference/finding.hpp"
 #include "report/prediction.hpp"
+#include "report/selection.hpp"
 
 namespace sysid {
 
@@ -67,6 +69,7 @@ struct Report {
   std::vector<Prediction> predictions;  // of each experiment: over the fitted rows, or of the predicted ones
   std::vector<Mode> modes;              // by falling share
   std::vector<ReportTable> tables;
+  std::optional<SelectionReport> selection;
   Ledger ledger;
   std::uint64_t seed = 0;
   Facts settings, versions;

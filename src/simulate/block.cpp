@@ -69,6 +69,19 @@ void Block::finish() {
   run(*program_.epilogue.linked, executor_, file_.file);
 }
 
+void Block::load(ConstLanes registers) {
+  for (int r = 0; r < registers.rows(); ++r) {
+    double* const row = file_.registers + r * executor_.stride();
+    for (int w = 0; w < executor_.width; ++w) row[w] = registers(r, std::min(w, lanes_ - 1));
+  }
+  std::fill(death_.begin(), death_.end(), -1);
+}
+
+void Block::store(Lanes registers) const {
+  for (int r = 0; r < registers.rows(); ++r)
+    std::copy_n(file_.registers + r * executor_.stride(), lanes_, registers.row(r).begin());
+}
+
 bool Block::bury(int sample) {
   ConstLanes const now = states();
   int live = -1;

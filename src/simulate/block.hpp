@@ -30,11 +30,17 @@ class Block {
   /// Computes the sums from the accumulators; read them with `sums`.
   void finish();
 
+  /// Takes up lanes that were put down: all that a fixed-step solver carries from sample to sample, [RegisterLayout::carried x
+  /// lanes].
+  void load(ConstLanes registers);
+  void store(Lanes registers) const;
+
   /// Notes which lanes have a state that is not finite; they go on as copies of a live one. Returns whether any lane lives.
   bool bury(int sample);
 
   ConstLanes states() const { return rows(program_.registers.first_state(), program_.registers.states); }
   ConstLanes records() const { return rows(program_.registers.first_record(), program_.registers.records); }
+  ConstLanes accumulators() const { return rows(program_.registers.first_accumulator(), program_.registers.accumulators); }
   ConstLanes sums() const { return rows(program_.registers.first_sum(), program_.registers.sums); }
   /// The sample at which a lane was found dead; -1: it lives.
   std::vector<int> const& death() const { return death_; }

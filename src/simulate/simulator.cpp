@@ -50,19 +50,24 @@ Simulator::Simulator(std::shared_ptr<SimulationProgram const> program, Schedule 
       options_(options),
       pool_(pool ? std::move(pool) : make_pool(options)) {}
 
-Work Simulator::blocks(int width, int samples, BlockWork const& work) const {
-  Work result;
-  if (width == 0) return result;
-  result.instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
+int Simulator::threads() const { return pool_ ? pool_->threads() : 1; }
+
+Executor Simulator::executor(int width, double instructions) const {
   int widest = options_.lanes;
   if (widest == 0) {
     widest = std::max(least_lanes(schedule_.solver()), cache_bytes / 8 / std::max(1, program_->hot_registers));
     // Narrower blocks rather than idle threads, but not so narrow that the time goes into dispatch.
-    if (pool_ && result.instructions > small_job)
+    if (pool_ && instructions > small_job)
       widest = std::min(widest, std::max(least_lanes(schedule_.solver()), (width + pool_->threads() - 1) / pool_->threads()));
   }
-  Executor const executor =
-      choose_executor(std::min(width, widest), options_.lanes == 0 ? widest : std::numeric_limits<int>::max());
+  return choose_executor(std::min(width, widest), options_.lanes == 0 ? widest : std::numeric_limits<int>::max());
+}
+
+Work Simulator::blocks(int width, int samples, BlockWork const& work) const {
+  Work result;
+  if (width == 0) return result;
+  result.instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
+  Executor const executor = this->executor(width, result.instructions);
   for (int lane = 0; lane < width; lane += executor.width)
     result.blocks.push_back([this, work, executor, lane, lanes = std::min(executor.width, width - lane)] {
       Block block(*program_, schedule_, choose_executor(lanes, executor.width), lanes);  // the last one may be narrower

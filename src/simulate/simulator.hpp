@@ -8,6 +8,7 @@
 
 #include "core/lanes.hpp"
 #include "core/ledger.hpp"
+#include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
 #include "simulate/schedule.hpp"
 
@@ -59,6 +60,9 @@ class Simulator {
   SimulationProgram const& program() const { return *program_; }
   Schedule const& schedule() const { return schedule_; }
   ExecutionOptions const& options() const { return options_; }
+  int threads() const;
+  /// For blocks of a batch of `width` lanes that takes so many lane-instructions in all.
+  Executor executor(int width, double instructions) const;
 
   /// parameters: [parameters x W], SI. out: [sum_count x W], rows as SimulationProgram::sum_row; NaN in failed lanes. outcome: [W].
   /// A lane fails when a state or a sum is not finite. Lane w depends on column w alone.

@@ -23,6 +23,7 @@
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "inference/backend.hpp"
+#include "inference/selector.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;
@@ -252,6 +253,10 @@ TEST_CASE("the reference names every distribution, function, back end, setting a
   }
   for (FunctionRow const& row : functions()) named(row.name, "function");
   for (BackendRow const& row : backends()) {
+    named(row.name, "back end");
+    for (SettingRow const& setting : row.settings) named(setting.name, "setting");
+  }
+  for (SelectorRow const& row : selectors()) {
     named(row.name, "back end");
     for (SettingRow const& setting : row.settings) named(setting.name, "setting");
   }

@@ -1,41 +1,58 @@
-// One row per setting, in the order of `sysid list backends`.
+// The table of settings, and values that do not go together.
 #include "inference/abc/settings.hpp"
+
+#include <fmt/format.h>
 
 #include <limits>
 
 namespace sysid::abc {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity(), least = 1e-300;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr SettingRow rows[] = {
-    {"particles", SettingKind::integer, "1000", 10, 1e7, "", "accepted in each population, over all models"},
-    {"quantile", SettingKind::real, "0.2", least, 1 - 1e-9, "", "of the last population's distances: the next threshold"},
-    {"schedule", SettingKind::numbers, "", least, infinity, "",
-     "thresholds of the first populations, falling, in place of quantiles"},
-    {"first_threshold", SettingKind::real, "inf", least, infinity, "", "of the population drawn from the priors"},
+    {"particles", SettingKind::integer, "1000", 10, 1e7, "", "of each population, over all models"},
+    {"quantile", SettingKind::real, "0.2", 1e-6, 0.999999, "",
+     "the next threshold is this quantile of the distances of all particles, unweighted"},
+    {"schedule", SettingKind::numbers, "", 0, infinity, "", "thresholds one after another instead, falling: `(100, 10, 1)`"},
+    {"first_threshold", SettingKind::real, "0", 0, infinity, "",
+     "of population 1; 0: every draw of the prior that can be simulated"},
     {"kernel", SettingKind::word, "gaussian", 0, 0, "gaussian component_gaussian uniform nearest_neighbours",
-     "moves particles: by the weighted covariance of their model, its diagonal, a range, the covariance of neighbours"},
-    {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "of a particle, for kernel = nearest_neighbours"},
-    {"kernel_scale", SettingKind::real, "0", 0, 1e6, "",
-     "times the covariance, or width in ranges of the last population for uniform; 0: 2 and 1"},
-    {"coordinates", SettingKind::word, "declared", 0, 0, "declared unconstrained", "in which particles are moved"},
+     "how a particle moves: normal with the population's covariance, its diagonal, a box of its range, or normal with the "
+     "covariance of the nearest neighbours"},
+    {"kernel_scale", SettingKind::real, "0", 0, infinity, "",
+     "factor on that covariance, or on the range; 0: 2 for the population's covariance, else 1"},
+    {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "that shape the kernel `nearest_neighbours`"},
+    {"coordinates", SettingKind::word, "declared", 0, 0, "declared unconstrained",
+     "the kernel moves declared values, or the sampler's coordinates, which never leave the prior's support"},
     {"model_kernel", SettingKind::word, "prior", 0, 0, "prior previous",
-     "draws the model from its prior probability, or moves from that of a particle of the last population"},
-    {"stay", SettingKind::real, "0.7", least, 1, "", "probability of staying in the model, for model_kernel = previous"},
-    {"threshold_change", SettingKind::real, "0", 0, infinity, "", "stop when the threshold falls by less than this"},
-    {"relative_change", SettingKind::real, "0.01", 0, 1, "", "stop when the threshold falls by less than this part of it"},
+     "models are drawn from their prior, or from the last population and moved"},
+    {"stay", SettingKind::real, "0.7", 0, 1, "", "probability that such a move stays with the model"},
+    {"threshold_change", SettingKind::real, "0", 0, infinity, "", "stop when the threshold falls by no more than this"},
+    {"relative_change", SettingKind::real, "0.01", 0, 1, "", "stop when it falls by no more than this part of itself"},
     {"target", SettingKind::real, "0", 0, infinity, "", "stop at this threshold"},
-    {"acceptance", SettingKind::real, "0", 0, 1, "", "stop when a smaller part of the simulations is accepted"},
-    {"simulations", SettingKind::real, "1e8", 1, 1e15, "", "stop after so many"},
-    {"wall_time", SettingKind::real, "0", 0, 1e9, "", "stop after so many seconds; 0: never"},
+    {"acceptance", SettingKind::real, "0", 0, 1, "", "stop when a smaller part of the proposals is accepted"},
+    {"simulations", SettingKind::real, "1e8", 1, 1e18, "", "stop after so many in all"},
+    {"wall_time", SettingKind::real, "0", 0, infinity, "", "stop after so many seconds, which no seed repeats; 0: no limit"},
     {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after so many"},
-    {"polish", SettingKind::flag, "false", 0, 0, "", "run mh with the likelihood from the particles of each model, and print both"},
-    {"cross_check", SettingKind::flag, "true", 0, 0, "", "compare with model probabilities by Laplace's approximation"},
+    {"cross_check", SettingKind::flag, "true", 0, 0, "", "set Laplace's model probabilities from the likelihood beside these"},
+    {"polish", SettingKind::flag, "false", 0, 0, "", "go on from the particles with Metropolis-Hastings on the likelihood"},
+    {"polish_samples", SettingKind::integer, "25000", 100, 1e12, "",
+     "iterations of each of its four chains, a fifth of them burn-in"},
 };
 
 }  // namespace
 
 std::span<SettingRow const> settings() { return rows; }
+
+std::string refuse(Settings const& settings) {
+  std::vector<double> const& schedule = settings.numbers("schedule");
+  for (std::size_t t = 1; t < schedule.size(); ++t)
+    if (!(schedule[t] < schedule[t - 1]))
+      return fmt::format("the schedule must fall, but {} follows {}", schedule[t], schedule[t - 1]);
+  if (!schedule.empty() && settings.real("first_threshold") > 0)
+    return "the schedule holds the first threshold: leave `first_threshold` out";
+  return {};
+}
 
 }  // namespace sysid::abc

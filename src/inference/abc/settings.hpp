@@ -1,11 +1,13 @@
-// The settings of `abc_smc`.
+// What can be set of `abc_smc`.
 #pragma once
 #include <span>
+#include <string>
 
 #include "core/settings.hpp"
 
 namespace sysid::abc {
 
 std::span<SettingRow const> settings();
+std::string refuse(Settings const& settings);
 
 }  // namespace sysid::abc

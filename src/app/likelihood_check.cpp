@@ -1,0 +1,101 @@
+// Local searches from particles.
+#include "app/likelihood_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/elementary.hpp"
+#include "inference/laplace.hpp"
+#include "inference/refit.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int starts = 8;
+constexpr double same_mode = 0.5;  // of the two modes' widths
+
+/// Rows of the target that the particles have, by name; -1: they do not.
+std::vector<int> rows_of(ModelTarget const& target, SelectedModel const& model) {
+  std::vector<int> rows;
+  for (ParameterInfo const& info : target.parameters()) {
+    auto const found = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                    [&](ParameterInfo const& each) { return each.name == info.name; });
+    rows.push_back(found == model.parameters.end() ? -1 : static_cast<int>(found - model.parameters.begin()));
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<Mode> modes_near(ModelTarget const& target, SelectedModel const& model, std::uint64_t seed, Ledger& ledger) {
+  if (model.distance.empty()) return {};
+  std::vector<int> order(model.distance.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return model.distance[static_cast<std::size_t>(a)] < model.distance[static_cast<std::size_t>(b)];
+  });
+  std::vector<int> const rows = rows_of(target, model);
+  int const count = std::min<int>(starts, static_cast<int>(order.size()));
+  LaneArray prior(target.dimension(), count);
+  target.sample_prior({seed, Purpose::start, 0, 3}, prior);
+  std::vector<Mode> from;
+  for (int s = 0; s < count; ++s) {
+    // The nearest first, the others evenly over the nearer half.
+    int const particle = order[static_cast<std::size_t>(s) * (order.size() / 2) / static_cast<std::size_t>(count)];
+    Mode start;
+    for (std::size_t p = 0; p < rows.size(); ++p)
+      start.theta.push_back(rows[p] < 0 ? prior(static_cast<int>(p), s) : model.theta(rows[p], particle));
+    from.push_back(std::move(start));
+  }
+  std::vector<Mode> found = refit(target, from, seed, ledger);
+  std::erase_if(found, [](Mode const& mode) { return !std::isfinite(mode.log_density) || !std::isfinite(mode.log_mass); });
+  std::stable_sort(found.begin(), found.end(), [](Mode const& a, Mode const& b) { return a.log_density > b.log_density; });
+  std::vector<Mode> modes;
+  for (Mode& mode : found) {
+    auto const known =
+        std::find_if(modes.begin(), modes.end(), [&](Mode const& other) { return distance(other, mode) < same_mode; });
+    if (known == modes.end()) {
+      modes.push_back(std::move(mode));
+      modes.back().hits = 1;
+    } else {
+      ++known->hits;
+    }
+  }
+  double const total = log_evidence(modes);
+  for (Mode& mode : modes) mode.share = elementary::exp(mode.log_mass - total);
+  std::stable_sort(modes.begin(), modes.end(), [](Mode const& a, Mode const& b) { return a.share > b.share; });
+  return modes;
+}
+
+double log_evidence(std::vector<Mode> const& modes) {
+  double const none = -std::numeric_limits<double>::infinity();
+  double highest = none, sum = 0;
+  for (Mode const& mode : modes) highest = std::max(highest, mode.log_mass);
+  if (highest == none) return none;
+  for (Mode const& mode : modes) sum += elementary::exp(mode.log_mass - highest);
+  return highest + elementary::log(sum);
+}
+
+Findings compare_probabilities(SelectionResult const& result, std::vector<double> const& by_likelihood) {
+  std::size_t worst = 0;
+  double most = 0;
+  for (std::size_t m = 0; m < by_likelihood.size(); ++m) {
+    double const difference = std::abs(result.models[m].probability - by_likelihood[m]);
+    if (difference > most) most = difference, worst = m;
+  }
+  if (most <= tolerable_difference) return {};
+  SelectedModel const& model = result.models[worst];
+  return {
+      {Severity::warning, "probabilities_disagree",
+       fmt::format("`{}` has probability {:.2f} by the particles and {:.2f} by the likelihood{}", model.name, model.probability,
+                   by_likelihood[worst],
+                   model.died_in > 0 ? fmt::format("; it died in population {}", model.died_in) : std::string()),
+       "the threshold is what the data may differ by: stop at a smaller change, or believe the likelihood where its noise is the "
+       "right one"}};
+}
+
+}  // namespace sysid

@@ -1,0 +1,418 @@
+// The run: population after population, batches of proposals within each.
+#include "inference/abc/abc_smc.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core/elementary.hpp"
+#include "inference/abc/findings.hpp"
+#include "inference/abc/proposals.hpp"
+#include "inference/checkpoint.hpp"
+
+namespace sysid::abc {
+namespace {
+
+using json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Proposals of one batch: enough to fill lanes and threads, few enough that the last batch of a population wastes little.
+constexpr int least_batch = 256, most_batch = 8192;
+
+/// Failed simulations that are traced to a place; the others are counted.
+constexpr std::uint64_t traced_failures = 8;
+
+/// Prior draws that give a kernel its width before there is a population.
+constexpr int width_draws = 1000;
+
+/// Accepted particles expected of a model above which none at all is no chance: e^-3 is 5 %.
+constexpr double surprising = 3;
+
+/// A population that finds nothing in so many simulations will not find enough.
+constexpr std::uint64_t patience = 1'000'000;
+
+json identity(SelectionTarget const& candidates, Settings const& settings, std::uint64_t seed) {
+  json values = json::object(), models = json::array();
+  for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);
+  for (int m = 0; m < candidates.size(); ++m) {
+    json parameters = json::array();
+    for (ParameterInfo const& each : candidates.parameters(m)) parameters.push_back(each.name);
+    models.push_back({candidates.name(m), candidates.prior_probability(m), parameters});
+  }
+  return {{"backend", "abc_smc"}, {"settings", values}, {"seed", seed}, {"models", models}};
+}
+
+class Run {
+ public:
+  Run(SelectionTarget const& candidates, Settings const& settings, RunContext& context)
+      : candidates_(candidates),
+        plan_(plan_of(settings)),
+        context_(context),
+        identity_(identity(candidates, settings, context.seed)) {
+    result_.settings = settings;
+  }
+
+  SelectionResult run() {
+    if (!begin()) return std::move(result_);
+    while (!over() && populate()) settle();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  // --- one population
+  // -------------------------------------------------------------------------------------------------------------
+
+  /// Fills `next_` up; false when the run is stopped before it is full.
+  bool populate() {
+    Proposals const proposals(candidates_, plan_, context_.seed, last_);
+    context_.progress.begin(fmt::format("population {}", next_.number), static_cast<std::uint64_t>(plan_.particles));
+    bool full = false;
+    while (!full) {
+      if (context_.stop_requested()) {
+        result_.interrupted = true;
+        break;
+      }
+      if (out_of_budget()) break;
+      propose(proposals);
+      full = next_.accepted() >= plan_.particles;
+      context_.progress.advance(static_cast<std::uint64_t>(next_.accepted()),
+                                fmt::format("threshold {:.4g}, acceptance {:.2g}", next_.threshold, acceptance()));
+      save_sometimes();
+    }
+    context_.progress.end();
+    if (!full) return false;
+    weigh(proposals);
+    return true;
+  }
+
+  /// How many proposals to make at once: what the rest of the population is expected to need.
+  int batch_size() const {
+    double const rate =
+        record_.proposed == 0 ? last_acceptance_ : (record_.accepted + 1.0) / static_cast<double>(record_.proposed + 1);
+    double const needed = (plan_.particles - record_.accepted) / std::max(rate, 1e-6);
+    return static_cast<int>(std::clamp<double>(std::ceil(needed), least_batch, most_batch));
+  }
+
+  void propose(Proposals const& proposals) {
+    int const count = batch_size();
+    std::uint64_t const first = record_.proposed;
+    Proposed const proposed = proposals.make(first, count);
+    std::size_t const models = proposed.x.size();
+    // What lies outside the prior's support is not simulated.
+    std::vector<std::vector<int>> simulated(models);
+    std::vector<LaneArray> theta(models);
+    std::vector<std::vector<double>> distance(models);
+    std::vector<std::vector<Simulated>> ending(models);
+    std::vector<SelectionTarget::Batch> batches;
+    std::vector<std::vector<int>> place(models);  // of a column among the simulated; -1: outside
+    for (std::size_t m = 0; m < models; ++m) {
+      for (double const log_prior : proposed.log_prior[m]) {
+        bool const inside = log_prior > -infinity;
+        place[m].push_back(inside ? static_cast<int>(simulated[m].size()) : -1);
+        if (inside) simulated[m].push_back(static_cast<int>(place[m].size()) - 1);
+      }
+      theta[m] = LaneArray(proposed.theta[m].rows(), static_cast<int>(simulated[m].size()));
+      for (int d = 0; d < theta[m].rows(); ++d)
+        for (int w = 0; w < theta[m].width(); ++w) theta[m](d, w) = proposed.theta[m](d, simulated[m][static_cast<std::size_t>(w)]);
+      distance[m].resize(simulated[m].size());
+      ending[m].resize(simulated[m].size());
+      if (!simulated[m].empty()) batches.push_back({static_cast<int>(m), theta[m], distance[m], ending[m]});
+    }
+    candidates_.distances(batches, next_.threshold);
+
+    for (std::size_t i = 0; i < proposed.model.size() && record_.accepted < plan_.particles; ++i) {
+      auto const m = static_cast<std::size_t>(proposed.model[i]);
+      auto const column = static_cast<std::size_t>(proposed.column[i]);
+      ++record_.proposed;
+      ++record_.models[m].proposed;
+      if (place[m][column] < 0) continue;
+      auto const lane = static_cast<std::size_t>(place[m][column]);
+      ++record_.simulated;
+      context_.ledger.add_solves(1);
+      if (ending[m][lane] == Simulated::failed) {
+        ++record_.failed;
+        note_failure(static_cast<int>(m), theta[m].view().columns(static_cast<int>(lane), 1));
+      }
+      if (ending[m][lane] != Simulated::within) continue;
+      next_.models[m].add(proposed.x[m], proposed.column[i], proposed.log_prior[m][column], distance[m][lane]);
+      ++record_.accepted;
+    }
+  }
+
+  void note_failure(int model, ConstLanes theta) {
+    LaneArray declared(theta.rows(), 1);
+    candidates_.constrain(model, theta, declared);
+    std::vector<double> example;
+    for (int d = 0; d < declared.rows(); ++d) example.push_back(declared(d, 0));
+    if (context_.ledger.failed() < traced_failures) {
+      auto const [where, time] = candidates_.failure(model, theta);
+      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", where, candidates_.name(model)), time,
+                                  std::move(example));
+    } else {
+      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`, not looked into", candidates_.name(model)), 0,
+                                  std::move(example));
+    }
+  }
+
+  void weigh(Proposals const& proposals) {
+    std::vector<std::vector<double>> logs;
+    double highest = -infinity;
+    for (std::size_t m = 0; m < next_.models.size(); ++m) {
+      Particles const& particles = next_.models[m];
+      LaneArray const x = particles.lanes(candidates_.dimension(static_cast<int>(m)));
+      // Drawn from the prior, all weigh the same.
+      logs.push_back(last_.number == 0 || particles.count() == 0
+                         ? std::vector<double>(particles.distance.size(), 0.0)
+                         : proposals.log_weights(static_cast<int>(m), x, particles.log_prior));
+      for (double const log : logs.back()) highest = std::max(highest, log);
+    }
+    double total = 0;
+    for (std::size_t m = 0; m < logs.size(); ++m)
+      for (std::size_t j = 0; j < logs[m].size(); ++j) total += next_.models[m].weight[j] = elementary::exp(logs[m][j] - highest);
+    for (Particles& particles : next_.models)
+      for (double& w : particles.weight) w /= total;
+  }
+
+  /// Whether a model without particles may yet be as near as the others: some of its last particles are within the new threshold, or
+  /// it had so few proposals that at the others' acceptance rate none would be no surprise.
+  bool may_be_chance(std::size_t m) const {
+    std::vector<double> const& before = last_.models[m].distance;
+    if (*std::min_element(before.begin(), before.end()) <= next_.threshold) return true;
+    std::uint64_t const own = record_.models[m].proposed, others = record_.proposed - own;
+    return static_cast<double>(own) * record_.accepted < surprising * static_cast<double>(others);
+  }
+
+  /// The population is whole: it becomes the last one.
+  void settle() {
+    record_.threshold = next_.threshold;
+    record_.ess = next_.ess();
+    for (std::size_t m = 0; m < next_.models.size(); ++m) {
+      Particles const& particles = next_.models[m];
+      auto& record = record_.models[m];
+      record.particles = particles.count();
+      record.probability = particles.weight_sum();
+      record.nearest = particles.count() == 0 ? infinity : *std::min_element(particles.distance.begin(), particles.distance.end());
+      std::vector<double> within = particles.weight;
+      for (double& w : within) w /= record.probability;
+      next_.widths[m] = width_of(particles.lanes(candidates_.dimension(static_cast<int>(m))), within, last_.widths[m]);
+      SelectedModel& model = result_.models[m];
+      bool const lived = last_.number == 0 || last_.models[m].count() > 0;
+      if (lived && particles.count() == 0) {
+        model.died_in = next_.number;
+        model.by_chance = last_.number > 0 && may_be_chance(m);
+        if (last_.number > 0) departed_[m] = last_.models[m];
+      }
+    }
+    simulations_ += record_.simulated;
+    last_acceptance_ = static_cast<double>(record_.accepted) / static_cast<double>(record_.proposed);
+    result_.populations.push_back(record_);
+    last_ = std::move(next_);
+    start_population();
+    if (context_.checkpoint) save();
+  }
+
+  /// Readies `next_` and its threshold.
+  void start_population() {
+    next_ = {};
+    next_.number = last_.number + 1;
+    next_.models.resize(static_cast<std::size_t>(candidates_.size()));
+    next_.widths = last_.widths;
+    next_.threshold = following_threshold();
+    record_ = {};
+    record_.models.resize(next_.models.size());
+  }
+
+  double following_threshold() const {
+    auto const place = static_cast<std::size_t>(last_.number);
+    if (!plan_.schedule.empty()) return plan_.schedule[std::min(place, plan_.schedule.size() - 1)];
+    if (last_.number == 0) return plan_.first_threshold;
+    return std::max(last_.quantile(plan_.quantile), plan_.target);
+  }
+
+  // --- the end
+  // --------------------------------------------------------------------------------------------------------------------
+
+  double acceptance() const {
+    return record_.proposed == 0 ? 1 : static_cast<double>(record_.accepted) / static_cast<double>(record_.proposed);
+  }
+
+  /// Whether the run ends with the last population, and why.
+  bool over() {
+    if (last_.number == 0) return false;
+    double const fall = last_.threshold - next_.threshold;
+    if (!plan_.schedule.empty()) {
+      if (static_cast<std::size_t>(last_.number) >= plan_.schedule.size()) return stop("the schedule of thresholds has ended");
+    } else if (last_.threshold <= plan_.target) {
+      return stop(fmt::format("the threshold has reached its target {}", plan_.target));
+    } else if (fall <= plan_.threshold_change) {
+      return stop(fmt::format("the next threshold would be lower by {:.2g}, not more than {}", fall, plan_.threshold_change));
+    } else if (fall <= plan_.relative_change * next_.threshold) {
+      return stop(fmt::format("the next threshold would be lower by {:.2g} %, not more than {} %", 100 * fall / next_.threshold,
+                              100 * plan_.relative_change));
+    }
+    if (last_acceptance_ < plan_.acceptance)
+      return stop(fmt::format("{:.2g} of the proposals were accepted, less than {}", last_acceptance_, plan_.acceptance));
+    if (last_.number >= plan_.populations) return stop(fmt::format("{} populations were allowed", plan_.populations));
+    return false;
+  }
+
+  bool stop(std::string why) {
+    result_.stopped_by = std::move(why);
+    return true;
+  }
+
+  /// Whether a budget ends the run within a population.
+  bool out_of_budget() {
+    if (simulations_ + record_.simulated >= plan_.simulations)
+      return stop(fmt::format("{} simulations were allowed", plan_.simulations));
+    if (plan_.wall_time > 0 && std::chrono::duration<double>(Clock::now() - began_).count() > plan_.wall_time)
+      return stop(fmt::format("{} s were allowed", plan_.wall_time));
+    if (record_.accepted == 0 && record_.proposed >= patience)
+      return stop(fmt::format("population {} accepted none of {} proposals", next_.number, record_.proposed));
+    return false;
+  }
+
+  void finish() {
+    if (result_.interrupted && context_.checkpoint) save();
+    if (last_.number == 0) {
+      if (!result_.interrupted) result_.failure = no_population(record_, plan_.first_threshold, plan_.particles);
+      return;
+    }
+    result_.threshold = last_.threshold;
+    result_.next_threshold = next_.threshold;
+    for (int m = 0; m < candidates_.size(); ++m) fill(m);
+    result_.findings = judge_populations(result_, plan_);
+  }
+
+  void fill(int m) {
+    SelectedModel& model = result_.models[static_cast<std::size_t>(m)];
+    PopulationRecord const& record = result_.populations.back();
+    model.probability = record.models[static_cast<std::size_t>(m)].probability;
+    model.share = record.share(m);
+    Particles const& particles =
+        model.died_in > 0 ? departed_[static_cast<std::size_t>(m)] : last_.models[static_cast<std::size_t>(m)];
+    LaneArray const x = particles.lanes(candidates_.dimension(m));
+    model.theta = model.declared = x;
+    if (plan_.declared)
+      candidates_.unconstrain(m, x, model.theta);
+    else
+      candidates_.constrain(m, x, model.declared);
+    double const sum = particles.weight_sum();
+    for (double const w : particles.weight) model.weight.push_back(w / sum);
+    model.distance = particles.distance;
+    if (particles.count() == 0) return;
+    for (int d = 0; d < x.rows(); ++d) {
+      ParameterInfo const& info = model.parameters[static_cast<std::size_t>(d)];
+      model.summaries.push_back(summarise_weighted(info.name, info.unit, model.declared.row(d), model.weight));
+    }
+  }
+
+  // --- the beginning, and going on
+  // ------------------------------------------------------------------------------------------------
+
+  bool begin() {
+    for (int m = 0; m < candidates_.size(); ++m) {
+      SelectedModel model;
+      model.name = candidates_.name(m);
+      model.prior = candidates_.prior_probability(m);
+      model.parameters.assign(candidates_.parameters(m).begin(), candidates_.parameters(m).end());
+      result_.models.push_back(std::move(model));
+    }
+    departed_.resize(result_.models.size());
+    if (context_.resume) {
+      result_.failure = checkpoint::refuse(*context_.resume, identity_);
+      if (result_.failure) return false;
+      try {
+        restore(*context_.resume);
+        return true;
+      } catch (checkpoint::Mismatch const& mismatch) {
+        result_.failure = checkpoint::unusable(mismatch.what());
+      } catch (json::exception const&) {
+        result_.failure = checkpoint::unusable("it is damaged");
+      }
+      return false;
+    }
+    for (int m = 0; m < candidates_.size(); ++m) last_.widths.push_back(prior_width(m));
+    last_.models.resize(static_cast<std::size_t>(candidates_.size()));
+    start_population();
+    return true;
+  }
+
+  Width prior_width(int m) const {
+    int const dimension = candidates_.dimension(m);
+    LaneArray draws(dimension, width_draws), declared = draws;
+    candidates_.sample_prior(m, {context_.seed, Purpose::start, 0, 0}, draws);
+    candidates_.constrain(m, draws, declared);
+    std::vector<double> const equal(width_draws, 1.0 / width_draws);
+    return width_of(plan_.declared ? declared : draws, equal,
+                    {Eigen::MatrixXd::Identity(dimension, dimension), Eigen::VectorXd::Ones(dimension)});
+  }
+
+  void save_sometimes() {
+    if (!context_.checkpoint || std::chrono::duration<double>(Clock::now() - saved_).count() < context_.checkpoint_interval) return;
+    save();
+  }
+
+  void save() {
+    json records = json::array(), deaths = json::array();
+    for (PopulationRecord const& each : result_.populations) records.push_back(store(each));
+    for (SelectedModel const& each : result_.models) deaths.push_back({each.died_in, each.by_chance});
+    Population gone = last_;
+    gone.models = departed_;
+    context_.checkpoint({{"identity", identity_},
+                         {"last", store(last_)},
+                         {"next", store(next_)},
+                         {"departed", store(gone)},
+                         {"record", store(record_)},
+                         {"records", std::move(records)},
+                         {"deaths", std::move(deaths)},
+                         {"ledger", checkpoint::encode(context_.ledger)}});
+    saved_ = Clock::now();
+  }
+
+  void restore(json const& stored) {
+    std::vector<int> dimensions;
+    for (int m = 0; m < candidates_.size(); ++m) dimensions.push_back(candidates_.dimension(m));
+    last_ = restore_population(stored.at("last"), dimensions);
+    next_ = restore_population(stored.at("next"), dimensions);
+    departed_ = restore_population(stored.at("departed"), dimensions).models;
+    record_ = restore_record(stored.at("record"));
+    for (auto const& each : stored.at("records")) result_.populations.push_back(restore_record(each));
+    for (std::size_t m = 0; m < result_.models.size(); ++m) {
+      result_.models[m].died_in = stored.at("deaths").at(m).at(0).get<int>();
+      result_.models[m].by_chance = stored.at("deaths").at(m).at(1).get<bool>();
+    }
+    context_.ledger = checkpoint::decode_ledger(stored.at("ledger"));
+    for (PopulationRecord const& each : result_.populations) {
+      simulations_ += each.simulated;
+      last_acceptance_ = static_cast<double>(each.accepted) / static_cast<double>(each.proposed);
+    }
+  }
+
+  SelectionTarget const& candidates_;
+  Plan const plan_;
+  RunContext& context_;
+  json const identity_;
+  SelectionResult result_;
+  Population last_, next_;           // the last whole one, and the one in the making
+  PopulationRecord record_;          // of the one in the making
+  std::vector<Particles> departed_;  // per model: the last particles of a dead one
+  std::uint64_t simulations_ = 0;    // of whole populations
+  double last_acceptance_ = 1;
+  Clock::time_point const began_ = Clock::now();
+  Clock::time_point saved_ = began_;
+};
+
+}  // namespace
+
+SelectionResult run(SelectionTarget const& candidates, Settings const& settings, RunContext& context) {
+  return Run(candidates, settings, context).run();
+}
+
+}  // namespace sysid::abc

@@ -1,0 +1,14 @@
+// Approximate Bayesian computation by sequential Monte Carlo over models and parameters: the tutorial's Algorithm 1, with the
+// weights that it needs.
+#pragma once
+#include "inference/selector.hpp"
+
+namespace sysid::abc {
+
+/// Population 1: draws from the priors over models and parameters whose distance is within the first threshold. Population t: a
+/// model is drawn, a particle of it, moved by the kernel; accepted when its prior is positive and its distance within a falling
+/// threshold. The first `particles` accepted proposals, by number, make a population, so threads, lanes and interruptions change
+/// nothing. Toni and Stumpf 2010 (models), Filippi et al. 2013 (kernels).
+SelectionResult run(SelectionTarget const& candidates, Settings const& settings, RunContext& context);
+
+}  // namespace sysid::abc

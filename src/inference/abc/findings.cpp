@@ -1,0 +1,71 @@
+// Words for what populations show.
+#include "inference/abc/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sysid::abc {
+namespace {
+
+/// An effective number of particles below which means and probabilities are not worth their digits.
+constexpr double small_ess = 100;
+
+/// A part of failed prior draws that deserves a word.
+constexpr double many_failures = 0.2;
+
+void add_deaths(SelectionResult const& result, Findings& findings) {
+  for (SelectedModel const& model : result.models) {
+    if (!model.by_chance) continue;
+    auto const t = static_cast<std::size_t>(model.died_in - 1);
+    auto const m = static_cast<std::size_t>(&model - result.models.data());
+    findings.push_back({Severity::warning, "model_lost_by_chance",
+                        fmt::format("`{}` died in population {} where chance may have killed it: none of {} proposals was accepted, "
+                                    "after {} particles in the population before",
+                                    model.name, model.died_in, result.populations[t].models[m].proposed,
+                                    result.populations[t - 1].models[m].particles),
+                        "take more `particles`, or repeat with other seeds: its probability is small but not known to be none"});
+  }
+}
+
+}  // namespace
+
+Finding no_population(PopulationRecord const& record, double threshold, int particles) {
+  std::string const failed = record.failed == 0 ? std::string() : fmt::format(", {} of which did not stay finite", record.failed);
+  return {Severity::error, "no_population",
+          std::isfinite(threshold)
+              ? fmt::format("{} of {} draws from the priors came within the first threshold {} after {} simulations{}",
+                            record.accepted, particles, threshold, record.simulated, failed)
+              : fmt::format("{} of {} draws from the priors could be simulated after {} attempts{}", record.accepted, particles,
+                            record.simulated, failed),
+          std::isfinite(threshold) ? "raise `first_threshold`, or look at priors, units and the input rule with `sysid check`"
+                                   : "the priors lie where the models do not stay finite: narrow them, or take a finer solver"};
+}
+
+Findings judge_populations(SelectionResult const& result, Plan const& plan) {
+  Findings findings;
+  add_deaths(result, findings);
+  PopulationRecord const& last = result.populations.back();
+  if (last.ess < std::min(small_ess, 0.5 * plan.particles))
+    findings.push_back(
+        {Severity::warning, "few_effective_particles",
+         fmt::format("the last population's weights are worth {:.0f} equal particles of {}", last.ess, last.accepted),
+         "take more `particles`"});
+  bool const equal = result.populations.size() > 1 && result.threshold == result.next_threshold &&
+                     result.threshold != plan.target && plan.schedule.empty();
+  if (equal)
+    findings.push_back(
+        {Severity::warning, "distances_equal",
+         fmt::format("the threshold cannot fall below {:.6g}: so many particles have this very distance", result.threshold),
+         "look whether the simulation reads the parameters at all"});
+  PopulationRecord const& first = result.populations.front();
+  double const lost = static_cast<double>(first.failed) / static_cast<double>(first.simulated);
+  if (lost > many_failures)
+    findings.push_back({Severity::warning, "failed_solves",
+                        fmt::format("{:.0f} % of the draws of the priors did not stay finite, so the priors end there", 100 * lost),
+                        "narrow the priors, or take a finer solver where the integration is what fails"});
+  return findings;
+}
+
+}  // namespace sysid::abc

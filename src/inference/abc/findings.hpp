@@ -1,0 +1,15 @@
+// What an ABC-SMC run says about itself.
+#pragma once
+#include "inference/abc/plan.hpp"
+#include "inference/selector.hpp"
+
+namespace sysid::abc {
+
+/// The failure of a run that never filled its first population.
+Finding no_population(PopulationRecord const& record, double threshold, int particles);
+
+/// Models that died by chance, populations that stand on few particles, thresholds that cannot fall, failed simulations, budgets
+/// that ended the run, and what its spread means.
+Findings judge_populations(SelectionResult const& result, Plan const& plan);
+
+}  // namespace sysid::abc

@@ -1,0 +1,349 @@
+// Populations against answers in closed form: model probabilities, spreads within a threshold, weights of every kernel; stops,
+// deaths, degenerate cases; and the same bytes for any batches, threads and interruptions.
+#include "inference/abc/abc_smc.hpp"
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "inference/abc/settings.hpp"
+#include "inference/targets.hpp"
+
+using namespace sysid;
+
+namespace {
+
+using testing::infinity;
+using testing::Prior;
+
+/// Models of one or several parameters whose distance is a function of the declared values; NaN: the simulation failed.
+class Toy : public SelectionTarget {
+ public:
+  using DistanceFunction = std::function<double(std::span<double const>)>;
+  struct OfModel {
+    std::string name;
+    double probability;
+    std::vector<Prior> priors;
+    DistanceFunction distance;
+  };
+  explicit Toy(std::vector<OfModel> models) : models_(std::move(models)) {
+    for (OfModel const& model : models_) {
+      infos_.emplace_back();
+      for (std::size_t p = 0; p < model.priors.size(); ++p)
+        infos_.back().push_back({"p" + std::to_string(p), "", -infinity, infinity});
+    }
+  }
+
+  int size() const override { return static_cast<int>(models_.size()); }
+  std::string const& name(int m) const override { return at(m).name; }
+  double prior_probability(int m) const override { return at(m).probability; }
+  std::span<ParameterInfo const> parameters(int m) const override { return infos_[static_cast<std::size_t>(m)]; }
+  void sample_prior(int m, StreamKey key, Lanes theta) const override {
+    for (int w = 0; w < theta.width(); ++w) {
+      Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
+      for (int p = 0; p < theta.rows(); ++p) theta(p, w) = prior(m, p).draw(stream);
+    }
+  }
+  void log_prior(int m, ConstLanes theta, std::span<double> out, bool jacobian) const override {
+    for (int w = 0; w < theta.width(); ++w) {
+      double sum = 0;
+      for (int p = 0; p < theta.rows(); ++p) {
+        sum += prior(m, p).log_density(prior(m, p).constrain(theta(p, w)));
+        if (jacobian) sum += prior(m, p).log_jacobian(theta(p, w));
+      }
+      out[static_cast<std::size_t>(w)] = sum;
+    }
+  }
+  void constrain(int m, ConstLanes theta, Lanes declared) const override {
+    for (int p = 0; p < theta.rows(); ++p)
+      for (int w = 0; w < theta.width(); ++w) declared(p, w) = prior(m, p).constrain(theta(p, w));
+  }
+  void unconstrain(int m, ConstLanes declared, Lanes theta) const override {
+    for (int p = 0; p < theta.rows(); ++p)
+      for (int w = 0; w < theta.width(); ++w) theta(p, w) = prior(m, p).unconstrain(declared(p, w));
+  }
+  void distances(std::span<Batch const> batches, double bound) const override {
+    for (Batch const& batch : batches) {
+      LaneArray declared(batch.theta.rows(), batch.theta.width());
+      constrain(batch.model, batch.theta, declared);
+      for (int w = 0; w < declared.width(); ++w) {
+        std::vector<double> values;
+        for (int p = 0; p < declared.rows(); ++p) values.push_back(declared(p, w));
+        double const distance = at(batch.model).distance(values);
+        auto const i = static_cast<std::size_t>(w);
+        batch.ending[i] = std::isnan(distance) ? Simulated::failed : distance <= bound ? Simulated::within : Simulated::beyond;
+        batch.distance[i] = batch.ending[i] == Simulated::within ? distance : infinity;
+      }
+    }
+  }
+  std::pair<std::string, double> failure(int, ConstLanes) const override { return {"the toy", 0.5}; }
+  void parallel(int tasks, std::function<void(int)> const& task) const override {
+    for (int t = tasks - 1; t >= 0; --t) task(t);  // their order must not matter
+  }
+
+ private:
+  OfModel const& at(int m) const { return models_[static_cast<std::size_t>(m)]; }
+  Prior const& prior(int m, int p) const { return at(m).priors[static_cast<std::size_t>(p)]; }
+  std::vector<OfModel> models_;
+  std::vector<std::vector<ParameterInfo>> infos_;
+};
+
+double size_of_first(std::span<double const> values) { return std::fabs(values[0]); }
+
+/// theta ~ U(-1, 1) against theta ~ U(-10, 10), distance |theta|: below a threshold of 1 the first is ten times as probable, 10/11.
+Toy two_widths() {
+  return Toy(
+      {{"narrow", 0.5, {{Prior::uniform, -1, 1}}, size_of_first}, {"wide", 0.5, {{Prior::uniform, -10, 10}}, size_of_first}});
+}
+
+Settings with(std::initializer_list<std::pair<char const*, SettingValue>> values) {
+  Settings settings(abc::settings());
+  for (auto const& [name, value] : values) settings.set(name, value);
+  return settings;
+}
+
+SelectionResult run(SelectionTarget const& toy, Settings const& settings, std::uint64_t seed = 1, Ledger* counts = nullptr) {
+  SilentProgress silent;
+  Ledger ledger;
+  RunContext context{seed, silent, counts != nullptr ? *counts : ledger, {}, {}, 60, {}, {}, {}};
+  return abc::run(toy, settings, context);
+}
+
+bool has(Findings const& findings, std::string const& code) {
+  return std::any_of(findings.begin(), findings.end(), [&](Finding const& f) { return f.code == code; });
+}
+
+}  // namespace
+
+TEST_CASE("weights give the exact model probability 10/11 in every population, shares of particles do not") {
+  Toy const toy = two_widths();
+  // One after another, thresholds from 1 down: all that changes is how far the kernels reach.
+  Settings const settings = with({{"particles", std::int64_t{4000}},
+                                  {"schedule", std::vector<double>{1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.13, 0.09, 0.06, 0.04}}});
+  SelectionResult const result = run(toy, settings);
+  REQUIRE_FALSE(result.failure);
+  REQUIRE(result.populations.size() == 10);
+  for (std::size_t t = 0; t < 10; ++t) {
+    CAPTURE(t);
+    CHECK(std::fabs(result.populations[t].models[0].probability - 10.0 / 11) < 0.02);
+    if (t >= 1) CHECK(result.populations[t].share(0) < 0.8);  // models are proposed alike, so they fill alike
+  }
+  CHECK(result.populations[9].share(0) == doctest::Approx(0.5).epsilon(0.1));
+}
+
+TEST_CASE("the same with models drawn from the last population, whose kernel has its place in the weight") {
+  Toy const toy = two_widths();
+  Settings const settings = with({{"particles", std::int64_t{4000}},
+                                  {"model_kernel", std::string("previous")},
+                                  {"schedule", std::vector<double>{1, 0.5, 0.25, 0.13, 0.06, 0.03}}});
+  SelectionResult const result = run(toy, settings, 2);
+  for (PopulationRecord const& population : result.populations)
+    CHECK(std::fabs(population.models[0].probability - 10.0 / 11) < 0.03);
+}
+
+TEST_CASE("prior probabilities of models take part: 1/11 against 10/11 makes the two widths equal") {
+  Toy const toy({{"narrow", 1.0 / 11, {{Prior::uniform, -1, 1}}, size_of_first},
+                 {"wide", 10.0 / 11, {{Prior::uniform, -10, 10}}, size_of_first}});
+  SelectionResult const result =
+      run(toy, with({{"particles", std::int64_t{4000}}, {"schedule", std::vector<double>{1, 0.5, 0.2, 0.1}}}));
+  for (PopulationRecord const& population : result.populations) CHECK(std::fabs(population.models[0].probability - 0.5) < 0.035);
+}
+
+TEST_CASE(
+    "every kernel, in either coordinates, leaves the same posterior: uniform within the threshold, whatever the prior's width") {
+  // Two parameters, distance max |p|: the posterior is uniform on the square, sd eps/sqrt(3), no correlation.
+  Toy const toy({{"square", 1, {{Prior::uniform, -1, 3}, {Prior::uniform, -20, 5}}, [](std::span<double const> p) {
+                    return std::max(std::fabs(p[0]), std::fabs(p[1]));
+                  }}});
+  for (std::string const kernel : {"gaussian", "component_gaussian", "uniform", "nearest_neighbours"})
+    for (std::string const coordinates : {"declared", "unconstrained"}) {
+      CAPTURE(kernel);
+      CAPTURE(coordinates);
+      SelectionResult const result = run(toy, with({{"particles", std::int64_t{2000}},
+                                                    {"kernel", kernel},
+                                                    {"coordinates", coordinates},
+                                                    {"schedule", std::vector<double>{5, 2, 0.8, 0.4, 0.2}}}));
+      REQUIRE_FALSE(result.failure);
+      double const sd = 0.2 / std::sqrt(3.0), ess = result.populations.back().ess;
+      REQUIRE(ess > 500);
+      for (WeightedSummary const& summary : result.models[0].summaries) {
+        CHECK(std::fabs(summary.mean) < 4.5 * sd / std::sqrt(ess));
+        // The sd of an sd of a uniform density: sd sqrt((kurtosis - 1)/4n), kurtosis 9/5.
+        CHECK(std::fabs(summary.sd - sd) < 4.5 * sd * std::sqrt(0.2 / ess));
+        CHECK(summary.q5 == doctest::Approx(-0.18).epsilon(0.1));
+      }
+    }
+}
+
+TEST_CASE("a log-uniform prior keeps its density: the posterior of a threshold on the value itself") {
+  // p ~ log_uniform(1e-3, 1), distance p: p within (1e-3, eps) log-uniform: median sqrt(1e-3 eps).
+  Toy const toy({{"decade", 1, {{Prior::log_uniform, 1e-3, 1}}, [](std::span<double const> p) { return p[0]; }}});
+  for (std::string const coordinates : {"declared", "unconstrained"}) {
+    SelectionResult const result = run(
+        toy,
+        with({{"particles", std::int64_t{2000}}, {"coordinates", coordinates}, {"schedule", std::vector<double>{0.5, 0.2, 0.1}}}));
+    double const ess = result.populations.back().ess, median = std::log(result.models[0].summaries[0].median);
+    // log p is uniform over a width of log 100: sd of a median of n uniform draws is width/(2 sqrt n).
+    CHECK(std::fabs(median - 0.5 * std::log(1e-3 * 0.1)) < 4.5 * std::log(100.0) / (2 * std::sqrt(ess)));
+  }
+}
+
+TEST_CASE("thresholds fall to the quantile of all distances, unweighted, and the run stops at a small change") {
+  Toy const toy = two_widths();
+  SelectionResult const result = run(toy, with({{"quantile", 0.3}, {"threshold_change", 0.01}, {"relative_change", 0.0}}));
+  REQUIRE(result.populations.size() > 3);
+  CHECK(result.populations[0].threshold == infinity);
+  for (std::size_t t = 2; t < result.populations.size(); ++t) {
+    double const fall = result.populations[t - 1].threshold - result.populations[t].threshold;
+    CHECK(fall > 0.01);
+    // Distances of a population are uniform below its threshold.
+    CHECK(result.populations[t].threshold / result.populations[t - 1].threshold == doctest::Approx(0.3).epsilon(0.2));
+  }
+  CHECK(result.threshold - result.next_threshold <= 0.01);
+  CHECK(result.stopped_by.find("lower by") != std::string::npos);
+}
+
+TEST_CASE("a run ends at a target, at its number of populations or simulations, and below an acceptance rate") {
+  Toy const toy = two_widths();
+  SelectionResult const target = run(toy, with({{"target", 0.01}}));
+  CHECK(target.threshold == 0.01);
+  CHECK(target.stopped_by.find("target") != std::string::npos);
+  SelectionResult const populations = run(toy, with({{"populations", std::int64_t{3}}, {"relative_change", 0.0}}));
+  CHECK(populations.populations.size() == 3);
+  SelectionResult const simulations = run(toy, with({{"simulations", 5000.0}, {"relative_change", 0.0}}));
+  CHECK(simulations.stopped_by.find("5000 simulations") != std::string::npos);
+  CHECK(simulations.populations.back().accepted == 1000);  // the last whole one
+  // Normal proposals into a uniform square of a threshold five times smaller: about one in ten is accepted.
+  SelectionResult const acceptance = run(toy, with({{"acceptance", 0.5}, {"relative_change", 0.0}}));
+  CHECK(acceptance.stopped_by.find("accepted") != std::string::npos);
+}
+
+TEST_CASE("a model that cannot come near dies by distance, stays in the table, and is not called unlucky") {
+  Toy const toy({{"near", 0.5, {{Prior::uniform, -1, 1}}, size_of_first},
+                 {"far", 0.5, {{Prior::uniform, -1, 1}}, [](std::span<double const> p) { return 0.5 + std::fabs(p[0]); }}});
+  SelectionResult const result = run(toy, with({{"target", 0.01}}));
+  CHECK(result.models[0].died_in == 0);
+  CHECK(result.models[0].probability == doctest::Approx(1));
+  CHECK(result.models[1].died_in > 1);
+  CHECK_FALSE(result.models[1].by_chance);
+  CHECK(result.models[1].probability == 0);
+  CHECK(result.models[1].summaries.size() == 1);  // of its last particles
+  CHECK_FALSE(has(result.findings, "model_lost_by_chance"));
+}
+
+TEST_CASE("a model that is as near as the others but hardly proposed dies by chance, which is said") {
+  // The rare one is proposed once in 200: in some population none of its proposals is accepted, though its particles were near
+  // enough.
+  Toy const toy(
+      {{"common", 0.995, {{Prior::uniform, -1, 1}}, size_of_first}, {"rare", 0.005, {{Prior::uniform, -1, 1}}, size_of_first}});
+  int lost = 0, said = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SelectionResult const result = run(toy, with({{"particles", std::int64_t{200}}, {"target", 1e-4}}), seed);
+    if (result.models[1].died_in <= 1) continue;
+    ++lost;
+    CHECK(result.models[1].by_chance);
+    said += has(result.findings, "model_lost_by_chance") ? 1 : 0;
+  }
+  CHECK(lost > 0);
+  CHECK(said == lost);
+}
+
+TEST_CASE("degenerate cases end in words") {
+  SUBCASE("no draw comes within the first threshold") {
+    Toy const toy({{"far", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return 5.0; }}});
+    SelectionResult const result = run(toy, with({{"first_threshold", 1.0}, {"simulations", 20000.0}}));
+    REQUIRE(result.failure);
+    CHECK(result.failure->code == "no_population");
+    CHECK(result.failure->message.find("0 of 1000") != std::string::npos);
+  }
+  SUBCASE("nothing can be simulated") {
+    Toy const toy({{"broken", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return std::nan(""); }}});
+    Ledger ledger;
+    SelectionResult const result = run(toy, with({{"simulations", 5000.0}}), 1, &ledger);
+    REQUIRE(result.failure);
+    CHECK(ledger.failed() == ledger.solves());
+    CHECK(ledger.failures().front().where == "the toy of `broken`");
+  }
+  SUBCASE("all distances are equal") {
+    Toy const toy({{"flat", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return 0.25; }}});
+    SelectionResult const result = run(toy, with({{"relative_change", 0.0}}));
+    CHECK_FALSE(result.failure);
+    CHECK(has(result.findings, "distances_equal"));
+    CHECK(result.threshold == 0.25);
+  }
+  SUBCASE("half of the prior cannot be simulated") {
+    Toy const toy(
+        {{"half", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const> p) { return p[0] < 0 ? std::nan("") : p[0]; }}});
+    SelectionResult const result = run(toy, with({{"target", 0.01}}));
+    CHECK_FALSE(result.failure);
+    CHECK(result.populations[0].failed > 300);
+    CHECK(has(result.findings, "failed_solves"));
+  }
+  SUBCASE("a model keeps one particle, and its kernel a width") {
+    Toy const toy(
+        {{"common", 0.999, {{Prior::uniform, -1, 1}}, size_of_first}, {"rare", 0.001, {{Prior::uniform, -1, 1}}, size_of_first}});
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      SelectionResult const result = run(toy, with({{"particles", std::int64_t{100}}, {"target", 0.01}}), seed);
+      CHECK_FALSE(result.failure);
+      CHECK(std::isfinite(result.populations.back().ess));
+    }
+  }
+}
+
+TEST_CASE("an interrupted run goes on to the same bytes, within populations and between them") {
+  Toy const toy = two_widths();
+  Settings const settings = with({{"particles", std::int64_t{3000}}, {"target", 0.01}, {"quantile", 0.1}});
+  Ledger whole_ledger;
+  SelectionResult const whole = run(toy, settings, 5, &whole_ledger);
+  for (int const polls : {0, 1, 3, 6, 10}) {
+    CAPTURE(polls);
+    SilentProgress silent;
+    nlohmann::json stored;
+    {
+      Ledger ledger;
+      int left = polls;
+      RunContext context{5,  silent, ledger, [&] { return left-- <= 0; }, [&](nlohmann::json const& state) { stored = state; }, 1e9,
+                         {}, {},     {}};
+      SelectionResult const part = abc::run(toy, settings, context);
+      CHECK(part.interrupted);
+    }
+    Ledger ledger;
+    RunContext context{5, silent, ledger, {}, {}, 60, nlohmann::json::from_cbor(nlohmann::json::to_cbor(stored)), {}, {}};
+    SelectionResult const resumed = abc::run(toy, settings, context);
+    REQUIRE(resumed.populations.size() == whole.populations.size());
+    CHECK(std::bit_cast<std::uint64_t>(resumed.threshold) == std::bit_cast<std::uint64_t>(whole.threshold));
+    CHECK(resumed.models[0].weight == whole.models[0].weight);
+    CHECK(resumed.models[1].distance == whole.models[1].distance);
+    CHECK(ledger.solves() == whole_ledger.solves());
+  }
+  // A checkpoint of another seed is refused.
+  SilentProgress silent;
+  Ledger ledger;
+  nlohmann::json stored;
+  RunContext first{5, silent, ledger, [] { return true; }, [&](nlohmann::json const& state) { stored = state; }, 1e9, {}, {}, {}};
+  abc::run(toy, settings, first);
+  RunContext other{6, silent, ledger, {}, {}, 60, stored, {}, {}};
+  CHECK(abc::run(toy, settings, other).failure);
+}
+
+TEST_CASE("systematic resampling gives each item its share, rounded up or down") {
+  std::vector<double> const weights = {0.1, 0.25, 0.0, 0.65};
+  std::vector<int> const chosen = resample(weights, 1000, 0.37);
+  REQUIRE(chosen.size() == 1000);
+  for (int item = 0; item < 4; ++item) {
+    auto const count = std::count(chosen.begin(), chosen.end(), item);
+    CHECK(std::fabs(static_cast<double>(count) - 1000 * weights[static_cast<std::size_t>(item)]) < 1);
+  }
+}
+
+TEST_CASE("weighted summaries of a small set by hand") {
+  std::vector<double> const values = {3, 1, 2}, weights = {0.2, 0.5, 0.3};
+  WeightedSummary const summary = summarise_weighted("p", "m", values, weights);
+  CHECK(summary.mean == doctest::Approx(1.7));
+  CHECK(summary.sd == doctest::Approx(std::sqrt(0.2 * 1.69 + 0.5 * 0.49 + 0.3 * 0.09)));
+  CHECK(summary.median == 1);
+  CHECK(summary.q95 == 3);
+}
