@@ -57,7 +57,9 @@ Reading<typename Rule::attribute_type> read_all(Rule const& rule, Source const& 
   std::size_t const before = diagnostics.all().size();
   if (source.text().size() > most_text_bytes) {
     diagnostics.add(errors::text_too_large({most_text_bytes, most_text_bytes + 1}, most_text_bytes));
-    return std::nullopt;
+    Reading<typename Rule::attribute_type> nothing;
+    nothing.open_end = true;
+    return nothing;
   }
   Layout const layout = lay_out(source, diagnostics, before + most_errors);
   State state(layout, diagnostics, before + most_errors);
