@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/bands.hpp"
 #include "app/drift.hpp"
@@ -18,6 +19,24 @@ namespace sysid {
 namespace {
 
 constexpr double least_coverage = 0.8;  // of a 95 % band: errors that are correlated in time leave it in stretches
+
+int measured_samples(Report const& report, FitLine const& line) {
+  int count = 0;
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities) {
+      if (prediction.experiment != line.experiment || quantity.name != line.channel) continue;
+      for (std::size_t i = 0; i < quantity.measured.size(); ++i)
+        count += prediction.scored[i] != 0 && !std::isnan(quantity.measured[i]);
+    }
+  return count;
+}
+
+// So few inside a 95 % band that chance will not do it: 3.3 binomial sds and one sample besides.
+bool misses(double coverage, int samples) {
+  constexpr double expected = 0.95;
+  double const short_of = (expected - coverage) * samples;
+  return coverage < least_coverage && short_of > 3.3 * std::sqrt(samples * expected * (1 - expected)) + 1;
+}
 
 // The per-experiment parameters that a new experiment draws from their prior, by name.
 std::vector<std::string> drawn_parameters(Model const& model, ExperimentUse const& use) {
@@ -102,7 +121,7 @@ class Predict {
     bool any = false;
     for (FitLine const& line : fit_lines(report))
       for (Score const& score : line.scores) {
-        if (score.name != "coverage_95" || score.value >= least_coverage) continue;
+        if (score.name != "coverage_95" || !misses(score.value, measured_samples(report, line))) continue;
         any = true;
         report.findings.push_back(
             {Severity::warning, "coverage_low",

@@ -115,8 +115,11 @@ TEST_CASE("a fitted experiment is predicted with its own parameters, a new one f
   Folder folder;
   folder.run();
   json const forecast = folder.summary("forecast");
-  REQUIRE(forecast["findings"].size() == 1);
+  REQUIRE(forecast["findings"].size() == 2);
   CHECK(forecast["findings"][0]["code"] == "new_experiment");
+  // It is given a gain of 3 where the record was made with 0.5.
+  CHECK(forecast["findings"][1]["code"] == "coverage_low");
+  CHECK(forecast["findings"][1]["message"].get<std::string>().find("level on new lie inside the 95 % band") != std::string::npos);
   CHECK(forecast["findings"][0]["message"] == "`new` was not fitted: `start` is drawn from the prior given the shared parameters");
   // The second record's level is known where it was fitted; the new one's start has the population's sd of 1 at least.
   auto const first_band = [&](std::string const& file) {
