@@ -51,7 +51,7 @@ std::vector<Mode> modes_near(ModelTarget const& target, SelectedModel const& mod
       start.theta.push_back(rows[p] < 0 ? prior(static_cast<int>(p), s) : model.theta(rows[p], particle));
     from.push_back(std::move(start));
   }
-  std::vector<Mode> found = refit(target, from, Aim::posterior, seed, ledger);
+  std::vector<Mode> found = refit(target, Aim::posterior, from, seed, ledger);
   std::erase_if(found, [](Mode const& mode) { return !std::isfinite(mode.log_density) || !std::isfinite(mode.log_mass); });
   std::stable_sort(found.begin(), found.end(), [](Mode const& a, Mode const& b) { return a.log_density > b.log_density; });
   std::vector<Mode> modes;
