@@ -1,57 +1,81 @@
-// Three evaluations of the rates and one of the Jacobian; then sums over its rows.
+// Trial steps of the classical Runge-Kutta method, ten times shorter until a whole one and two halves agree.
 #include "simulate/state_sizes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace sysid {
+namespace {
+
+constexpr int most_trials = 40;
+constexpr double agreement = 0.1;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+using Values = std::vector<double>;
+
+/// Algebraic states stay where they are. Nothing when something is not finite.
+std::optional<Values> trial_step(LaneEquations& equations, double time, Values const& from, double h) {
+  auto const differential = static_cast<std::size_t>(equations.differential());
+  auto const moved = [&](double part, Values const& rates) {
+    Values to = from;
+    for (std::size_t i = 0; i < differential; ++i) to[i] += part * rates[i];
+    return to;
+  };
+  std::size_t const n = from.size();
+  Values first(n), second(n), third(n), fourth(n);
+  if (!equations.rates(time, from.data(), first.data())) return std::nullopt;
+  if (!equations.rates(time + h / 2, moved(h / 2, first).data(), second.data())) return std::nullopt;
+  if (!equations.rates(time + h / 2, moved(h / 2, second).data(), third.data())) return std::nullopt;
+  if (!equations.rates(time + h, moved(h, third).data(), fourth.data())) return std::nullopt;
+  for (std::size_t i = 0; i < differential; ++i) first[i] += 2 * (second[i] + third[i]) + fourth[i];
+  Values const to = moved(h / 6, first);
+  if (!std::all_of(to.begin(), to.end(), [](double y) { return std::isfinite(y); })) return std::nullopt;
+  return to;
+}
+
+}  // namespace
 
 void raise_sizes(LaneEquations& equations, double time, double end, std::span<double const> states, SolverSettings const& solver,
                  std::span<double> sizes) {
   std::size_t const n = states.size(), differential = static_cast<std::size_t>(equations.differential());
   for (std::size_t i = 0; i < n; ++i) sizes[i] = std::max(sizes[i], std::fabs(states[i]));
-  std::vector<double> rates(n), later(n), jacobian(n * n);
-  // What is not finite fails in the solve that follows.
-  if (!equations.rates(time, states.data(), rates.data()) || !equations.jacobian(time, states.data(), jacobian.data())) return;
+  Values const begin(states.begin(), states.end());
+  Values jacobian(n * n), terms(n);
+  if (!equations.jacobian(time, begin.data(), jacobian.data())) return;  // it fails in the solve that follows
   auto const slope = [&](std::size_t i, std::size_t j) { return std::fabs(jacobian[j * n + i]); };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) terms[i] += slope(i, j) * std::fabs(begin[j]);
 
-  double fastest = 0;
-  for (std::size_t i = 0; i < differential; ++i)
-    for (std::size_t j = 0; j <= i; ++j) fastest = std::max(fastest, std::sqrt(slope(i, j)) * std::sqrt(slope(j, i)));
-  double const tau = std::min(end - time, 1 / fastest);
-  // What input and time will do, and what the states will: a rate may begin at zero, and at a kink its slope does, too.
-  std::vector<double> ahead(states.begin(), states.end()), most(n);
-  for (std::size_t i = 0; i < differential; ++i) ahead[i] += tau * rates[i];
-  for (std::size_t i = 0; i < n; ++i) most[i] = std::fabs(rates[i]);
-  auto const look = [&](double when, double const* where) {
-    if (!equations.rates(when, where, later.data())) return;
-    for (std::size_t i = 0; i < n; ++i) most[i] = std::max(most[i], std::fabs(later[i]));
-  };
-  look(end, states.data());
-  look(time + tau, ahead.data());
-  // A rate counts for tau, a constraint for how far it moves its own unknown.
-  auto const weight = [&](std::size_t i) { return i < differential ? tau : slope(i, i) > 0 ? 1 / slope(i, i) : 0; };
-  auto const row = [&](std::size_t i, auto const& of) {
-    double sum = 0;
-    for (std::size_t j = 0; j < n; ++j) sum += (i >= differential && j == i) || slope(i, j) == 0 ? 0 : slope(i, j) * of(j);
-    return weight(i) * sum;
-  };
-  double const rounding = 4000 * std::numeric_limits<double>::epsilon() / solver.relative;
-  std::vector<double> known(n);
-  for (std::size_t i = 0; i < n; ++i) known[i] = std::max(sizes[i], weight(i) * most[i]);
-  // From one to the next: a force moves a speed, a speed a place.
-  for (std::size_t round = 0; round < n; ++round) {
-    std::vector<double> const before = known;
-    for (std::size_t i = 0; i < n; ++i)
-      if (before[i] == 0) known[i] = row(i, [&](std::size_t j) { return before[j]; });
-    if (known == before) break;
+  double h = end - time;
+  std::optional<Values> reached;
+  for (int trial = 0; trial < most_trials && !reached; ++trial) {
+    auto const whole = trial_step(equations, time, begin, h), middle = trial_step(equations, time, begin, h / 2);
+    auto halves = middle ? trial_step(equations, time + h / 2, *middle, h / 2) : std::nullopt;
+    bool agree = whole && halves;
+    for (std::size_t i = 0; i < differential && agree; ++i) {
+      // A whole step may be too short for a force to come through to the end of a chain.
+      double const allowed = agreement * std::fabs((*halves)[i]) + 8 * epsilon * h * terms[i];
+      agree = (*whole)[i] == 0 || std::fabs((*whole)[i] - (*halves)[i]) <= allowed;
+    }
+    if (agree)
+      reached = std::move(halves);
+    else
+      h /= 10;
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    double const noise = rounding * row(i, [&](std::size_t j) { return std::fabs(states[j]); });
-    double const size = std::max(known[i], noise);
-    if (std::isfinite(size)) sizes[i] = size;
+  if (!reached) return;
+  for (std::size_t i = 0; i < differential; ++i)
+    sizes[i] = std::max({sizes[i], std::fabs((*reached)[i]), 4000 * epsilon / solver.relative * h * terms[i]});
+  if (differential == n) return;
+  Values residual(n);
+  if (!equations.rates(time + h, reached->data(), residual.data())) return;
+  for (std::size_t i = differential; i < n; ++i) {
+    if (sizes[i] > 0 || slope(i, i) == 0) continue;
+    double sum = std::fabs(residual[i]);
+    for (std::size_t j = 0; j < n; ++j) sum += slope(i, j) * sizes[j];  // its own is 0
+    if (std::isfinite(sum / slope(i, i))) sizes[i] = sum / slope(i, i);
   }
 }
 

@@ -171,6 +171,30 @@ TEST_CASE("a state whose rate begins at zero, on a kink, has a size") {
   }
 }
 
+TEST_CASE("a stiff start does not loosen the error control of states that begin at zero") {
+  // Robertson's reaction, see below: b stays below 4e-5, where a guess from its first rate would be 1, and 1e9 for c.
+  SimulationSource source;
+  Graph& g = source.graph;
+  NodeId const a = g.leaf(LeafKind::state, 0), b = g.leaf(LeafKind::state, 1), c = g.leaf(LeafKind::state, 2);
+  NodeId const first = g.multiply(g.constant(0.04), a), back = g.multiply(g.multiply(g.constant(1e4), b), c);
+  NodeId const second = g.multiply(g.constant(3e7), g.multiply(b, b));
+  source.initial = {g.constant(1), g.constant(0), g.constant(0)};
+  source.derivative = {g.subtract(back, first), g.subtract(g.subtract(first, back), second), second};
+  source.records = {a, b, c};
+  double const expected[][4] = {{0.4, 0.985172113861, 3.38639537898e-05, 0.0147940221852},
+                                {40, 0.715827068719, 9.1855347646e-06, 0.284163745746},
+                                {4e5, 0.00493827452098, 1.98499408795e-08, 0.995061705629}};
+  for (auto const& row : expected)
+    for (char const* method : {"cvode", "ida"}) {
+      CAPTURE(method);
+      CAPTURE(row[0]);
+      Run const result =
+          run(source, {.method = method, .relative = 1e-9}, testing::experiment({0, row[0]}, {}, {}), LaneArray(0, 1).view());
+      REQUIRE(result.outcome[0].ok);
+      for (int r = 0; r < 3; ++r) CHECK(result.records(3 + r, 0) == doctest::Approx(row[r + 1]).scale(0).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("a state that rounding alone moves asks for no short steps") {
   // A mass hangs at rest on its spring: its acceleration g - k y/m is the rounding error of two forces of 9.81 N, or nothing.
   SimulationSource source;
