@@ -15,7 +15,7 @@ constexpr std::size_t most_expressions = 2'000'000;
 // Each takes up to 3 kB of a stack of 8 MB.
 constexpr std::size_t most_depth = 1000;
 // Of one file; twenty are shown.
-constexpr std::size_t most_messages = 1000;
+constexpr std::size_t most_messages = 100;
 
 bool is_sum(ast::Binary const& binary) { return binary.symbol == "+" || binary.symbol == "-"; }
 

@@ -1,6 +1,8 @@
 // Differentiation on the syntax tree; zeros and ones are left out as soon as they arise.
 #include "check/elaborate/derivative.hpp"
 
+#include <algorithm>
+
 #include "check/elaborate/tree.hpp"
 
 namespace sysid {
@@ -20,15 +22,39 @@ Expression times(Expression a, Expression b, Span span) {
   return tree::binary("*", std::move(a), std::move(b), span);
 }
 
-}  // namespace
+// Definitions inside of definitions and operators inside of operators; below 1 kB of stack each.
+constexpr int most_depth = 4500;
 
-std::optional<Expression> time_derivative(Expression const& expression,
-                                          std::function<std::optional<Motion>(std::string const&)> const& motion_of) {
+class Rate {
+ public:
+  Rate(std::function<std::optional<Motion>(std::string const&)> const& motion_of, std::size_t& left)
+      : motion_of_(motion_of), left_(left) {}
+
+  std::optional<Expression> of(Expression const& expression) {
+    if (left_ == 0 || depth_ == most_depth) {
+      left_ = 0;
+      return std::nullopt;
+    }
+    --left_;
+    ++depth_;
+    auto rate = derivative(expression);
+    --depth_;
+    return rate;
+  }
+
+ private:
+  std::optional<Expression> derivative(Expression const& expression);
+
+  std::function<std::optional<Motion>(std::string const&)> const& motion_of_;
+  std::size_t& left_;
+  int depth_ = 0;
+};
+
+std::optional<Expression> Rate::derivative(Expression const& expression) {
   Span const span = expression.span;
-  auto const derivative = [&](Expression const& of) { return time_derivative(of, motion_of); };
   if (std::holds_alternative<ast::Number>(expression.node)) return tree::number(0, span);
   if (auto const* reference = std::get_if<ast::Reference>(&expression.node)) {
-    auto const motion = motion_of(reference->name.text);
+    auto const motion = motion_of_(reference->name.text);
     if (!motion) return std::nullopt;
     switch (motion->kind) {
       case Motion::Kind::moving:
@@ -38,12 +64,12 @@ std::optional<Expression> time_derivative(Expression const& expression,
       case Motion::Kind::time:
         return tree::number(1, span);
       case Motion::Kind::defined:
-        return reference->primes == 0 ? derivative(*motion->definition) : std::nullopt;
+        return reference->primes == 0 ? of(*motion->definition) : std::nullopt;
     }
   }
   if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&expression.node)) {
     if ((*unary)->symbol != "-") return std::nullopt;
-    auto operand = derivative(*(*unary)->operand);
+    auto operand = of(*(*unary)->operand);
     if (!operand || tree::is_number(*operand, 0)) return operand;
     return tree::unary("-", std::move(*operand), span);
   }
@@ -51,9 +77,12 @@ std::optional<Expression> time_derivative(Expression const& expression,
   if (binary == nullptr) return std::nullopt;
   std::string const& symbol = (*binary)->symbol;
   Expression const &left = *(*binary)->left, &right = *(*binary)->right;
-  auto a = derivative(left), b = derivative(right);
+  auto a = of(left), b = of(right);
   if (!a || !b) return std::nullopt;
   if (symbol == "+" || symbol == "-") return plus(std::move(*a), std::move(*b), symbol, span);
+  // The rules below copy both sides.
+  left_ -= std::min(left_, tree::size(left, left_) + tree::size(right, left_));
+  if (left_ == 0) return std::nullopt;
   if (symbol == "*") return plus(times(std::move(*a), right, span), times(left, std::move(*b), span), "+", span);
   if (symbol == "/") {
     Expression first = tree::is_number(*a, 0) ? tree::number(0, span) : tree::binary("/", std::move(*a), right, span);
@@ -68,6 +97,14 @@ std::optional<Expression> time_derivative(Expression const& expression,
     return times(tree::binary("*", right, std::move(power), span), std::move(*a), span);
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Expression> time_derivative(Expression const& expression,
+                                          std::function<std::optional<Motion>(std::string const&)> const& motion_of,
+                                          std::size_t& left) {
+  return Rate(motion_of, left).of(expression);
 }
 
 }  // namespace sysid

@@ -1,5 +1,6 @@
 // The time derivative of an expression of numbers: what `displacement'` means where a part's input is bound to an expression.
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -21,8 +22,10 @@ struct Motion {
 };
 
 /// d/dt by the rules for sums, products, quotients and constant powers; nothing where another operation is in the way. A number 0
-/// where nothing moves.
+/// where nothing moves. left: how many expressions may still be looked at, definitions included each time they occur; 0 and
+/// nothing when that, or the stack, is not enough.
 std::optional<ast::Expression> time_derivative(ast::Expression const& expression,
-                                               std::function<std::optional<Motion>(std::string const&)> const& motion_of);
+                                               std::function<std::optional<Motion>(std::string const&)> const& motion_of,
+                                               std::size_t& left);
 
 }  // namespace sysid

@@ -17,7 +17,7 @@ namespace sysid {
 namespace {
 
 // All models together, each with each of its arguments.
-constexpr std::size_t most_nodes_of_file = 2'000'000;
+constexpr std::size_t most_nodes_of_file = 1'000'000;
 
 class Elaborator {
  public:

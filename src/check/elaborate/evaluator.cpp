@@ -13,8 +13,23 @@
 
 namespace sysid {
 
+namespace {
+
+// Operators and definitions, one inside the other: more than a statement may hold. Each takes up to 1 kB of a stack of 8 MB.
+constexpr int most_depth = 4500;
+
+}  // namespace
+
 std::optional<Array> Evaluator::evaluate(ast::Expression const& expression, Frame& frame) {
+  if (depth_ == most_depth) algebra_.refuse(expression.span);
   if (algebra_.exhausted()) return std::nullopt;
+  ++depth_;
+  auto value = evaluate_node(expression, frame);
+  --depth_;
+  return value;
+}
+
+std::optional<Array> Evaluator::evaluate_node(ast::Expression const& expression, Frame& frame) {
   Span const span = expression.span;
   if (auto const* number = std::get_if<ast::Number>(&expression.node)) {
     ast::Number copy = *number;
@@ -174,7 +189,13 @@ std::optional<Motion> Evaluator::motion_of(std::string const& name) const {
 std::optional<ast::Expression> Evaluator::rate(ast::Expression expression, int primes, Span use, std::string const& input) {
   Span const binding = expression.span;
   for (; primes > 0; --primes) {
-    auto derived = time_derivative(expression, [&](std::string const& name) { return motion_of(name); });
+    std::size_t left = algebra_.left();
+    auto derived = time_derivative(
+        expression, [&](std::string const& name) { return motion_of(name); }, left);
+    if (!derived && left == 0) {
+      algebra_.refuse(use);
+      return std::nullopt;
+    }
     if (!derived) {
       diagnostics_.add(errors::no_rate_of_binding(use, binding, input));
       return std::nullopt;

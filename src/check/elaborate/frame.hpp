@@ -84,6 +84,7 @@ class Evaluator {
 
  private:
   using Locals = std::map<std::string, Array>;
+  std::optional<Array> evaluate_node(ast::Expression const& expression, Frame& frame);
   std::optional<Array> reference(ast::Reference const& reference, Frame& frame);
   std::optional<Array> element(Array array, ast::Reference const& reference, Frame const& frame);
   std::optional<Array> call(ast::Call const& call, Span span, Frame& frame);
@@ -100,6 +101,7 @@ class Evaluator {
   ArrayAlgebra algebra_;
   Locals const* locals_ = nullptr;
   Environment const* function_home_ = nullptr;  // of the function that is being expanded
+  int depth_ = 0;                               // of evaluate
   std::vector<ast::FunctionDefinition const*> expanding_;
   std::map<std::string, ast::Expression> definitions_;  // by flat name
   std::map<std::string, Motion::Kind> motions_;
