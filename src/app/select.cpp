@@ -136,7 +136,18 @@ class Select {
     return measure;
   }
 
+  /// UserError, placed at the task, where the data do not allow the distance.
   ModelSelectionTarget make_target(bool finer) const {
+    try {
+      return ModelSelectionTarget(describe_candidates(finer));
+    } catch (UserError const& error) {
+      Diagnostic placed = error.diagnostic();
+      if (!placed.primary) placed.primary = Label{task_.span, {}};
+      throw UserError(std::move(placed));
+    }
+  }
+
+  std::vector<SelectionCandidate> describe_candidates(bool finer) const {
     std::vector<SelectionCandidate> all;
     for (Candidate const& each : candidates_) {
       TargetOptions options;
@@ -149,7 +160,7 @@ class Select {
       all.push_back({each.what->name, each.what->probability, each.compiled, each.simulated, experiments_of(each.data),
                      each.measure, std::move(options)});
     }
-    return ModelSelectionTarget(std::move(all));
+    return all;
   }
 
   // --- what the likelihood says

@@ -96,7 +96,8 @@ class Run {
     double const rate =
         record_.proposed == 0 ? last_acceptance_ : (record_.accepted + 1.0) / static_cast<double>(record_.proposed + 1);
     double const needed = (plan_.particles - record_.accepted) / std::max(rate, 1e-6);
-    return static_cast<int>(std::clamp<double>(std::ceil(needed), least_batch, most_batch));
+    double const allowed = static_cast<double>(plan_.simulations - simulations_ - record_.simulated);
+    return static_cast<int>(std::min(std::clamp<double>(std::ceil(needed), least_batch, most_batch), allowed));
   }
 
   void propose(Proposals const& proposals) {
