@@ -187,6 +187,18 @@ TEST_CASE("a force of free scale makes Duffing's parameters a group that scales 
   CHECK(grade(result.page) == Severity::error);
 }
 
+TEST_CASE("of the Bouc-Wen benchmark's beta, gamma and delta only two products are known, which is named") {
+  std::string text = shipped("bouc_wen_benchmark/bouc_wen_benchmark.sysid");
+  text = with(text, "parameter beta_gamma [1/m]   ~ log_uniform(10, 1e4)",
+              "parameter beta [1/m] ~ log_uniform(10, 1e4)\n  parameter gamma [-] ~ log_uniform(0.1, 10)");
+  text = with(text, "parameter beta_delta [1/m]   ~ normal(0, sd = 1000)", "parameter delta [-] ~ normal(0, sd = 1)");
+  text = with(with(text, "beta_gamma*abs(y')*z", "beta*gamma*abs(y')*z"), "beta_delta*y'*abs(z)", "beta*delta*y'*abs(z)");
+  CheckResult const result = checked(models / "bouc_wen_benchmark/bouc_wen_benchmark.sysid", text);
+  auto const found = messages(result, "not_identifiable");
+  REQUIRE(found.size() == 1);
+  CHECK(found.front().starts_with("scaling beta by s and gamma and delta by s^(-1) leaves displacement unchanged, whatever s"));
+}
+
 TEST_CASE("a quadratic spring beside both offsets of the Silverbox is one null direction of four parameters") {
   // Moving the origin of y by a: offset + a, k + 2 k2 a, k2 + 3 k3 a, u0 + (k/b) a leave the output as it was, whatever a.
   CheckResult const result = checked(models / "silverbox/quadratic.sysid", quadratic());
