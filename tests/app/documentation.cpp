@@ -20,6 +20,7 @@
 #include "app/check_file.hpp"
 #include "app/markdown.hpp"
 #include "app/pipeline.hpp"
+#include "app/running.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "inference/backend.hpp"
@@ -138,13 +139,13 @@ std::string const& printed_by(std::string const& command) {
   if (!fresh) return place->second;
   std::vector<std::string> const words = words_of(command);
   REQUIRE_MESSAGE((words.size() == 3 && words[0] == "./sysid"), "cannot run `" << command << "` for its output");
-  fs::path const folder = fs::temp_directory_path() / ("sysid_documentation_" + std::to_string(std::rand()));
+  TemporaryFolder const folder;
   Source source((root / words[2]).string(), read_file(root / words[2]));
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   REQUIRE_MESSAGE(file, render(diagnostics, source, false));
   RunOptions options;
-  options.output = folder;
+  options.output = folder.path();
   options.force = true;
   options.figures = false;
   SilentProgress progress;
@@ -154,7 +155,6 @@ std::string const& printed_by(std::string const& command) {
     return place->second = check_text(check_file(session).page);
   }
   run_tasks(source, *file, words[1] == "run" ? std::vector<std::string>{} : std::vector{words[1]}, options, progress, out, notices);
-  fs::remove_all(folder);
   return place->second = out.str();
 }
 

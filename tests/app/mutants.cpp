@@ -178,7 +178,9 @@ class Mutator {
     doubled.insert(span.end, "\n" + statement);
     Span const both{span.begin, span.end + 1 + (span.end - span.begin)};
     out_.push_back({"doubled statement", std::move(doubled), both, both, {}, {}});
-    if (tokens()[first].is("derive") || !(declaration(first) || tokens()[first + 1].is("="))) return;
+    // What is derived or shared may be left out.
+    if (tokens()[first].is("derive") || tokens()[first].is("shared") || !(declaration(first) || tokens()[first + 1].is("=")))
+      return;
     std::vector<std::string> names = {std::string(tokens()[first].text)};
     bool used = tokens()[first].is("initial") || tokens()[first].is("file");
     for (std::size_t i = first; i < end; ++i) {
