@@ -45,7 +45,7 @@ struct DataPart {
 /// `constant dose = 30 [mg]`: what a parameter is in this experiment.
 struct DataConstantUse {
   std::string parameter;
-  double value = 0;          // SI where the number carries a unit, else as written: then in the unit of the parameter
+  double value = 0;          // SI above the zero of its unit; of a bare number as written: then in the unit of the parameter
   std::optional<Unit> unit;  // absent: a bare number
   Span span, value_span;
 };

@@ -48,10 +48,11 @@ class DataChecker {
   std::optional<double> number(ast::Expression const& tree, Unit const& unit, std::string const& what) {
     auto const value = scope_.expression(tree);
     if (!value) return std::nullopt;
-    if (value->kind == Typed::Kind::known && value->unit.dimension != unit.dimension) {
-      diagnostics_.add(errors::number_of_other_kind(tree.span, what, value->unit, unit));
-      return std::nullopt;
-    }
+    if (value->kind == Typed::Kind::known)
+      if (auto refused = refuse_number(tree.span, what, value->unit, unit)) {
+        diagnostics_.add(std::move(*refused));
+        return std::nullopt;
+      }
     auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
     if (!constant) diagnostics_.add(errors::constant_needed(tree.span, what));
     return constant;
@@ -83,10 +84,7 @@ class DataChecker {
   }
   void take(ast::DataInput const& tree) {
     if (!fresh(inputs_, tree.input, "input")) return;
-    DataInputUse use;
-    static_cast<ColumnUse&>(use) = column(tree.column);
-    use.input = tree.input.text;
-    use.input_span = tree.input.span;
+    DataInputUse use{column(tree.column), tree.input.text, {}, tree.input.span, {}};
     if (!tree.rule) {
       use.rule_span = tree.span;
     } else if (auto const rule = input_rule(tree.rule->text)) {
@@ -98,12 +96,8 @@ class DataChecker {
     block_.inputs.push_back(std::move(use));
   }
   void take(ast::DataMeasure const& tree) {
-    if (!fresh(channels_, tree.channel, "channel")) return;
-    DataMeasureUse use;
-    static_cast<ColumnUse&>(use) = column(tree.column);
-    use.channel = tree.channel.text;
-    use.channel_span = tree.channel.span;
-    block_.measured.push_back(std::move(use));
+    if (fresh(channels_, tree.channel, "channel"))
+      block_.measured.push_back({column(tree.column), tree.channel.text, tree.channel.span});
   }
   void take(ast::DataConstant const& tree) {
     if (!fresh(constants_, tree.parameter, "constant")) return;
@@ -192,7 +186,7 @@ void check_binding(DataBlock const& block, Model const& model, DeclaredNames con
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
     if (!column.unit || !declared.unit) return;
     std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
-    if (column.unit->dimension != declared.unit->dimension)
+    if (column.unit->dimension != declared.unit->dimension || zero_against_difference(*column.unit, *declared.unit))
       diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text, wanted));
     else if (cycles_against_radians(*column.unit, *declared.unit))
       diagnostics.add(data_errors::cycles_against_radians(column.column, column.unit->text, wanted, column.span));
@@ -265,13 +259,16 @@ std::vector<std::optional<double>> check_constants(DataBlock const& block, Model
     } else if (!place->per_experiment) {
       add_once(diagnostics, errors::constant_of_shared(constant.span, place->span, place->name));
       good = false;
-    } else if (constant.unit && place->unit && constant.unit->dimension != place->unit->dimension) {
-      add_once(diagnostics, errors::number_of_other_kind(constant.value_span, "the constant `" + place->name + "`", *constant.unit,
-                                                         *place->unit));
+    } else if (auto refused =
+                   constant.unit && place->unit
+                       ? refuse_number(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit)
+                       : std::nullopt) {
+      add_once(diagnostics, std::move(*refused));
       good = false;
     } else {
+      double const shift = constant.unit && place->unit ? constant.unit->offset - place->unit->offset : 0;
       values[static_cast<std::size_t>(place - model.parameters.begin())] =
-          constant.unit ? constant.value : place->to_si(constant.value);
+          constant.unit ? constant.value + shift : place->to_si(constant.value);
     }
   }
   for (std::size_t p = 0; p < values.size() && good; ++p) {

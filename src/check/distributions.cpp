@@ -108,8 +108,9 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
   use.row = row;
   Graph& graph = scope.graph();
   std::string const declared = unit ? "[" + unit_words(*unit) + "]" : "";
-  auto const argument_in = [&](std::optional<Unit> const& wanted, ast::Expression const& tree, std::string const& spelt) {
-    return scope.expression_in(wanted, variate.span, tree, {Occasion::Kind::distribution, spelt, variate.name, declared});
+  auto const argument_in = [&](std::optional<Unit> const& wanted, ast::Expression const& tree, std::string const& spelt,
+                               bool is_width = false) {
+    return scope.expression_in(wanted, variate.span, tree, {Occasion::Kind::distribution, spelt, variate.name, declared, is_width});
   };
   bool all_given = good;
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -126,14 +127,14 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
       continue;
     }
     std::optional<Unit> argument_unit = unit_of_argument(unit, given[i].spelling->unit_power);
-    auto const value = argument_in(argument_unit, *given[i].value, std::string(given[i].spelling->name));
+    // Widths of a temperature are differences: they have no zero to shift.
+    std::string_view const spelt = given[i].spelling->name;
+    bool const place = spelt == "mean" || spelt == "median" || spelt == "location" || spelt == "lower" || spelt == "upper";
+    auto const value = argument_in(argument_unit, *given[i].value, std::string(spelt), !place);
     if (!value) {
       good = false;
       continue;
     }
-    // Widths of a temperature are intervals: they have no zero to shift.
-    std::string_view const spelt = given[i].spelling->name;
-    bool const place = spelt == "mean" || spelt == "median" || spelt == "location" || spelt == "lower" || spelt == "upper";
     Typed argument_value = *value;
     if (!place) {
       argument_value.unit.offset = 0;

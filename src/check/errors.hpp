@@ -29,6 +29,7 @@ Diagnostic unknown_unit(ast::Name const& name);
 Diagnostic unit_exponent(Span span);
 Diagnostic list_here(Span span);
 Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted);
+Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted);
 
 // distributions (E21)
 Diagnostic unknown_distribution(ast::Name const& name, Names const& known);

@@ -142,4 +142,11 @@ Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& 
                wanted.dimensionless() ? "leave out the unit" : "correct the unit, or leave it out");
 }
 
+Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
+  return error(
+      "E4017", span,
+      fmt::format("{} is {}, this is {}: one counts cycles, the other radians, 2 pi apart", what, measure(wanted), measure(given)),
+      fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted)));
+}
+
 }  // namespace sysid::errors

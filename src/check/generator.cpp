@@ -81,7 +81,8 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
       else
         result.rule = static_cast<InputRule>(rule - rules.begin());
     } else {
-      std::optional<Unit> const unit = place->unit == "input" ? input.unit : unit_of(place->unit);
+      std::optional<Unit> unit = place->unit == "input" ? input.unit : unit_of(place->unit);
+      if (unit && (name == "sd" || name == "amplitude")) unit = difference(*unit);
       double const least = name == "mean" || name == "value" || name == "phase" ? -1e300 : 0;
       if (auto const value = reader.number(argument.value, name, unit, least, 1e300)) result.arguments[name] = *value;
     }

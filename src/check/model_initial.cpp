@@ -27,7 +27,8 @@ void ModelChecker::initial_pasts() {
         diagnostics_.add(errors::initial_twice(initial.span, first->second, place->first));
         continue;
       }
-      auto const value = scope_.expression(initial.value);
+      Symbol const& state = *scope_.find(place->first);
+      auto const value = scope_.expression_in(state.unit, state.span, initial.value, {Occasion::Kind::declared, place->first});
       if (!value) continue;
       bool const moves = model_.graph.depends(value->node, [](Node const& node) {
         return node.operation == Operation::leaf && node.leaf_kind != LeafKind::parameter &&
@@ -37,8 +38,7 @@ void ModelChecker::initial_pasts() {
         diagnostics_.add(errors::initial_moves(initial.value.span));
         continue;
       }
-      initial_pasts_[static_cast<std::size_t>(place - states_.begin())] =
-          adapt(model_.graph, *value, scope_.find(place->first)->unit);
+      initial_pasts_[static_cast<std::size_t>(place - states_.begin())] = adapt(model_.graph, *value, state.unit);
     }
   });
 }
@@ -91,7 +91,7 @@ void ModelChecker::initial_values() {
 }
 
 void ModelChecker::guess(ast::InitialValue const& initial, Unknown& unknown) {
-  auto const value = scope_.expression(initial.value);
+  auto const value = scope_.expression_in(unknown.unit, unknown.span, initial.value, {Occasion::Kind::declared, unknown.name});
   if (!value) return;
   if (moving_part(model_.graph, value->node).empty())
     unknown.guess = adapt(model_.graph, *value, unknown.unit);

@@ -86,10 +86,11 @@ std::optional<double> OptionReader::number(ast::Expression const& tree, std::str
                                            double least, double most, bool whole) {
   auto const value = scope_.expression(tree);
   if (!value) return std::nullopt;
-  if (unit && value->kind == Typed::Kind::known && value->unit.dimension != unit->dimension) {
-    diagnostics_.add(errors::number_of_other_kind(tree.span, "`" + name + "`", value->unit, *unit));
-    return std::nullopt;
-  }
+  if (unit && value->kind == Typed::Kind::known)
+    if (auto refused = refuse_number(tree.span, "`" + name + "`", value->unit, *unit)) {
+      diagnostics_.add(std::move(*refused));
+      return std::nullopt;
+    }
   auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
   if (!constant) {
     diagnostics_.add(errors::constant_needed(tree.span, "`" + name + "`"));

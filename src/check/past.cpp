@@ -103,7 +103,8 @@ std::optional<Typed> Scope::channel_call(ast::Call const& call) {
   int const index = channel->second.index;
   NodeId const measured = graph_.leaf(LeafKind::measured, index), predicted = samples_.predicted(graph_, index, 0);
   NodeId const node = what == "measured" ? measured : what == "predicted" ? predicted : graph_.subtract(measured, predicted);
-  return with_unit(node, channel->second.unit, call.span);
+  std::optional<Unit> const& unit = channel->second.unit;
+  return with_unit(node, unit && what == "residual" ? difference(*unit) : unit, call.span);
 }
 
 std::optional<Typed> Scope::change_call(ast::Call const& call) {
@@ -121,7 +122,7 @@ std::optional<Typed> Scope::change_call(ast::Call const& call) {
   auto place = std::find(memories.begin(), memories.end(), value->node);
   if (place == memories.end()) place = memories.insert(memories.end(), value->node);
   value->node = graph_.subtract(value->node, samples_.memory(graph_, static_cast<int>(place - memories.begin())));
-  value->unit.offset = 0;  // a change has no zero of its own
+  value->unit = difference(value->unit);
   return value;
 }
 

@@ -63,6 +63,13 @@ std::optional<Unit> unify(Graph& graph, std::span<Typed> operands) {
   auto const known = std::find_if(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::known; });
   if (known == operands.end()) return std::nullopt;
   Unit unit = known->unit;
+  // A number is converted to the zero point of what is none.
+  if (graph.constant_value(known->node))
+    for (Typed const& operand : operands)
+      if (operand.kind == Kind::known && operand.unit.offset != unit.offset && !graph.constant_value(operand.node)) {
+        unit = operand.unit;
+        break;
+      }
   // Beside a pure number a bare number is one: 1 + a/L is not 1 mm/m more than a/L.
   if (unit.dimensionless() &&
       std::any_of(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::literal; })) {
@@ -156,24 +163,18 @@ Typed settled(Typed typed) {
 
 Typed add(Graph& graph, Typed a, Typed b, bool subtract) {
   Typed operands[] = {settled(std::move(a)), settled(std::move(b))};
-  auto const temperature = [](Typed const& t) { return t.kind == Kind::known && t.unit.offset != 0; };
-  bool const difference = subtract && temperature(operands[0]) && temperature(operands[1]);
-  // A temperature and an interval ([delta_degC], or a difference of two temperatures): the interval keeps its size. What is written
-  // in [K] is a temperature and converted.
-  auto const is_interval = [](Typed const& t) { return t.kind == Kind::known && t.unit.offset == 0 && t.unit.text != "K"; };
-  bool const interval =
-      (temperature(operands[0]) && is_interval(operands[1])) || (temperature(operands[1]) && is_interval(operands[0]));
+  auto const has_zero = [](Typed const& t) { return t.kind == Kind::known && t.unit.offset != 0; };
+  bool const both = has_zero(operands[0]) && has_zero(operands[1]);
+  // A temperature and a difference of temperatures: neither has a zero point to convert to the other's.
+  bool const one = !both && (has_zero(operands[0]) || has_zero(operands[1])) && operands[0].kind == operands[1].kind;
   std::optional<Unit> unit;
-  if (interval)
-    unit = temperature(operands[0]) ? operands[0].unit : operands[1].unit;
+  if (one)
+    unit = has_zero(operands[0]) ? operands[0].unit : operands[1].unit;
   else
     unit = unify(graph, operands);
   NodeId const node = subtract ? graph.subtract(operands[0].node, operands[1].node) : graph.add(operands[0].node, operands[1].node);
   Typed result = shared(node, operands, unit);
-  if (difference && result.unit.offset != 0) {
-    result.unit.offset = 0;  // the difference of two temperatures has no zero of its own
-    result.unit.text.clear();
-  }
+  if (both && subtract) result.unit = difference(result.unit);
   return result;
 }
 
@@ -226,6 +227,15 @@ Typed negate(Graph& graph, Typed const& a) {
   Typed result = a;
   result.node = graph.negate(a.node);
   return result;
+}
+
+Zeros compare_zeros(Graph const& graph, Typed const& a, Typed const& b, bool addends) {
+  if (a.kind != Kind::known || b.kind != Kind::known || a.unit.dimension != b.unit.dimension || a.unit.offset == b.unit.offset)
+    return Zeros::agree;
+  bool const difference = zero_against_difference(a.unit, b.unit);
+  if (addends) return difference ? Zeros::agree : Zeros::in_doubt;
+  if (difference) return Zeros::of_difference;
+  return graph.constant_value(a.node) || graph.constant_value(b.node) ? Zeros::agree : Zeros::apart;
 }
 
 Typed compare(Graph& graph, Operation operation, Typed a, Typed b) {

@@ -33,6 +33,17 @@ Typed literal(Graph& graph, double value, Span span);
 Typed tagged(Graph& graph, double value, Unit const& unit, Span span);
 Typed with_unit(NodeId node, std::optional<Unit> const& unit, Span span);
 
+/// What becomes of two temperatures, or a temperature and a difference of two, where they meet. Zero points of numbers are
+/// converted, those of expressions are not: a quantity in [K] may be a temperature or a difference, and only its user knows.
+enum class Zeros {
+  agree,          // one zero point, or a number that is converted to it; in a sum, a temperature and a difference
+  in_doubt,       // addends with zero points of their own, or with one in [K]
+  of_difference,  // a difference where a temperature is wanted, or the other way round
+  apart,          // temperatures in units with different zero points
+};
+/// addends: they are added or subtracted; otherwise one stands for the other (sides, branches, a declaration and its value).
+Zeros compare_zeros(Graph const& graph, Typed const& a, Typed const& b, bool addends);
+
 /// `typed` where a quantity of `unit` is expected: a literal is scaled; degrees are shifted between temperature units; else
 /// unchanged.
 NodeId adapt(Graph& graph, Typed const& typed, std::optional<Unit> const& unit);

@@ -27,7 +27,11 @@ std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<UnitOpe
   auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node);
   if (binary != nullptr && is_sum(**binary)) {
     auto left = sum(*(*binary)->left, terms, side), right = sum(*(*binary)->right, terms, side);
-    if (left && right) value = add(graph_, *left, *right, (*binary)->symbol == "-");
+    if (left && right) {
+      bool const agreed = units_.one_zero(graph_, {*left, &*(*binary)->left}, {*right, &*(*binary)->right}, true);
+      value = add(graph_, *left, *right, (*binary)->symbol == "-");
+      if (!agreed) value->kind = Typed::Kind::wrong;
+    }
   } else if (unary != nullptr && (*unary)->symbol == "-") {
     auto operand = sum(*(*unary)->operand, terms, side);
     if (operand) value = negate(graph_, *operand);
@@ -55,16 +59,19 @@ std::optional<Typed> Scope::expression_in(std::optional<Unit> const& unit, Span 
   if (!unit) return expression(tree);
   std::vector<UnitOperand> terms;
   std::optional<Typed> value = sum(tree, terms);
-  terms.push_back({with_unit(0, unit, place)});
+  UnitOperand const declared{with_unit(0, unit, place)};
+  terms.push_back(declared);
   if (!units_.agree(occasion, terms) && value) value->kind = Typed::Kind::wrong;
+  if (value && !occasion.is_width && !units_.one_zero(graph_, {*value, &tree}, declared, false)) value->kind = Typed::Kind::wrong;
   return value;
 }
 
 std::optional<std::pair<Typed, Typed>> Scope::equation(ast::Equation const& equation) {
   std::vector<UnitOperand> terms;
   auto left = sum(equation.left, terms, 0), right = sum(equation.right, terms, 1);
-  bool const agreed = units_.agree(Occasion{}, terms);
+  bool agreed = units_.agree(Occasion{}, terms);
   if (!left || !right) return std::nullopt;
+  agreed = agreed && units_.one_zero(graph_, {*left, &equation.left}, {*right, &equation.right}, false);
   Typed sides[] = {*left, *right};
   unify(graph_, sides);
   if (!agreed) sides[0].kind = Typed::Kind::wrong;
@@ -77,7 +84,7 @@ Typed Scope::compared(Operation operation, UnitOperand left, UnitOperand right) 
     units_.condition(operands[0]);
     units_.condition(operands[1]);
   } else {
-    units_.agree({Occasion::Kind::comparison}, operands);
+    if (units_.agree({Occasion::Kind::comparison}, operands)) units_.one_zero(graph_, operands);
   }
   return compare(graph_, operation, operands[0].value, operands[1].value);
 }
@@ -215,7 +222,7 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
   switch (row.unit_rule) {
     case UnitRule::same:
     case UnitRule::ratio:
-      agreed = units_.agree({Occasion::Kind::arguments, name}, arguments);
+      agreed = units_.agree({Occasion::Kind::arguments, name}, arguments) && units_.one_zero(graph_, arguments);
       break;
     case UnitRule::dimensionless:
     case UnitRule::angle:
@@ -230,7 +237,7 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
         else
           branches.push_back(arguments[i]);
       }
-      agreed = units_.agree({Occasion::Kind::branches, name}, branches) && agreed;
+      agreed = units_.agree({Occasion::Kind::branches, name}, branches) && units_.one_zero(graph_, branches) && agreed;
       break;
     }
     case UnitRule::root:
@@ -291,7 +298,7 @@ std::optional<Typed> Scope::choice(ast::Conditional const& conditional) {
   bool const true_or_false = !condition || units_.condition({*condition, &*conditional.condition});
   if (!condition || !then || !otherwise) return std::nullopt;
   UnitOperand const branches[] = {{settled(*then), &*conditional.then}, {settled(*otherwise), &*conditional.otherwise}};
-  bool const agreed = units_.agree({Occasion::Kind::branches}, branches);
+  bool const agreed = units_.agree({Occasion::Kind::branches}, branches) && units_.one_zero(graph_, branches);
   Typed result = select(graph_, *condition, *then, *otherwise);
   if (!agreed || !true_or_false) result.kind = Typed::Kind::wrong;
   return result;

@@ -158,8 +158,8 @@ Label UnitCheck::unit_label(UnitOperand const& operand) const {
 std::string UnitCheck::words(Unit const& unit) const {
   if (unit.text.empty() && !unit.dimensionless())
     for (DeclaredUnit const& each : declared_)
-      if (each.unit.dimension == unit.dimension && each.unit.scale == 1 && each.unit.radian == unit.radian &&
-          each.unit.hertz == unit.hertz)
+      if (each.unit.dimension == unit.dimension && each.unit.scale == 1 && each.unit.offset == unit.offset &&
+          each.unit.radian == unit.radian && each.unit.hertz == unit.hertz)
         return each.unit.text;
   bool const newtons = std::any_of(declared_.begin(), declared_.end(), [](DeclaredUnit const& each) {
     std::string const& text = each.unit.text;
@@ -344,6 +344,26 @@ bool UnitCheck::power(UnitOperand const& base, UnitOperand const& exponent, std:
   std::string const unit = words(base.value.unit);
   report(errors::base_with_unit({base.value.span, "[" + unit + "]"}, exponent.value.span, unparse(*base.tree), unit));
   return false;
+}
+
+bool UnitCheck::one_zero(Graph const& graph, UnitOperand const& a, UnitOperand const& b, bool addends) {
+  // A declaration has no node: what stands in its place is no number.
+  Typed const& first = a.tree == nullptr ? b.value : a.value;
+  Typed second = a.tree == nullptr ? a.value : b.value;
+  if (a.tree == nullptr || b.tree == nullptr) second.node = first.node;
+  Zeros const zeros = compare_zeros(graph, first, second, addends);
+  if (zeros == Zeros::agree) return true;
+  bool const shows_first = a.tree == nullptr || b.tree == nullptr || first.unit.offset == 0;
+  UnitOperand const shown{shows_first ? first : second}, other{shows_first ? second : first};
+  report(errors::zeros_differ(zeros, unit_label(shown), unit_label(other)));
+  return false;
+}
+
+bool UnitCheck::one_zero(Graph const& graph, std::span<UnitOperand const> operands) {
+  for (std::size_t i = 1; i < operands.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!one_zero(graph, operands[j], operands[i], false)) return false;
+  return true;
 }
 
 bool UnitCheck::condition(UnitOperand const& operand) {

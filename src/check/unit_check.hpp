@@ -26,6 +26,7 @@ struct Occasion {
   std::string what = {};  // arguments: the function; declared: the name; distribution: the argument
   std::string of = {};    // distribution: the name of the variate
   std::string note = {};  // stands under the declaration in place of its unit
+  bool is_width = false;  // what is declared as a temperature stands for a difference of two
 };
 
 /// A declared name with its unit. Names that move carry primes in equations.
@@ -51,6 +52,9 @@ class UnitCheck {
   bool pure(std::string const& function, UnitOperand const& argument, bool angle);
   /// A power: the exponent is pure, and constant where the base has a dimension.
   bool power(UnitOperand const& base, UnitOperand const& exponent, std::optional<double> constant);
+  /// False, with a diagnostic, when two temperatures that meet count from different zeros; addends: see `compare_zeros`.
+  bool one_zero(Graph const& graph, UnitOperand const& a, UnitOperand const& b, bool addends);
+  bool one_zero(Graph const& graph, std::span<UnitOperand const> operands);
   /// What stands for true or false.
   bool condition(UnitOperand const& operand);
 

@@ -77,6 +77,25 @@ Diagnostic condition_with_unit(Label condition, std::string const& text) {
   return at(Severity::error, "E2209", std::move(condition), {}, "a condition is true or false, not a quantity with a unit",
             fmt::format("compare it: `{} > 0`", text));
 }
+Diagnostic zeros_differ(Zeros zeros, Label shown, Label other) {
+  std::string message, help;
+  switch (zeros) {
+    case Zeros::in_doubt:
+      message = "in this sum it is open whether a temperature or a difference of temperatures is meant";
+      help = "a difference is in [delta_degC]; temperatures are declared in one unit, to which columns and numbers are converted";
+      break;
+    case Zeros::of_difference:
+      message = "one of these is a temperature, the other a difference of temperatures";
+      help = "a difference is in [delta_degC]; a number that is a temperature says so, as in `T - 20 [degC]`";
+      break;
+    case Zeros::agree:
+    case Zeros::apart:
+      message = "these temperatures count from different zeros";
+      help = "declare both in one unit: columns and numbers are converted to it, expressions are not";
+      break;
+  }
+  return at(Severity::error, "E2211", std::move(shown), {std::move(other)}, message, help);
+}
 Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
   return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
             "a frequency in cycles meets one in radians without 2*pi",

@@ -26,6 +26,7 @@ Diagnostic pure_argument(Label argument, std::string const& function, std::strin
 Diagnostic exponent_with_unit(Label exponent, std::string help);
 Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, std::string const& unit);
 Diagnostic condition_with_unit(Label condition, std::string const& text);
+Diagnostic zeros_differ(Zeros zeros, Label shown, Label other);
 /// Warnings. counts_cycles: the shown quantity does, the other is in radians.
 Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles);
 /// name: of the frequency, or empty.

@@ -78,6 +78,13 @@ std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& express
   return expression ? check_unit(*expression, diagnostics) : std::nullopt;
 }
 
+std::optional<Diagnostic> refuse_number(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
+  if (given.dimension != wanted.dimension || zero_against_difference(given, wanted))
+    return errors::number_of_other_kind(span, what, given, wanted);
+  if (cycles_against_radians(given, wanted)) return errors::number_in_cycles(span, what, given, wanted);
+  return std::nullopt;
+}
+
 void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics) {
   if (unit && unit->dimension != unit_atom("s").value().dimension) diagnostics.add(errors::not_a_time(span, *unit));
 }

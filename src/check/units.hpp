@@ -12,6 +12,9 @@ namespace sysid {
 /// non-constant exponent.
 std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics);
 std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics);
+/// What forbids a number in unit `given` where one in `wanted` is meant: another kind of quantity, a temperature for a difference
+/// of two, cycles for radians. what: "`rate`", "the constant `w`".
+std::optional<Diagnostic> refuse_number(Span span, std::string const& what, Unit const& given, Unit const& wanted);
 /// A declared unit of time measures time.
 void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics);
 

@@ -48,6 +48,46 @@ TEST_CASE("constants are in SI, bare ones in the unit of the parameter, and take
   CHECK(uses[2].constants[2].value() == near(3e3));
 }
 
+TEST_CASE("constants are converted to the zero point of their parameter, and refused where they are of another kind") {
+  std::string const room =
+      "model room {\ninput x\nstate T [degC]\ninitial T = Ta\nparameter Ta per experiment [degC]\n"
+      "parameter Tk per experiment [K] = 300\nparameter rise per experiment [delta_degC] = 1\n"
+      "parameter w per experiment [rad/s] = 1\nparameter k [1/s] ~ log_uniform(1, 10)\n"
+      "T' = -k*(T - Ta - rise)*sin(w*1 [s])*Tk/300 [K]\nobserve displacement ~ normal(T, sd = 1)\n}\n";
+  auto const with = [&](std::string const& constants) { return room + block("d", constants) + "f = fit room to d with map\n"; };
+  auto const values = [&](std::string const& constants) {
+    return std::get<FitTask>(checked(with(constants)).tasks.at(0).what).experiments.at(0).constants;
+  };
+  CHECK(values("constant Ta = 300 [K]")[0].value() == doctest::Approx(26.85).epsilon(1e-12));
+  CHECK(values("constant Ta = 68 [degF]")[0].value() == doctest::Approx(20).epsilon(1e-12));
+  CHECK(values("constant Ta = 20")[0].value() == 20);
+  CHECK(values("constant Ta = 20; constant Tk = 20 [degC]")[1].value() == doctest::Approx(293.15).epsilon(1e-12));
+  CHECK(values("constant Ta = 20; constant rise = 5 [K]")[2].value() == 5);
+  auto const said = [&](std::string const& constants) { return messages(with("constant Ta = 20; " + constants)); };
+  CHECK(said("constant rise = 5 [degC]").find("error[E2014]: the constant `rise` is in [delta_degC], this is in [degC]") !=
+        std::string::npos);
+  CHECK(said("constant w = 1 [Hz]").find("error[E4017]: the constant `w` is in [rad/s], this is in [Hz]: one counts cycles") !=
+        std::string::npos);
+  CHECK(errors_in(said("constant w = 60 [1/s]")) == 0);
+}
+
+TEST_CASE("values and rates of a task are not taken in cycles for radians, and widths of temperatures have no zero point") {
+  std::string const oven =
+      "model oven {\ninput T [degC]\nparameter w [rad/s] ~ log_uniform(1, 10)\nparameter Ta [degC] ~ normal(20, sd = 1)\n"
+      "observe c ~ normal((T - Ta)*w, sd = 1 [K rad/s])\n}\n";
+  auto const with = [&](std::string const& w, std::string const& input, std::string const& rate) {
+    return oven + "s = simulate oven with values(w = " + w + ", Ta = 300 [K]), input T = gaussian(" + input + "), rate = " + rate +
+           ", noise = 0, samples = 3, seed = 1\n";
+  };
+  CHECK(messages(with("1 [Hz]", "sd = 1", "1 [Hz]")).find("error[E4017]: `w` is in [rad/s], this is in [Hz]") != std::string::npos);
+  CHECK(messages(with("1", "sd = 1", "1 [rad/s]")).find("error[E4017]: `rate` is in [Hz], this is in [rad/s]") !=
+        std::string::npos);
+  auto const task = std::get<SimulateTask>(checked(with("1", "mean = 300 [K], sd = 2 [K]", "1 [Hz]")).tasks.at(0).what);
+  CHECK(task.values[1].value() == doctest::Approx(26.85).epsilon(1e-12));
+  CHECK(task.inputs[0].arguments.at("mean") == doctest::Approx(26.85).epsilon(1e-12));
+  CHECK(task.inputs[0].arguments.at("sd") == 2);
+}
+
 TEST_CASE("a prediction has the parameters of the fitted experiment of its block, else of a new one") {
   auto const of = [](std::string const& tasks) {
     return std::get<PredictTask>(checked(model + blocks + tasks).tasks.at(1).what).fitted;

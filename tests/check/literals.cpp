@@ -132,6 +132,94 @@ TEST_CASE("a temperature is counted from the zero of its unit, and shifted only 
   CHECK(rate_of(model, "T", {{"T", 30}, {"Ta", 20}}) == near(-1));
 }
 
+namespace {
+
+// What is said of a statement about temperatures.
+std::string of_temperatures(std::string const& statement) {
+  return messages(
+      "model m {\ninput T [degC], F [degF]\nparameter Ta [degC] = 20\nparameter Tk [K] = 310\nparameter Tl [K] = 300\n"
+      "parameter rise [delta_degC] = 2\nparameter q [W] = 3\nparameter R [K/W] = 1\nparameter a ~ normal(0, sd = 1)\n"
+      "derive all = a*T/1 [K] + F/Ta + Tk/Tl + rise*q*R/1 [K^2]\nobserve c [degC] ~ normal(Ta, sd = a*rise)\n" +
+      statement + "\n}\n");
+}
+
+}  // namespace
+
+TEST_CASE("temperatures that count from different zeros do not meet in an expression, unless one is a number outside a sum") {
+  REQUIRE(of_temperatures("") == "");
+  for (char const* statement : {"derive e = T + Tk",
+                                "derive e = Tk - T",
+                                "derive e = T + 2 [K]",
+                                "derive e = T - 300 [K]",
+                                "derive e = 0.5*T + 0.5*Tk",
+                                "derive e = T + (Tk - Tl)",
+                                "derive e = T - F",
+                                "derive e = T - 50 [degF]",
+                                "derive e = q*R - (T + Tk)",
+                                "derive e [K] = T",
+                                "derive e [degC] = Tk",
+                                "derive e [degC] = F",
+                                "derive e [degC] = q*R",
+                                "derive e [degC] = T - Ta",
+                                "derive e [delta_degC] = T",
+                                "derive e = max(T, Tk)",
+                                "derive e = if a > 0 then T else Tk",
+                                "derive e = if T > Tk then 1 else 0",
+                                "derive e = if T - Ta > 5 [degC] then 1 else 0",
+                                "derive e = piecewise(a > 0, T, T - Ta)",
+                                "observe d [degC] ~ normal(Tk, sd = 1)",
+                                "observe d [degC] ~ normal(T - Ta, sd = 1)",
+                                "parameter p [degC] ~ normal(Tk, sd = 1)",
+                                "function f(b) = b + Tk\nderive e = f(T)"}) {
+    CAPTURE(statement);
+    std::string const said = of_temperatures(statement);
+    CHECK_MESSAGE(errors_in(said) == 1, said);
+    CHECK_MESSAGE(said.find("error[E2211]") != std::string::npos, said);
+  }
+  for (char const* statement : {"derive e = T + rise",
+                                "derive e = rise + T",
+                                "derive e = T + (T - Ta)",
+                                "derive e = T + q*R",
+                                "derive e [degC] = Ta + rise",
+                                "derive e [delta_degC] = T - 20 [degC]",
+                                "derive e [K] = T - Ta",
+                                "derive e [K] = q*R",
+                                "derive e = Tk + rise",
+                                "derive e = Tk - Tl",
+                                "derive e = if T > 300 [K] then 1 else 0",
+                                "derive e = if T - Ta > 5 [K] then 1 else 0",
+                                "derive e [degC] = max(T, 300 [K])",
+                                "derive e [degC] = if a > 0 then 300 [K] else T",
+                                "constant e [degC] = 300 [K]",
+                                "derive e [delta_degF] = T - Ta",
+                                "parameter s [degC] ~ half_normal(1)\nobserve d [degC] ~ normal(T, sd = s)",
+                                "observe d [degC] ~ normal(T, sd = 2 [K])",
+                                "parameter p [degC] ~ normal(300 [K], sd = 5 [K], lower = 0 [K])",
+                                "function f(b) = b + rise\nderive e = f(T)"}) {
+    CAPTURE(statement);
+    std::string const said = of_temperatures(statement);
+    CHECK_MESSAGE(errors_in(said) == 0, said);
+  }
+}
+
+TEST_CASE("a difference keeps its size beside a temperature, and a number in another unit is converted to its zero") {
+  Model const model = model_of(R"(
+  input T [degC]
+  parameter T1 [degC] ~ normal(20, sd = 1)
+  parameter rise [delta_degF] ~ normal(0, sd = 1)
+  derive a [degC] = T + rise
+  derive b [degC] = T + (T - T1)
+  derive c [degC] = max(T, 300 [K])
+  derive d [degC] = if T > 300 [K] then T else 300 [K]
+  derive e [degF] = 300 [K]
+  observe f ~ normal(T, sd = 1)
+)");
+  Values const values = {{"T", 20}, {"T1", 15}, {"rise", 2}};  // degrees above 0 degC, and kelvin
+  std::vector<double> const expected = {22, 25, 26.85, 26.85, 80.33};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    CHECK(model.derived.at(i).from_si(at(model, model.derived[i].value, values)) == doctest::Approx(expected[i]).epsilon(1e-12));
+}
+
 TEST_CASE("beside a pure number a bare number is pure, and ratios of like quantities are pure numbers") {
   Model const model = model_of(R"(
   input x

@@ -103,6 +103,16 @@ TEST_CASE("units are compared in each place where two of them meet") {
   }
   CHECK(said_of("model a {\n" + names + equation + "state z [m]\nparameter v [m/s] = 1\ninitial z = v\nz' = v\n}\n").code ==
         "E2204");
+  Said const past =
+      said_of("model a {\ntime discrete 1 [s]\nstate y [m]\ninitial y = 5 [kg]\ny = lag(y, 1)\nobserve d ~ normal(y, sd = 1)\n}\n");
+  CHECK(past.code == "E2204");
+  CHECK(past.primary == "5 [kg]");
+  Said const guess = said_of(
+      "model a {\nstate v [m/s]\nparameter a [m/s^3] = 1\ninitial v = 10, v' = -1 [kg]\n(v')^2 = a*v\nobserve d ~ normal(v, sd = "
+      "1)\n}\n");
+  CHECK(guess.code == "E2204");
+  CHECK(guess.primary == "-1 [kg]");
+  CHECK(guess.message == "`v'` is in [m/s^2], this is in [kg]");
   CHECK(said_of("model a {\nstate y [m]\ninitial y = 0, y' = 1 [m]\ny'' = 0\nobserve d ~ normal(y, sd = 1)\n}\n").primary ==
         "1 [m]");
 }

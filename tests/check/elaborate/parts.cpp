@@ -53,6 +53,25 @@ TEST_CASE("the noise of a part is left out, with the parameters that only it rea
   for (std::string const& name : parameter_names(model)) CHECK(name != "joint.noise");
 }
 
+TEST_CASE("what only the noise of a part reads is left out over definitions and priors, what anything else reads is not") {
+  std::string const inner =
+      "model inner {\ninput d [m]\nparameter k [N/m] ~ log_uniform(1, 100)\nparameter tau [N] ~ half_normal(1)\n"
+      "parameter s(2) [N] ~ half_normal(tau)\nparameter floor [N] ~ half_normal(1)\nlet wide = 2*s\nlet width = wide[1] + floor\n"
+      "derive f [N] = k*d\nobserve force ~ normal(f, sd = width)\n}\n";
+  auto const names = [&](std::string const& more) {
+    return parameter_names(named(checked(inner + "model whole {\ninput x [N]\nstate y [m]\ninitial y = 0, y' = 0\n" + more +
+                                         "1 [kg]*y'' + j.f = x\nobserve position ~ normal(y, sd = 1e-4)\n}\n"),
+                                 "whole"));
+  };
+  using Names = std::vector<std::string>;
+  CHECK(names("part j = inner(d = y)\n") == Names{"j.k"});
+  CHECK(names("part j = inner(d = y)\nderive e [N] = j.floor\n") == Names{"j.k", "j.floor"});
+  CHECK(names("part j = inner(d = y)\nderive e [N] = j.s[2]\n") == Names{"j.k", "j.tau", "j.s[2]"});
+  CHECK(names("part j = inner(d = y)\nlet w = j.width\nderive e [N] = w\n") == Names{"j.k", "j.tau", "j.s[1]", "j.floor"});
+  // What the whole declares itself stays, and is warned of.
+  CHECK(names("parameter mine [N] ~ half_normal(1)\npart j = inner(d = y, floor = mine)\n") == Names{"mine", "j.k"});
+}
+
 TEST_CASE("parameters of a part are shared, fixed or made of others") {
   CheckedFile const file =
       checked(rig("parameter k [N/mm] ~ log_uniform(1, 100)\npart joint = bouc_wen(displacement = y, A = 2*k, alpha = 0)"));
