@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "check/units.hpp"
+
 namespace sysid {
 namespace {
 

@@ -78,6 +78,21 @@ std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& express
   return expression ? check_unit(*expression, diagnostics) : std::nullopt;
 }
 
+Unit difference(Unit unit) {
+  if (unit.offset == 0) return unit;
+  unit.offset = 0;
+  unit.text = "delta_" + unit.text;
+  if (!unit_atom(unit.text)) unit.text.clear();
+  return unit;
+}
+
+bool zero_against_difference(Unit const& a, Unit const& b) {
+  auto const measures_differences = [](Unit const& unit) {
+    return unit.offset == 0 && (unit.text.empty() || unit.text.starts_with("delta_"));
+  };
+  return a.dimension == b.dimension && ((a.offset != 0 && measures_differences(b)) || (b.offset != 0 && measures_differences(a)));
+}
+
 std::optional<Diagnostic> refuse_number(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
   if (given.dimension != wanted.dimension || zero_against_difference(given, wanted))
     return errors::number_of_other_kind(span, what, given, wanted);

@@ -295,22 +295,6 @@ double convert(double value, Unit const& from, Unit const& to) {
 
 bool cycles_against_radians(Unit const& a, Unit const& b) { return !(a.hertz == b.hertz) && !(a.radian == b.radian); }
 
-Unit difference(Unit unit) {
-  if (unit.offset == 0) return unit;
-  unit.offset = 0;
-  std::string const name = "delta_" + unit.text;
-  bool const known = std::any_of(std::begin(extras), std::end(extras), [&](Extra const& row) { return row.name == name; });
-  unit.text = known ? name : std::string();
-  return unit;
-}
-
-bool zero_against_difference(Unit const& a, Unit const& b) {
-  auto const measures_differences = [](Unit const& unit) {
-    return unit.offset == 0 && (unit.text.empty() || unit.text.starts_with("delta_"));
-  };
-  return a.dimension == b.dimension && ((a.offset != 0 && measures_differences(b)) || (b.offset != 0 && measures_differences(a)));
-}
-
 std::string format_dimension(Dimension const& dimension) {
   std::string above, below;
   int factors_below = 0;

@@ -55,12 +55,6 @@ double convert(double value, Unit const& from, Unit const& to);
 /// where the user means 2 pi. Such a conversion must be refused.
 bool cycles_against_radians(Unit const& a, Unit const& b);
 
-/// The unit of what lies between two quantities in `unit`: without a zero point, [delta_degC] for [degC].
-Unit difference(Unit unit);
-/// Whether one has a zero point and the other measures differences of temperature ([delta_degC], or a product): neither converts to
-/// the other. [K] measures both.
-bool zero_against_difference(Unit const& a, Unit const& b);
-
 /// Canonical SI text, readable as a unit expression: "kg m/s^2", "kg/(m s^2)", "m^(1/2)"; "1" when dimensionless.
 std::string format_dimension(Dimension const& dimension);
 

@@ -34,6 +34,21 @@ Said with(std::string const& statement) { return said_of("model a {\n" + names +
 
 }  // namespace
 
+TEST_CASE("a difference has no zero point, and does not pass for a temperature") {
+  auto const atom = [](char const* name) { return unit_atom(name).value(); };
+  CHECK(difference(atom("degC")).text == "delta_degC");
+  CHECK(difference(atom("degF")).text == "delta_degF");
+  CHECK(difference(atom("degF")).scale == atom("degF").scale);
+  CHECK(difference(atom("celsius")).offset == 0);
+  CHECK(difference(atom("K")).text == "K");
+  CHECK(zero_against_difference(atom("degC"), atom("delta_degC")));
+  CHECK(zero_against_difference(multiply(divide(atom("K"), atom("W")), atom("W")), atom("degF")));
+  CHECK_FALSE(zero_against_difference(atom("degC"), atom("K")));  // a temperature, or a difference: not known
+  CHECK_FALSE(zero_against_difference(atom("K"), atom("delta_degC")));
+  CHECK_FALSE(zero_against_difference(atom("degC"), atom("degF")));
+  CHECK_FALSE(zero_against_difference(atom("degC"), atom("mm")));
+}
+
 TEST_CASE("of the terms of an equation the odd one out is shown, on whichever side it stands") {
   CHECK(with_equation(equation).code.empty());
   struct Case {

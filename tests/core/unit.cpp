@@ -136,20 +136,6 @@ TEST_CASE("products, quotients and powers combine dimension and scale") {
   CHECK(multiply(atom("N"), atom("m")).dimension == atom("J").dimension);
 }
 
-TEST_CASE("a difference has no zero point, and does not pass for a temperature") {
-  CHECK(difference(atom("degC")).text == "delta_degC");
-  CHECK(difference(atom("degF")).text == "delta_degF");
-  CHECK(difference(atom("degF")).scale == atom("degF").scale);
-  CHECK(difference(atom("celsius")).offset == 0);
-  CHECK(difference(atom("K")).text == "K");
-  CHECK(zero_against_difference(atom("degC"), atom("delta_degC")));
-  CHECK(zero_against_difference(multiply(divide(atom("K"), atom("W")), atom("W")), atom("degF")));
-  CHECK_FALSE(zero_against_difference(atom("degC"), atom("K")));  // a temperature, or a difference: not known
-  CHECK_FALSE(zero_against_difference(atom("K"), atom("delta_degC")));
-  CHECK_FALSE(zero_against_difference(atom("degC"), atom("degF")));
-  CHECK_FALSE(zero_against_difference(atom("degC"), atom("mm")));
-}
-
 TEST_CASE("an offset survives the factor one and the power one, and no other") {
   CHECK(multiply(Unit{}, atom("degC")).offset == 273.15);
   CHECK(multiply(atom("degC"), atom("-")).offset == 273.15);
