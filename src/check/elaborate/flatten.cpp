@@ -292,54 +292,54 @@ class Flattener {
   // `observe` of a part is left out, and with it what it alone reads of parts, over definitions and priors: a model's own noise is
   // no part of a whole. What the whole declares itself stays.
   void drop_noise_of_parts() {
-    std::set<std::string> noise;
+    Statements whole, single;
+    for (ast::ModelStatement const& statement : result_.tree.statements)
+      if (std::string const name = dispensable(statement); !name.empty()) {
+        whole[without_index(name)].push_back(&statement);
+        single[name].push_back(&statement);
+      }
+    std::set<std::string> noise, kept;  // names of vectors as wholes, names of numbers
     for (auto const& [frame, observation] : ignored_)
       for (ast::Argument const& argument : observation->noise.arguments)
         tree::each(argument.value, [&, frame = frame](ast::Expression const& each) {
-          if (auto const* reference = std::get_if<ast::Reference>(&each.node)) add_names(*frame, reference->name.text, noise);
+          auto const* reference = std::get_if<ast::Reference>(&each.node);
+          Found const found = reference == nullptr ? Found{} : find(*frame, reference->name.text);
+          if (found.symbol != nullptr) noise.insert(found.frame->prefix + found.name);
         });
-    auto const of_part = [](std::string const& name) { return name.find('.') != std::string::npos; };
-    spread(noise, of_part);
-    std::set<std::string> kept;
+    spread(noise, whole, without_index);
+    auto const of_noise = [&](std::string const& name) {
+      return name.find('.') != std::string::npos && noise.contains(without_index(name));
+    };
     for (ast::ModelStatement const& statement : result_.tree.statements)
-      if (std::string const name = dispensable(statement); !of_part(name) || !noise.contains(name))
+      if (!of_noise(dispensable(statement)))
         tree::each_reference(statement, [&](ast::Reference const& reference) { kept.insert(reference.name.text); });
-    spread(kept, of_part);
+    spread(kept, single, [](std::string const& name) { return name; });
     std::erase_if(result_.tree.statements, [&](ast::ModelStatement const& statement) {
       std::string const name = dispensable(statement);
-      return of_part(name) && noise.contains(name) && !kept.contains(name);
+      return of_noise(name) && !kept.contains(name);
     });
   }
-  // The names of the numbers that `path` stands for in a frame.
-  void add_names(Frame& frame, std::string const& path, std::set<std::string>& names) {
-    Found const found = find(frame, path);
-    if (found.symbol == nullptr) return;
-    Shape shape = found.symbol->shape;
-    if (found.symbol->kind == FrameSymbol::Kind::definition)
-      if (auto const value = evaluator_.value_of(*found.frame, found.name, *found.symbol)) shape = value->shape;
-    for (std::size_t i = 0; i < shape.count(); ++i) names.insert(element_name(found.frame->prefix + found.name, shape, i));
-  }
-  // What a statement gives to those that read it, and to nobody else: the name of a parameter or definition; empty for others.
+  static std::string without_index(std::string const& name) { return name.substr(0, name.find('[')); }
+  // The name of a parameter or definition: what it says is there for those that read it. Empty for other statements.
   static std::string dispensable(ast::ModelStatement const& statement) {
     if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) return parameter->name.name.text;
     auto const* definition = std::get_if<ast::Definition>(&statement);
     return definition == nullptr || definition->kind == ast::DefinitionKind::derived ? std::string() : definition->name.name.text;
   }
-  // Adds what the statements behind the names read, and those behind that.
-  template <class Predicate>
-  void spread(std::set<std::string>& names, Predicate const& may_enter) const {
-    std::map<std::string, ast::ModelStatement const*> behind;
-    for (ast::ModelStatement const& statement : result_.tree.statements)
-      if (std::string name = dispensable(statement); !name.empty()) behind.emplace(std::move(name), &statement);
+  using Statements = std::map<std::string, std::vector<ast::ModelStatement const*>>;
+  // Adds what the statements behind the names read, and those behind that; `as`: how a name is written in the set.
+  template <class Spelling>
+  static void spread(std::set<std::string>& names, Statements const& behind, Spelling const& as) {
     std::vector<std::string> open(names.begin(), names.end());
     while (!open.empty()) {
       auto const place = behind.find(open.back());
       open.pop_back();
       if (place == behind.end()) continue;
-      tree::each_reference(*place->second, [&](ast::Reference const& reference) {
-        std::string const& name = reference.name.text;
-        if (may_enter(name) && names.insert(name).second) open.push_back(name);
-      });
+      for (ast::ModelStatement const* statement : place->second)
+        tree::each_reference(*statement, [&](ast::Reference const& reference) {
+          std::string name = as(reference.name.text);
+          if (names.insert(name).second) open.push_back(std::move(name));
+        });
     }
   }
 
