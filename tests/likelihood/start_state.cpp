@@ -38,7 +38,7 @@ std::string model(double size, double initial) {
 /// The start at each rate, the model in units of `size` from `initial`.
 std::vector<double> starts(double size, double initial, std::vector<double> const& rates) {
   auto const compiled = compile(model_of(model(size, initial)), true, "rk4");
-  StartState const start(compiled, record(size), 20, {.substeps = 4}, {});
+  StartState const start(compiled, record(size), 20, {.substeps = 40}, {});
   LaneArray parameters(compiled->parameter_rows(), static_cast<int>(rates.size()));
   for (std::size_t w = 0; w < rates.size(); ++w) parameters(0, static_cast<int>(w)) = rates[w];
   start.estimate(parameters);
@@ -63,18 +63,18 @@ TEST_CASE("an estimated start does not depend on the unit of the state") {
 TEST_CASE("the same numbers in another unit have the same likelihood, for every solver and start") {
   auto const log_likelihoods = [](std::string const& unit, double scale, char const* method, int rows) {
     std::string const text = fmt::format(
-        "state n [{0}], m [{0}]\ninitial n = 2, m = 0\nparameter r [1/s] ~ log_uniform(0.1, 50)\n"
-        "n' = -r*n^2/1 [{0}]\nm' = r*n - 3 [1/s]*m\nobserve a ~ normal(n, sd = 0.01)\nobserve b ~ normal(m, sd = 0.01)\n",
+        "state n [{0}]\ninitial n = 2\nparameter r [1/s] ~ log_uniform(0.1, 50)\nn' = -r*n^3/1 [{0}^2]\n"
+        "observe a ~ normal(n, sd = 0.01)\n",
         unit);
-    Experiment experiment = record(scale);
-    experiment.measured.push_back(experiment.measured[0]);
+    Experiment const experiment = record(scale);
     TargetOptions options;
     options.start_rows = rows;
     options.solver = {.method = method};
+    options.solver.relative = 1e-11;  // slopes of the start are differences of 1e-4
     options.solver.substeps = 4;
     ModelTarget const target(compile(model_of(text), rows > 0, method), experiment, options);
     LaneArray declared(1, 3), theta(1, 3);
-    for (int w = 0; w < 3; ++w) declared(0, w) = 0.3 * std::pow(6, w);
+    for (int w = 0; w < 3; ++w) declared(0, w) = 0.5 * std::pow(2, w);
     target.unconstrain(declared, theta);
     Ledger ledger;
     std::vector<double> out(3);
@@ -87,7 +87,7 @@ TEST_CASE("the same numbers in another unit have the same likelihood, for every 
       CAPTURE(method);
       CAPTURE(rows);
       std::vector<double> const mol = log_likelihoods("mol", 1, method, rows), zmol = log_likelihoods("zmol", 1e-21, method, rows);
-      for (std::size_t w = 0; w < 3; ++w) CHECK(zmol[w] == doctest::Approx(mol[w]).epsilon(1e-7));
+      for (std::size_t w = 0; w < 3; ++w) CHECK(zmol[w] == doctest::Approx(mol[w]).epsilon(1e-6));
     }
 }
 
