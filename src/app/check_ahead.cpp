@@ -81,7 +81,7 @@ class LookAhead {
       : session_(session),
         what_(what),
         page_(page),
-        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method)),
+        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
         model_(compiled_->model),
         space_(parameter_space(model_, what.experiments)) {
     std::size_t longest = 0;
@@ -90,8 +90,9 @@ class LookAhead {
       longest = std::max(longest, experiments_.back().time.size());
       shortened_ = shortened_ || experiments_.back().time.size() < each.experiment.time.size();
     }
-    // To 64 times the steps, fewer on records that would take long; to a 1e-4 of the tolerances.
-    int refinements = what.solver.fixed_step() ? 6 : 2;
+    // To 64 times the steps, fewer on records that would take long; to a 1e-4 of the tolerances. What no solver integrates is
+    // exact as it stands.
+    int refinements = !model_.integrated() ? 0 : what.solver.fixed_step() ? 6 : 2;
     while (refinements > 2 && (longest * static_cast<std::size_t>(what.solver.substeps)) << refinements > most_steps) --refinements;
     auto const pool = make_pool(session.options.execution);
     solvers_.push_back(what.solver);
@@ -109,7 +110,7 @@ class LookAhead {
     draw_prior();
     std::vector<Draw> const sane = predict();
     if (sane.size() < 2) {
-      page_.left_out = "identifiability and the solver: no prior draws predict responses of the size measured";
+      page_.left_out = unlooked() + "no prior draws predict responses of the size measured";
       return;
     }
     look(sane);
@@ -119,6 +120,8 @@ class LookAhead {
   void add(Severity severity, std::string code, std::string message, std::string help) {
     page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
   }
+
+  std::string unlooked() const { return model_.integrated() ? "identifiability and the solver: " : "identifiability: "; }
 
   // Draws in SI, all rows of a point; what only the noise reads at its median, so that one level of noise stands for all.
   void draw_prior() {
@@ -234,7 +237,7 @@ class LookAhead {
   void look(std::vector<Draw> const& sane) {
     if (std::none_of(coordinates_.begin(), coordinates_.end(),
                      [](JudgedParameter const& each) { return each.role == ParameterRole::response; })) {
-      page_.left_out = "identifiability and the solver: no sampled parameter enters the response";
+      page_.left_out = unlooked() + "no sampled parameter enters the response";
       return;
     }
     std::vector<LocalSlopes> locals;
@@ -248,7 +251,7 @@ class LookAhead {
       locals.push_back(std::move(local));
     }
     if (locals.size() < 2) {
-      page_.left_out = "identifiability and the solver: the response is not smooth in the parameters at the draws looked at";
+      page_.left_out = unlooked() + "the response is not smooth in the parameters at the draws looked at";
       return;
     }
     page_.information.emplace();
@@ -256,7 +259,7 @@ class LookAhead {
     page_.information->noise = noise_;
     if (shortened_) page_.information->rows = static_cast<int>(most_scored);
     describe_information(coordinates_, locals, measured_channels(), page_);
-    describe_solvers(moves);
+    if (!moves.empty()) describe_solvers(moves);
   }
 
   std::vector<Converged> converge(std::vector<Draw> const& sane) const {
@@ -274,6 +277,10 @@ class LookAhead {
     }
     outputs_.front().centres(points, before);
     std::vector<double> last(all.size());
+    for (int w = 0; w < width && refinements == 0; ++w) {
+      all[static_cast<std::size_t>(w)].level = 0;
+      for (int r = 0; r < rows; ++r) last[static_cast<std::size_t>(w)] += 0 * before(r, w);  // NaN where a solve failed
+    }
     for (std::size_t level = 0; level + 1 < solvers_.size(); ++level) {
       outputs_[level + 1].centres(points, now);
       for (int w = 0; w < width; ++w) {

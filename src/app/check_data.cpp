@@ -72,7 +72,7 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
     CoveragePage::Input input;
     input.name = model.inputs[i].name;
     input.unit = model.inputs[i].unit_text();
-    input.rule = rule_name(experiment.inputs[i].rule());
+    if (model.dynamics == Dynamics::continuous) input.rule = rule_name(experiment.inputs[i].rule());
     fill_band(experiment.inputs[i], page.rate, input);
     page.inputs.push_back(std::move(input));
   }

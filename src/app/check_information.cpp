@@ -87,9 +87,11 @@ class Description {
   std::string unasked(JudgedParameter const& coordinate) {
     if (coordinate.role == ParameterRole::noise) return "from the residuals";
     if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
-    add(Severity::error, "not_identifiable", fmt::format("{} is used nowhere in the model", coordinate.words.name),
-        "remove it, or use it in an equation");
-    return "used nowhere";
+    if (coordinate.role == ParameterRole::none) return "used nowhere";  // the checker has warned of it
+    add(Severity::error, "not_identifiable",
+        fmt::format("only derived quantities read {}: the data say nothing of it", coordinate.words.name),
+        "fix it to a value (`=` in place of `~`), or use it in an equation");
+    return "read by derived quantities alone";
   }
 
   // A pair of which little but a combination is known: at every draw, or at most of them with the same combination each time.

@@ -1,6 +1,7 @@
 // A model as declared: names and units from the checked model, priors and expressions as the user wrote them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "app/check_file.hpp"
@@ -44,6 +45,33 @@ Texts texts_of(ast::File const& written, ast::File const& flat, std::string cons
   return texts;
 }
 
+// "y", "y'", "y''" are one state of order 3; its unknown is y'''. Beside those there may be algebraic ones.
+void add_orders(Model const& model, ModelPage& page) {
+  std::vector<std::pair<State const*, int>> orders;
+  for (State const& state : model.states) {
+    if (orders.empty() || !state.name.ends_with('\''))
+      orders.emplace_back(&state, 1);
+    else
+      ++orders.back().second;
+  }
+  for (auto const& [state, order] : orders) {
+    page.states.push_back({state->name, state->unit_text(), fmt::format("order {}", order)});
+    if (model.unknowns.empty()) page.unknowns.push_back(state->name + std::string(static_cast<std::size_t>(order), '\''));
+  }
+  for (Unknown const& unknown : model.unknowns) page.unknowns.push_back(unknown.name);
+}
+
+// Each state has an equation for its present sample, however many past ones are remembered.
+void add_pasts(Model const& model, ModelPage& page) {
+  for (Past const& past : model.pasts) {
+    if (past.channel >= 0) continue;
+    std::size_t const lags = past.registers.size();
+    page.states.push_back(
+        {past.name, past.unit_text(), lags == 0 ? std::string() : fmt::format("{} past sample{}", lags, lags == 1 ? "" : "s")});
+    page.unknowns.push_back(past.name);
+  }
+}
+
 /// What is said of a name; of an element, `m[1]`, what is said of all.
 std::string text_of(std::map<std::string, std::string> const& texts, std::string const& name) {
   auto place = texts.find(name);
@@ -59,26 +87,21 @@ ModelPage describe_structure(ast::File const& written, ast::File const& flat, Mo
   page.title = model.title;
   Texts texts = texts_of(written, flat, model.name);
   page.equations = std::move(texts.equations);
-  // "y", "y'", "y''" are one state of order 3; its unknown is y'''.
-  std::vector<std::pair<State const*, int>> orders;
-  for (State const& state : model.states) {
-    if (orders.empty() || !state.name.ends_with('\''))
-      orders.emplace_back(&state, 1);
-    else
-      ++orders.back().second;
-  }
-  for (auto const& [state, order] : orders) {
-    page.states.push_back({state->name, state->unit_text(), fmt::format("order {}", order)});
-    page.unknowns.push_back(state->name + std::string(static_cast<std::size_t>(order), '\''));
-  }
+  if (model.dynamics == Dynamics::discrete)
+    add_pasts(model, page);
+  else
+    add_orders(model, page);
   for (Unchecked const& each : model.unchecked) page.unchecked.push_back(fmt::format("`{}`: {}", each.what, each.why));
   for (Quantity const& input : model.inputs) page.inputs.push_back({input.name, input.unit_text(), {}});
   for (Channel const& channel : model.channels)
     page.channels.push_back({channel.name, channel.unit_text(), text_of(texts.channels, channel.name)});
   for (Parameter const& parameter : model.parameters)
     page.parameters.push_back({parameter.name, parameter.unit_text(), text_of(texts.parameters, parameter.name)});
+  auto const is_state = [&](Derived const& derived) {  // its present sample, in discrete time
+    return std::any_of(model.pasts.begin(), model.pasts.end(), [&](Past const& past) { return past.name == derived.name; });
+  };
   for (Derived const& derived : model.derived)
-    page.derived.push_back({derived.name, derived.unit_text(), text_of(texts.derived, derived.name)});
+    if (!is_state(derived)) page.derived.push_back({derived.name, derived.unit_text(), text_of(texts.derived, derived.name)});
   return page;
 }
 

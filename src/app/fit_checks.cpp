@@ -167,7 +167,7 @@ Findings check_use(Model const& model) {
   Findings findings;
   std::vector<ParameterRole> const roles = parameter_roles(model);
   for (std::size_t p = 0; p < roles.size(); ++p)
-    if (model.parameters[p].prior && roles[p] == ParameterRole::none)
+    if (model.parameters[p].prior && (roles[p] == ParameterRole::none || roles[p] == ParameterRole::derived))
       findings.push_back(
           {Severity::warning, "unused_parameter",
            fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", model.parameters[p].name),

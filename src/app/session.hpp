@@ -48,8 +48,7 @@ class Session {
   std::filesystem::path folder() const { return std::filesystem::path(source.name()).parent_path(); }
   std::filesystem::path result_folder(Task const& task) const { return options.output / task.name; }
   /// Compiled on first use.
-  std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method,
-                                                PredictionRule prediction = PredictionRule::as_written);
+  std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method, PredictionRule prediction);
   /// The record of a data block as a model reads it, read on first use. Throws as `load_record`.
   Record const& record(int data, int model);
   /// The seed of a task: the command line's, the file's, or one drawn from the system and printed.

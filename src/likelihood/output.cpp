@@ -41,7 +41,7 @@ Output::Output(std::shared_ptr<CompiledModel const> compiled, std::shared_ptr<Pa
     if (start_rows > 0) part.start = std::make_shared<StartState const>(compiled_, experiment, start_rows, solver, options, pool);
     for (std::size_t c = 0; c < model.channels.size(); ++c)
       for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
-        if (experiment.scored[i] == 0 || std::isnan(experiment.measured[c][i])) continue;
+        if (!part.simulator.schedule().summed(static_cast<int>(c), static_cast<int>(i))) continue;
         places_.push_back({static_cast<int>(e), static_cast<int>(c), static_cast<int>(i), experiment.measured[c][i]});
         part.samples = std::max(part.samples, static_cast<int>(i) + 1);
       }
@@ -170,7 +170,8 @@ std::vector<double> Output::state_sizes(ConstLanes point) const {
 
 std::vector<ParameterRole> parameter_roles(Model const& model) {
   Graph graph = model.graph;
-  std::vector<NodeId> response, noise, prior;
+  std::vector<NodeId> response = model.residuals, noise, prior, derived;
+  response.insert(response.end(), model.memories.begin(), model.memories.end());
   for (State const& state : model.states) {
     response.push_back(state.derivative);
     response.push_back(state.initial);
@@ -185,6 +186,7 @@ std::vector<ParameterRole> parameter_roles(Model const& model) {
     if (parameter.prior->lower) prior.push_back(*parameter.prior->lower);
     if (parameter.prior->upper) prior.push_back(*parameter.prior->upper);
   }
+  for (Derived const& each : model.derived) derived.push_back(each.value);
   std::vector<ParameterRole> roles;
   for (std::size_t p = 0; p < model.parameters.size(); ++p) {
     auto const read_by = [&](std::vector<NodeId> const& roots) {
@@ -194,10 +196,11 @@ std::vector<ParameterRole> parameter_roles(Model const& model) {
         });
       });
     };
-    roles.push_back(read_by(response) ? ParameterRole::response
-                    : read_by(noise)  ? ParameterRole::noise
-                    : read_by(prior)  ? ParameterRole::prior
-                                      : ParameterRole::none);
+    roles.push_back(read_by(response)  ? ParameterRole::response
+                    : read_by(noise)   ? ParameterRole::noise
+                    : read_by(prior)   ? ParameterRole::prior
+                    : read_by(derived) ? ParameterRole::derived
+                                       : ParameterRole::none);
   }
   return roles;
 }

@@ -20,7 +20,7 @@ class Output {
          std::vector<Experiment> const& experiments, SolverSettings const& solver, int start_rows, ExecutionOptions options,
          std::shared_ptr<ThreadPool> pool);
 
-  /// The scored samples that were measured, experiment by experiment, channel by channel; R of them. measured: SI.
+  /// The samples that the likelihood sums, experiment by experiment, channel by channel; R of them. measured: SI.
   struct Place {
     int experiment, channel, sample;
     double measured;
@@ -62,9 +62,10 @@ class Output {
 
 /// How a model's parameter comes into its data.
 enum class ParameterRole {
-  response,  // states, their start or the centre of a channel depend on it
+  response,  // states, their start, an equation or the centre of a channel depend on it
   noise,     // only the noise around the centre does
   prior,     // only other parameters' priors do
+  derived,   // only derived quantities do, which no data measure
   none,
 };
 std::vector<ParameterRole> parameter_roles(Model const& model);

@@ -19,7 +19,7 @@ struct DeclaredLine {
 struct ModelPage {
   std::string name, title;
   std::vector<std::string> equations, unknowns;  // "m*y'' + k*y = x"; "y''"
-  std::vector<DeclaredLine> states;              // text: "order 2"
+  std::vector<DeclaredLine> states;              // text: "order 2"; in discrete time "2 past samples"
   std::vector<DeclaredLine> inputs, channels, parameters, derived;
   std::vector<std::string> unchecked;  // places whose units could not be compared, in the user's words
 };
@@ -33,8 +33,8 @@ struct CoveragePage {
   std::string time_unit = "s";  // in which the record counts its time,
   double time_scale = 1;        // [s] one of these
   struct Input {
-    std::string name, unit, rule;
-    double low = 0, high = 0;  // Hz: between them lies 99 % of the power
+    std::string name, unit, rule;  // rule: between samples; empty where the model reads none there
+    double low = 0, high = 0;      // Hz: between them lies 99 % of the power
     bool constant = false;
   };
   std::vector<Input> inputs;

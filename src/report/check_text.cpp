@@ -74,13 +74,14 @@ std::string coverage_text(CoveragePage const& data) {
                   data.equal ? "" : "on average ",
                   slow(data) ? fmt::format("one every {:.6g} {}", 1 / (data.rate * data.time_scale), data.time_unit)
                              : fmt::format("{:.6g} Hz", data.rate))};
-  for (CoveragePage::Input const& input : data.inputs)
+  for (CoveragePage::Input const& input : data.inputs) {
+    std::string const what = input.rule.empty() ? input.name : input.name + ", " + input.rule;
     lines.push_back(input.constant
-                        ? fmt::format("input {}, {}: constant", input.name, input.rule)
-                        : fmt::format("input {}, {}: 99 % of its power between {} and {} {}, up to {} of the sampling rate",
-                                      input.name, input.rule, significant(frequency(data, input.low), 3),
-                                      significant(frequency(data, input.high), 3), frequency_unit(data),
-                                      fmt::format("{:.2f}", input.high / data.rate)));
+                        ? fmt::format("input {}: constant", what)
+                        : fmt::format("input {}: 99 % of its power between {} and {} {}, up to {} of the sampling rate", what,
+                                      significant(frequency(data, input.low), 3), significant(frequency(data, input.high), 3),
+                                      frequency_unit(data), fmt::format("{:.2f}", input.high / data.rate)));
+  }
   for (CoveragePage::Channel const& channel : data.channels)
     lines.push_back(channel.measured + channel.missing == 0
                         ? fmt::format("{}: not in this data", channel.name)

@@ -12,7 +12,7 @@ namespace sysid {
 Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver)
     : experiment_(experiment), solver_(solver), map_(program.source.map) {
   std::size_t const channels = program.source.channels.size();
-  if (solver.substeps < 1 || solver.method != program.source.integrator ||
+  if (solver.substeps < 1 || (map_ && solver.substeps > 1) || solver.method != program.source.integrator ||
       static_cast<int>(experiment.inputs.size()) < program.source.inputs || experiment.measured.size() < channels)
     throw InternalError("the experiment does not fit the program");
 

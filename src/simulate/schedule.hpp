@@ -20,8 +20,8 @@ struct UniformRows {
 
 class Schedule {
  public:
-  /// solver: of the method that the program was compiled for. Needs as many inputs and channels in the experiment as the program
-  /// reads.
+  /// solver: of the method that the program was compiled for, with one substep where that is a map. Needs as many inputs and
+  /// channels in the experiment as the program reads.
   Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver);
 
   int samples() const { return static_cast<int>(experiment_.time.size()); }

@@ -9,6 +9,7 @@
 #include "app/experiments.hpp"
 #include "app/pipeline.hpp"
 #include "likelihood/model_target.hpp"
+#include "likelihood/output.hpp"
 
 using namespace sysid;
 
@@ -121,6 +122,28 @@ TEST_CASE("a state in discrete time follows its map from the given past, and lag
   }
   CHECK(here.at({0.6, -0.4}) == about(sum));
   CHECK(here.experiment().first_row == 3);
+}
+
+TEST_CASE("a map is not run in substeps") {
+  std::vector<double> const x = wave(10, 0.8);
+  Case const here(filter, 0.1, {x}, {x});
+  auto const compiled = compile(here.model, false, "rk4");
+  CHECK_NOTHROW(Schedule(*compiled->trajectory, here.experiment(), {.substeps = 1}));
+  CHECK_THROWS_AS(Schedule(*compiled->trajectory, here.experiment(), {.substeps = 2}), InternalError);
+}
+
+TEST_CASE("what a model predicts is looked at where its likelihood is: not behind a gap that the density reads") {
+  std::vector<double> y = wave(25, 0.7);
+  y[11] = missing;
+  Case const here(autoregressive, 0.1, {}, {y});
+  auto const compiled = compile(here.model, false, "rk4");
+  auto const space = std::make_shared<ParameterSpace const>(here.model, std::vector<ExperimentMember>{{"case", {}}});
+  Output const output(compiled, space, {here.experiment()}, {}, 0, {}, nullptr);
+  CHECK(output.places().size() == 20);  // of 23 with two before them, neither the gap nor the two behind it
+  LaneArray point(output.point_rows(), 1), centres(20, 1);
+  for (int r = 0; r < point.rows(); ++r) point(r, 0) = 0.1;
+  output.centres(point, centres);
+  for (int r = 0; r < 20; ++r) CHECK(std::isfinite(centres(r, 0)));
 }
 
 TEST_CASE("measured samples enter by lag; rows without their past are not scored") {
