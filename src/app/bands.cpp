@@ -1,7 +1,11 @@
 // Trajectories to bands, quantity by quantity.
 #include "app/bands.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "app/reporting.hpp"
 
 namespace sysid {
 
@@ -36,6 +40,24 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
     prediction.quantities.push_back(std::move(predicted));
   }
   return prediction;
+}
+
+Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several) {
+  Findings findings;
+  for (PredictedQuantity const& quantity : prediction.quantities) {
+    bool const measured = !quantity.measured.empty();
+    Band const& widest = quantity.noisy.left_out > quantity.response.left_out ? quantity.noisy : quantity.response;
+    int const left_out = widest.left_out - (measured ? failed : failed_elsewhere);
+    if (left_out <= 0) continue;
+    Severity severity = failure_severity(static_cast<std::uint64_t>(left_out), static_cast<std::uint64_t>(widest.draws));
+    if (severity == Severity::error && !measured) severity = Severity::warning;  // the others are what they are
+    findings.push_back(
+        {severity, "undefined_in_band",
+         fmt::format("{}{} has no value somewhere along {} of {} trajectories, and its band is that of the others", quantity.name,
+                     several ? " on " + prediction.experiment : std::string(), left_out, widest.draws),
+         "look for a root or a logarithm of what may be negative, or a division by what may be zero"});
+  }
+  return findings;
 }
 
 StreamKey prediction_noise(std::uint64_t seed, int experiment) {

@@ -1,6 +1,7 @@
 // Trajectories of draws condensed to what reports show.
 #pragma once
 #include "data/experiment.hpp"
+#include "inference/finding.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/prediction.hpp"
 
@@ -9,6 +10,11 @@ namespace sysid {
 /// Bands of every quantity along an experiment, with and without noise, beside the measured samples; declared units.
 Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
                        Model const& model);
+
+/// One finding per quantity that has no value somewhere along some trajectories that did not fail: its band leaves them out.
+/// failed: how many did, of what is measured and of other quantities (which in a selection are of one model alone). several: the
+/// experiment is named.
+Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several);
 
 /// The streams of measurement noise for the predictions of experiment `experiment` of a task: its draws have indices from 0 on.
 StreamKey prediction_noise(std::uint64_t seed, int experiment);

@@ -295,10 +295,11 @@ class Fit {
   }
 
   void add_failures(Report& report) const {
-    double const share = ledger_.solves() == 0 ? 0 : static_cast<double>(ledger_.failed()) / static_cast<double>(ledger_.solves());
-    if (share < 0.01) return;
+    Severity const severity = failure_severity(ledger_.failed(), ledger_.solves());
+    if (severity == Severity::note) return;
+    double const share = static_cast<double>(ledger_.failed()) / static_cast<double>(ledger_.solves());
     report.findings.push_back(
-        {share < 0.2 ? Severity::warning : Severity::error, "failed_solves",
+        {severity, "failed_solves",
          fmt::format("{:.1f} % of the solves while sampling failed, first in {}", 100 * share, ledger_.failures().front().where),
          "the posterior reaches where the model diverges: narrow the prior or look at the equation there"});
   }
@@ -313,7 +314,10 @@ class Fit {
                                 what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
     Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, e));
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name)) findings.push_back(std::move(finding));
-    return bands_along(trajectory, result, experiment, model_);
+    Prediction prediction = bands_along(trajectory, result, experiment, model_);
+    for (Finding& finding : band_findings(prediction, result.failed(), result.failed(), data_.size() > 1))
+      findings.push_back(std::move(finding));
+    return prediction;
   }
 
   Session& session_;

@@ -76,10 +76,9 @@ class Predict {
           {Severity::note, "optimum_alone",
            fmt::format("`{}` is an optimum, not a posterior: the bands leave out how well parameters are known", fit_task_.name),
            "fit with mh for bands that hold it"});
-    int failed = 0;
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
       report.data.push_back(describe_data(session_.file, data_[static_cast<std::size_t>(e)], model_));
-      failed += predict(e, report);
+      predict(e, report);
     }
     report.settings = {{"draws", static_cast<std::int64_t>(wanted_)},
                        {"redraw", std::string(what_.redraw_each_step ? "step" : "trajectory")},
@@ -87,11 +86,11 @@ class Predict {
     if (model_.integrated()) add_solver(fitted_.solver, report.settings);
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
-    report.ledger.add_solves(static_cast<std::uint64_t>(wanted_) * data_.size());
     bool const missed = add_coverage(report);
-    report.verdict = failed > 0 ? "some trajectories do not stay finite"
-                     : missed   ? "all trajectories stay finite, but the data lie outside their bands"
-                                : "all trajectories stay finite";
+    report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
+                     : report.ledger.failed() > 0     ? "some trajectories do not stay finite"
+                     : missed                         ? "all trajectories stay finite, but the data lie outside their bands"
+                                                      : "all trajectories stay finite";
     write_result(report, session_.result_folder(task_), session_.options.figures);
     session_.out << terminal_summary(report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
@@ -135,11 +134,12 @@ class Predict {
     return any;
   }
 
-  // Adds bands and findings of experiment e; how many trajectories failed.
-  int predict(int e, Report& report) const {
+  // Adds bands, findings and failures of experiment e.
+  void predict(int e, Report& report) const {
     Experiment const& experiment = data_[static_cast<std::size_t>(e)].experiment;
     Trajectory const trajectory(compiled_, experiment, fitted_.solver, free_start_ ? what_.start.rows : 0,
-                                session_.options.execution);
+                                session_.options.execution,
+                                [this](NodeId node, Graph const& graph) { return session_.describe(fit_.model, graph, node); });
     StreamKey const noise = prediction_noise(seed_, e);
     LaneArray const draws =
         parameters(e, spread(fitted_.draws, what_.redraw_each_step ? static_cast<int>(fitted_.draws.total()) : wanted_), report);
@@ -149,12 +149,15 @@ class Predict {
     report.predictions.push_back(bands_along(trajectory, result, experiment, model_));
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name))
       report.findings.push_back(std::move(finding));
-    if (result.failed > 0)
-      report.findings.push_back({result.failed == wanted_ ? Severity::error : Severity::warning, "failed_predictions",
+    report.ledger.merge(result.ledger);
+    Severity const severity = failure_severity(result.ledger.failed(), result.ledger.solves());
+    if (result.failed() > 0)
+      report.findings.push_back({severity, "failed_predictions",
                                  fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands",
-                                             result.failed, wanted_, data_.size() > 1 ? " on " + experiment.name : ""),
+                                             result.failed(), wanted_, data_.size() > 1 ? " on " + experiment.name : ""),
                                  "the posterior reaches where the model diverges on this input"});
-    return result.failed;
+    for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), data_.size() > 1))
+      report.findings.push_back(std::move(finding));
   }
 
   Session& session_;

@@ -65,27 +65,28 @@ class PredictSelection {
                                  fmt::format("predict {} on {} with draws({})", select_task_.name,
                                              data_names(session_.file, what_.candidate_experiments[lead]), what_.draws),
                                  seed_);
-    int failed = 0;
-    for (std::size_t e = 0; e < what_.candidate_experiments[lead].size(); ++e) failed += predict(e, lead, counts, report);
+    for (std::size_t e = 0; e < what_.candidate_experiments[lead].size(); ++e) predict(e, lead, counts, report);
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
     if (session_.file.models[static_cast<std::size_t>(select_.fits[lead].model)].integrated())
       add_solver(select_.fits[lead].solver, report.settings);
-    report.ledger.add_solves(static_cast<std::uint64_t>(what_.draws) * what_.candidate_experiments[lead].size());
-    report.verdict = failed == 0 ? "all trajectories stay finite" : "some trajectories do not stay finite";
+    report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
+                     : report.ledger.failed() > 0     ? "some trajectories do not stay finite"
+                                                      : "all trajectories stay finite";
     write_result(report, session_.result_folder(task_), session_.options.figures);
     session_.out << terminal_summary(report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   }
 
  private:
-  /// Bands of experiment e over all candidates' trajectories; how many failed.
-  int predict(std::size_t e, std::size_t lead, std::vector<int> const& counts, Report& report) const {
+  /// Adds bands of experiment e over all candidates' trajectories, findings and failures.
+  void predict(std::size_t e, std::size_t lead, std::vector<int> const& counts, Report& report) const {
     std::vector<TrajectoryQuantity> quantities;
     Trajectory::Result all;
     std::unique_ptr<Trajectory> leading;
     Experiment experiment;
     Model const* leading_model = nullptr;
     std::string of_models;
+    int leading_failed = 0;
     // The leading one first: its quantities are those of the bands, channels of the others are found by name.
     std::vector<std::size_t> order = {lead};
     for (std::size_t k = 0; k < counts.size(); ++k)
@@ -105,11 +106,13 @@ class PredictSelection {
       else
         parameters = space->of_new_experiment(declared, data[e].use.constants,
                                               {seed_, Purpose::population, static_cast<std::uint64_t>(e) << 32, k});
-      auto trajectory = std::make_unique<Trajectory>(compiled, data[e].experiment, fit.solver, free_start ? what_.start.rows : 0,
-                                                     session_.options.execution);
+      auto trajectory = std::make_unique<Trajectory>(
+          compiled, data[e].experiment, fit.solver, free_start ? what_.start.rows : 0, session_.options.execution,
+          [this, model = fit.model](NodeId node, Graph const& graph) { return session_.describe(model, graph, node); });
       Trajectory::Result result = trajectory->run(parameters, prediction_noise(seed_, static_cast<int>(e)));
-      all.failed += result.failed;
+      all.ledger.merge(result.ledger);
       if (k == lead) {
+        leading_failed = result.failed();
         quantities = trajectory->quantities();
         all.values = std::move(result.values);
         experiment = data[e].experiment;
@@ -130,12 +133,16 @@ class PredictSelection {
                                "the bands are of the response alone: a selection by distance says nothing about the noise", ""});
     all.noisy.resize(leading_model->channels.size());  // none
     report.predictions.push_back(bands_along(*leading, all, experiment, *leading_model));
-    if (all.failed > 0)
-      report.findings.push_back(
-          {all.failed * 5 > what_.draws ? Severity::error : Severity::warning, "failed_predictions",
-           fmt::format("{} of {} trajectories do not stay finite and are left out of the bands", all.failed, what_.draws),
-           "the posterior reaches where a model diverges on this input"});
-    return all.failed;
+    report.ledger.merge(all.ledger);
+    bool const several = what_.candidate_experiments[lead].size() > 1;
+    Severity const severity = failure_severity(all.ledger.failed(), all.ledger.solves());
+    if (all.failed() > 0)
+      report.findings.push_back({severity, "failed_predictions",
+                                 fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands",
+                                             all.failed(), what_.draws, several ? " on " + experiment.name : ""),
+                                 "the posterior reaches where a model diverges on this input"});
+    for (Finding& finding : band_findings(report.predictions.back(), all.failed(), leading_failed, several))
+      report.findings.push_back(std::move(finding));
   }
 
   /// Channels of another model join by name; what it does not have stays as it is.

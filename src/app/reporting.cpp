@@ -112,6 +112,11 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   return report;
 }
 
+Severity failure_severity(std::uint64_t failed, std::uint64_t solves) {
+  double const share = solves == 0 ? 0 : static_cast<double>(failed) / static_cast<double>(solves);
+  return share < 0.01 ? Severity::note : share < 0.2 ? Severity::warning : Severity::error;
+}
+
 std::string model_digest(Session const& session, std::string const& model) {
   ast::Model const* flat = find_model(session.file.tree, model);
   if (flat == nullptr) return {};
@@ -133,7 +138,8 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   };
   if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
   std::string const& name = session.file.models[static_cast<std::size_t>(model)].name;
-  if (summary["versions"].value("model_sha256", "") != task_digest(session, task, name)) return refuse("text of model `" + name + "`");
+  if (summary["versions"].value("model_sha256", "") != task_digest(session, task, name))
+    return refuse("text of model `" + name + "`");
   std::vector<ExperimentUse> const& experiments = experiments_of(task);
   auto const stored = summary.value("data", nlohmann::json::array());
   if (stored.size() != experiments.size()) return refuse("set of experiments");

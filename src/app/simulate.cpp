@@ -30,7 +30,7 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
   Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.options.execution);
   Trajectory::Result const fine = finer.run(parameters, {});
-  if (fine.failed > 0) {
+  if (fine.failed() > 0) {
     session.notices << fmt::format("{}: warning: with {} the simulation fails, so the error of this one is not known\n", task.name,
                                    what.solver.finer_words());
     return;
@@ -92,7 +92,7 @@ Trajectory::Result with_feedback(std::shared_ptr<CompiledModel const> const& com
         double const made = compiled->model.channels[c].to_si(result.noisy[c][0][i]);
         if (std::isfinite(made)) experiment.measured[c][i] = made;
       }
-    if (result.failed > 0 || experiment.measured == before) return result;
+    if (result.failed() > 0 || experiment.measured == before) return result;
   }
 }
 
@@ -152,7 +152,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   Trajectory::Result const result =
       feeds_back ? with_feedback(compiled, experiment, what, parameters, noise_key, session.options.execution)
                  : trajectory.run(parameters, noise_key);
-  if (result.failed > 0)
+  if (result.failed() > 0)
     throw UserError(
         {Severity::error,
          "E5001",

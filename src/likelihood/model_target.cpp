@@ -8,15 +8,13 @@
 #include <limits>
 
 #include "core/diagnostic.hpp"
+#include "likelihood/failures.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Failed solves are traced to a sub-expression by a scalar re-run, which is slow: so many per ledger, the rest are counted
-// together.
-constexpr std::uint64_t traced_failures = 8;
 // Keeps the radicand of the scale row positive for any sensible noise level; its value does not matter, only that it is fixed.
 double scale_offset(int count) { return 100.0 * count + 1000.0; }
 
@@ -80,38 +78,19 @@ std::vector<LaneArray> ModelTarget::simulation_parameters(ConstLanes theta) cons
 
 void ModelTarget::record_failures(Simulator const& simulator, std::size_t experiment, LaneArray const& parameters,
                                   std::span<Outcome const> outcome, ConstLanes theta, Ledger& ledger) const {
-  ledger.add_solves(outcome.size());
   std::string const on_experiment = parts_.size() > 1 ? fmt::format(" on `{}`", experiments_[experiment].name) : std::string();
   LaneArray declared;
-  for (std::size_t w = 0; w < outcome.size(); ++w) {
-    if (outcome[w].ok) continue;
+  auto const example = [&](int lane) {
     if (declared.rows() == 0) {
       declared = LaneArray(theta.rows(), theta.width());
       constrain(theta, declared);
     }
-    std::vector<double> example;
-    for (int p = 0; p < declared.rows(); ++p) example.push_back(declared(p, static_cast<int>(w)));
-    if (ledger.failed() >= traced_failures) {
-      ledger.add_failure(outcome[w].kind, Ledger::untraced, simulator.schedule().time(std::max(outcome[w].sample, 0)),
-                         std::move(example));
-      continue;
-    }
-    // A start that no iteration found is not a number (StartState), whatever follows.
-    if (options_.start_rows > 0 && std::isnan(parameters(parameters.rows() - 1, static_cast<int>(w)))) {
-      ledger.add_failure(FailureClass::convergence, "the estimated start" + on_experiment, simulator.schedule().time(0),
-                         std::move(example));
-      continue;
-    }
-    std::vector<double> column;
-    for (int p = 0; p < parameters.rows(); ++p) column.push_back(parameters(p, static_cast<int>(w)));
-    auto const found = simulator.diagnose(column);
-    std::string where = !found              ? std::string("a sum over the samples")
-                        : options_.describe ? options_.describe(found->node, simulator.program().source.graph)
-                                            : std::string("the model");
-    where += on_experiment;
-    ledger.add_failure(found ? found->kind : outcome[w].kind, where,
-                       found ? found->time : simulator.schedule().time(std::max(outcome[w].sample, 0)), std::move(example));
-  }
+    std::vector<double> values;
+    for (int p = 0; p < declared.rows(); ++p) values.push_back(declared(p, lane));
+    return values;
+  };
+  sysid::record_failures({simulator, parameters, options_.start_rows > 0, on_experiment}, outcome, options_.describe, example,
+                         ledger);
 }
 
 void ModelTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const {

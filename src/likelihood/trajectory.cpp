@@ -27,9 +27,10 @@ Quantity const& quantity_of(Model const& model, CompiledModel::Record const& rec
 }  // namespace
 
 Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
-                       int start_rows, ExecutionOptions options)
+                       int start_rows, ExecutionOptions options, Describe describe)
     : compiled_(std::move(compiled)),
-      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, solver), options) {
+      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, solver), options),
+      describe_(std::move(describe)) {
   if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, solver, options);
   for (auto const& record : compiled_->records) {
     if (!is_shown(record)) continue;
@@ -39,6 +40,24 @@ Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment
                                                            : quantity.unit->text;
     quantities_.push_back({quantity.name, unit, record.kind == RecordKind::centre ? record.index : -1});
   }
+}
+
+void Trajectory::record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const {
+  if (std::all_of(outcome.begin(), outcome.end(), [](Outcome const& each) { return each.ok; })) {
+    ledger.add_solves(outcome.size());
+    return;
+  }
+  // A solve is looked into up to the last sample to score; a trajectory goes on to the last one.
+  Experiment whole = simulator_.schedule().experiment();
+  whole.scored.back() = 1;
+  whole.has_past.clear();
+  for (auto& channel : whole.measured) {
+    if (channel.empty()) channel.assign(whole.time.size(), std::nan(""));
+    channel.back() = 0;
+  }
+  Simulator const simulator(compiled_->trajectory, Schedule(*compiled_->trajectory, whole, simulator_.schedule().solver()));
+  sysid::record_failures(
+      {simulator, parameters, start_ != nullptr, {}}, outcome, describe_, [](int) { return std::vector<double>(); }, ledger);
 }
 
 void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key,
@@ -51,7 +70,6 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   result.drift.resize(model.invariants.size());
   for (int w = 0; w < records.width(); ++w) {
     bool const good = outcome[static_cast<std::size_t>(w)].ok;
-    if (!good) ++result.failed;
     std::size_t q = 0;
     for (int r = 0; r < rows; ++r) {
       auto const& record = compiled_->records[static_cast<std::size_t>(r)];
@@ -98,6 +116,7 @@ Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) c
     LaneArray records(samples() * static_cast<int>(compiled_->records.size()), width);
     std::vector<Outcome> outcome(static_cast<std::size_t>(width));
     simulator_.records(block, 0, samples(), records, outcome);
+    record_failures(block, outcome, result.ledger);
     collect(records, outcome, first, noise_key, result);
   }
   return result;
@@ -142,6 +161,11 @@ Trajectory::Result Trajectory::run_redrawn(ConstLanes parameters, int trajectori
       }
     };
     simulator_.records_redrawn(redraw, 0, samples(), records, outcome);
+    result.ledger.add_solves(outcome.size());
+    for (Outcome const& each : outcome)  // no one vector of parameters repeats it
+      if (!each.ok)
+        result.ledger.add_failure(each.kind, "parameters redrawn at each sample",
+                                  simulator_.schedule().time(std::max(each.sample, 0)), {});
     collect(records, outcome, first, noise_key, result);
   }
   return result;

@@ -6,6 +6,7 @@
 
 #include "core/random.hpp"
 #include "likelihood/compiled_model.hpp"
+#include "likelihood/failures.hpp"
 #include "likelihood/start_state.hpp"
 #include "simulate/simulator.hpp"
 
@@ -19,9 +20,10 @@ struct TrajectoryQuantity {
 
 class Trajectory {
  public:
-  /// start_rows > 0: the compiled model has a free start, fitted to the experiment's first rows.
+  /// start_rows > 0: the compiled model has a free start, fitted to the experiment's first rows. describe: places of failures in
+  /// the user's words; empty for "the model".
   Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
-             int start_rows, ExecutionOptions options);
+             int start_rows, ExecutionOptions options, Describe describe = {});
 
   std::vector<TrajectoryQuantity> const& quantities() const { return quantities_; }
   int samples() const { return simulator_.schedule().samples(); }
@@ -30,7 +32,9 @@ class Trajectory {
   /// from the stream of (noise_key, index d, step c). A failed vector is NaN throughout.
   struct Result {
     std::vector<std::vector<std::vector<double>>> values, noisy;
-    int failed = 0;
+    /// Of all vectors; what failed has its place there.
+    Ledger ledger;
+    int failed() const { return static_cast<int>(ledger.failed()); }
     /// drift[k][d]: largest violation of invariant k of the model along vector d, as a part of the largest size of its terms.
     std::vector<std::vector<double>> drift;
   };
@@ -44,11 +48,13 @@ class Trajectory {
   Result run_redrawn(ConstLanes parameters, int trajectories, StreamKey redraw_key, StreamKey noise_key) const;
 
  private:
+  void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
 
   std::shared_ptr<CompiledModel const> compiled_;
   Simulator simulator_;
   std::unique_ptr<StartState> start_;
+  Describe describe_;
   std::vector<TrajectoryQuantity> quantities_;
 };
 

@@ -22,6 +22,8 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
     if (good) usable.push_back(&trajectory);
   }
   Band out;
+  out.draws = static_cast<int>(trajectories.size());
+  out.left_out = static_cast<int>(trajectories.size() - usable.size());
   if (usable.empty()) return out;
   std::size_t const samples = usable[0]->size();
   auto const count = static_cast<double>(usable.size());

@@ -9,10 +9,11 @@ namespace sysid {
 /// Pointwise over draws, each [N]; q2.5 and q97.5 are quantiles of type 7. Empty: there is none.
 struct Band {
   std::vector<double> mean, sd, lower, upper;
+  int draws = 0, left_out = 0;  // of these so many, which it is not of
 };
 
-/// trajectories[d][i]: draw d at sample i; a draw that failed (a value that is not finite where another draw's is) is left out. NaN
-/// at samples where no draw is finite; empty when no draw is left.
+/// trajectories[d][i]: draw d at sample i; a draw that failed (a value that is not finite where another draw's is) is left out, and
+/// counted. NaN at samples where no draw is finite; empty when no draw is left.
 Band band(std::vector<std::vector<double>> const& trajectories);
 
 /// A channel, a state or a derived quantity along a record, declared unit.

@@ -42,7 +42,8 @@ std::set<std::string> codes_in_sources() {
 // Words that the sources give to findings: behind a severity, or where one asks for another.
 std::set<std::string> findings_in_sources() {
   std::set<std::string> codes;
-  std::regex const code("(?:Severity::(?:error|warning|note),\\s*|code == |loud \\? |: |check\\()\"([a-z]+_[a-z_]+|interrupted)\"");
+  std::regex const code(
+      "(?:(?:Severity::(?:error|warning|note)|severity),\\s*|code == |loud \\? |: |check\\()\"([a-z]+_[a-z_]+|interrupted)\"");
   for (char const* folder : {"src/app", "src/inference"})
     for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
       if (entry.path().extension() != ".cpp") continue;

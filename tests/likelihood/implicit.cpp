@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check/checking.hpp"
+#include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
 
 using namespace sysid;
@@ -58,7 +59,7 @@ TEST_CASE("a pendulum in Cartesian coordinates: IDA with the rod's force as unkn
   Predicted const ida = predict(pendulum, {.method = "ida", .relative = 1e-10}, {g, l}, 101, 0.02);
   Predicted const rk4 = predict(pendulum, {.substeps = 40}, {g, l}, 101, 0.02);
   Predicted const cvode = predict(pendulum, {.method = "cvode", .relative = 1e-10}, {g, l}, 101, 0.02);
-  CHECK(ida.result.failed == 0);
+  CHECK(ida.result.failed() == 0);
   for (std::size_t i = 0; i < 101; ++i) {
     for (std::size_t channel = 0; channel < 4; ++channel) {
       double const expected = rk4.result.values[channel][0][i];
@@ -80,7 +81,7 @@ TEST_CASE("an implicit equation follows the branch of its guess") {
   // sqrt(v) = 3 -+ sqrt(a) t/2.
   for (double const sign : {-1.0, 1.0}) {
     Predicted const found = predict(braking(sign < 0 ? "-1" : "0.1"), {.method = "ida", .relative = 1e-10}, {2}, 21, 0.1);
-    REQUIRE(found.result.failed == 0);
+    REQUIRE(found.result.failed() == 0);
     for (std::size_t i = 0; i < 21; ++i) {
       double const root = 3 + sign * std::sqrt(2.0) * 0.1 * static_cast<double>(i) / 2;
       CHECK(found.result.values[0][0][i] == doctest::Approx(root * root).epsilon(1e-7));
@@ -89,9 +90,16 @@ TEST_CASE("an implicit equation follows the branch of its guess") {
   }
 }
 
+TEST_CASE("a parameter that only an implicit equation reads shapes the response") {
+  auto const roles = parameter_roles(checked(braking("-1")).models.front());
+  REQUIRE(roles.size() == 1);
+  CHECK(roles[0] == ParameterRole::response);
+}
+
 TEST_CASE("an implicit equation without a solution at the start is a failed solve") {
   Predicted const none = predict(braking("-1"), {.method = "ida"}, {-2}, 5, 0.1);
-  CHECK(none.result.failed == 1);
+  CHECK(none.result.failed() == 1);
+  CHECK(none.result.ledger.solves() == 1);
 }
 
 TEST_CASE("what the compiler made of a constraint is named with the constraint it was made of") {

@@ -1,0 +1,29 @@
+// Failed solves on their way into the ledger: the first few are traced to a sub-expression, the others counted.
+#pragma once
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/ledger.hpp"
+#include "simulate/simulator.hpp"
+
+namespace sysid {
+
+/// A sub-expression in the user's words.
+using Describe = std::function<std::string(NodeId, Graph const&)>;
+
+/// How a batch of lanes was simulated.
+struct SolvedBatch {
+  Simulator const& simulator;
+  ConstLanes parameters;         // [parameters x W], SI, an estimated start included
+  bool start_estimated = false;  // a start that was not found is NaN in the last row
+  std::string on;                // " on `bench`" where there are several experiments
+};
+
+/// Adds the solves of a batch and those that failed, outcome: [W], with their class, place and time. describe: empty for "the
+/// model"; example: the declared parameters of a lane, for the first of each kind.
+void record_failures(SolvedBatch const& batch, std::span<Outcome const> outcome, Describe const& describe,
+                     std::function<std::vector<double>(int lane)> const& example, Ledger& ledger);
+
+}  // namespace sysid

@@ -1,0 +1,129 @@
+// What predictions say of the trajectories that their bands leave out.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/running.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+struct Run {
+  TemporaryFolder folder;
+  RunResult result;
+
+  Run(std::string const& text, std::vector<std::pair<std::string, std::string>> const& files) {
+    for (auto const& [name, content] : files) write_file(folder.path() / name, content);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    result = run_text(folder.path() / "case.sysid", text, options);
+  }
+  json summary(std::string const& task) const { return json::parse(read_file(folder.path() / "results" / task / "summary.json")); }
+};
+
+json finding(json const& summary, std::string const& code) {
+  for (json const& each : summary.at("findings"))
+    if (each.at("code") == code) return each;
+  return nullptr;
+}
+
+/// The first parameter of all draws.
+std::vector<double> first_parameter(Run const& run, std::string const& task) {
+  std::vector<double> values;
+  for (int chain = 1; chain <= 4; ++chain) {
+    std::istringstream lines(read_file(run.folder.path() / "results" / task / ("draws_" + std::to_string(chain) + ".csv")));
+    std::size_t column = 0;
+    bool header = true;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.empty() || line[0] == '#') continue;
+      std::vector<std::string> cells;
+      std::istringstream row(line);
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+      if (header) {
+        while (cells.at(column) != "r") ++column;
+        header = false;
+      } else {
+        values.push_back(std::stod(cells.at(column)));
+      }
+    }
+  }
+  return values;
+}
+
+// y = 1/(1 - r t), which is not there from t = 1/r on; measured while it is.
+std::string const growth = R"(
+model growth {
+  state y
+  initial y = 1
+  parameter r [1/s] ~ normal(0, sd = 0.3)
+  y' = r*y^2
+  observe o ~ normal(y, sd = 0.3)
+}
+data short { file "short.csv"; time t [s]; measure o = o }
+data long { file "long.csv"; time t [s]; measure o = o }
+past = fit growth to short with mh(samples = 1500, burn_in = 500, thin = 20, chains = 4), substeps = 16, seed = 1
+)";
+std::pair<std::string, std::string> const early = {"short.csv", "t,o\n0,1\n1,1.2\n2,1.5\n3,1.9\n"};
+
+std::string rows_to(int last) {
+  std::string text = "t,o\n";
+  for (int t = 0; t <= last; ++t) text += std::to_string(t) + ",1\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("trajectories that fail are counted with their place, and from a fifth on the prediction fails with them") {
+  Run const run(growth + "later = predict past on long with draws(200), seed = 1\n", {early, {"long.csv", rows_to(40)}});
+  json const summary = run.summary("later");
+  // The posterior lies about r = 0.16: with pole at 6 s, far below 40 s; a tenth of it is not left.
+  int const failed = summary.at("ledger").at("failed").get<int>();
+  CHECK(failed > 180);
+  CHECK(summary.at("ledger").at("solves") == 200);
+  CHECK(summary.at("ledger").at("failures").at(0).at("where").get<std::string>().find("y^2") != std::string::npos);
+  json const said = finding(summary, "failed_predictions");
+  REQUIRE(!said.is_null());
+  CHECK(said.at("severity") == "error");
+  CHECK(said.at("message").get<std::string>().find(std::to_string(failed) + " of 200 trajectories") == 0);
+  CHECK(summary.at("verdict").at("pass") == false);
+  CHECK(run.result.exit == static_cast<int>(ExitCode::doubtful));
+}
+
+TEST_CASE("trajectories that stay finite are no finding") {
+  Run const run(growth + "later = predict past on long with draws(200), seed = 1\n", {early, {"long.csv", rows_to(2)}});
+  json const summary = run.summary("later");
+  CHECK(summary.at("ledger").at("failed") == 0);
+  CHECK(finding(summary, "failed_predictions").is_null());
+  CHECK(summary.at("verdict").at("pass") == true);
+}
+
+TEST_CASE("draws without a value of a derived quantity are counted, and the quantity is named") {
+  Run const run(R"(
+model line {
+  input x
+  parameter r ~ normal(0, sd = 2)
+  observe o ~ normal(r*x, sd = 0.3)
+  derive margin = sqrt(r*x - 0.42*x)
+  derive slope = r*x
+}
+data bench { file "bench.csv"; input x = x; measure o = o }
+line_fit = fit line to bench with mh(samples = 1500, burn_in = 500, thin = 20, chains = 4), seed = 1
+again = predict line_fit on bench with draws(200), seed = 1
+)",
+                {{"bench.csv", "x,o\n1,0.7\n2,0.5\n3,1.4\n1.5,0.6\n"}});
+  std::vector<double> const r = first_parameter(run, "line_fit");
+  REQUIRE(r.size() == 200);  // each is predicted once
+  auto const below = std::count_if(r.begin(), r.end(), [](double value) { return value < 0.42; });
+  REQUIRE(below > 10);
+  json const said = finding(run.summary("again"), "undefined_in_band");
+  REQUIRE(!said.is_null());
+  CHECK(said.at("severity") == "warning");
+  CHECK(said.at("message") == "margin has no value somewhere along " + std::to_string(below) +
+                                  " of 200 trajectories, and its band is that of the others");
+  CHECK(finding(run.summary("again"), "failed_predictions").is_null());
+  CHECK_FALSE(finding(run.summary("line_fit"), "undefined_in_band").is_null());
+}
