@@ -10,6 +10,8 @@
 
 #include "app/experiments.hpp"
 #include "inference/backend.hpp"
+#include "inference/selector.hpp"
+#include "likelihood/simulated_parameters.hpp"
 #include "model/past.hpp"
 
 namespace sysid {
@@ -34,34 +36,67 @@ std::vector<TaskData> data_of(CheckedFile const& file, Task const& task) {
   return all;
 }
 
-std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
-                                  std::vector<ExperimentData> const& data) {
-  auto const refused = [&](std::string code, std::string message, std::string help) {
-    return Diagnostic{Severity::error, std::move(code), std::move(message), Label{task.span, {}}, {}, std::move(help)};
-  };
-  BackendRow const& backend = *find_backend(what.backend);
-  if (backend.refuse != nullptr)
-    if (std::string const why = backend.refuse(what.settings); !why.empty())
-      return refused("E6203", fmt::format("these settings of `{}` do not go together: {}", backend.name, why),
-                     "change one of them");
-  if (backend.needs.proper_prior)
-    for (Parameter const& parameter : model.parameters)
-      if (parameter.prior && !parameter.prior->row->proper)
-        return refused("E6204",
-                       fmt::format("`{}` needs priors that can be drawn from; that of `{}` is {}", backend.name, parameter.name,
-                                   parameter.prior->row->name),
-                       fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
-  if (parameter_space(model, what.experiments)->dimension() == 0)
-    return refused("E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model.name),
-                   "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`");
+namespace {
+
+Diagnostic refused(Task const& task, std::string code, std::string message, std::string help) {
+  return {Severity::error, std::move(code), std::move(message), Label{task.span, {}}, {}, std::move(help)};
+}
+
+Diagnostic refused_settings(Task const& task, std::string_view backend, std::string const& why) {
+  return refused(task, "E6203", fmt::format("these settings of `{}` do not go together: {}", backend, why), "change one of them");
+}
+
+/// of: " of `model`" where there are several. Asked of parameters that have a prior in `model`.
+std::optional<Diagnostic> improper_prior(Task const& task, std::string_view backend, Model const& model, std::string const& of) {
+  for (Parameter const& parameter : model.parameters)
+    if (parameter.prior && !parameter.prior->row->proper)
+      return refused(task, "E6204",
+                     fmt::format("`{}` needs priors that can be drawn from; that of `{}`{} is {}", backend, parameter.name, of,
+                                 parameter.prior->row->name),
+                     fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<ExperimentData> const& data) {
   for (ExperimentData const& each : data) {
     Experiment const& experiment = each.experiment;
     bool any = false;
     for (auto const& channel : experiment.measured)
       for (std::size_t i = 0; i < channel.size(); ++i) any = any || (experiment.scored[i] != 0 && !std::isnan(channel[i]));
     if (!any)
-      return refused("E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment.name),
+      return refused(task, "E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment.name),
                      "choose other rows or columns");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
+                                  std::vector<ExperimentData> const& data) {
+  BackendRow const& backend = *find_backend(what.backend);
+  if (backend.refuse != nullptr)
+    if (std::string const why = backend.refuse(what.settings); !why.empty()) return refused_settings(task, backend.name, why);
+  if (backend.needs.proper_prior)
+    if (auto const found = improper_prior(task, backend.name, model, {})) return found;
+  if (parameter_space(model, what.experiments)->dimension() == 0)
+    return refused(task, "E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model.name),
+                   "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`");
+  return nothing_measured(task, data);
+}
+
+std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std::vector<Model> const& models,
+                                  std::vector<std::vector<ExperimentData>> const& data) {
+  SelectorRow const& selector = *find_selector(what.backend);
+  if (std::string const why = selector.refuse(what.settings); !why.empty()) return refused_settings(task, selector.name, why);
+  // The noise has particles in no population, but the likelihood's side starts from draws of it.
+  bool const with_noise = what.settings.flag("cross_check") || what.settings.flag("polish");
+  for (std::size_t c = 0; c < what.fits.size(); ++c) {
+    Model const& model = models[static_cast<std::size_t>(what.fits[c].model)];
+    std::string const of = what.fits.size() > 1 ? " of `" + model.name + "`" : std::string();
+    if (auto const found = improper_prior(task, selector.name, with_noise ? model : without_noise_parameters(model), of))
+      return found;
+    if (auto const found = nothing_measured(task, data[c])) return found;
   }
   return std::nullopt;
 }
@@ -126,11 +161,18 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
         complete = false;
       }
     }
-    auto const* fit = wanted(task) ? std::get_if<FitTask>(&task.what) : nullptr;
-    if (fit == nullptr || !complete) continue;
-    if (auto const why = refusal(task, *fit, session.file.models[static_cast<std::size_t>(fit->model)],
-                                 load_experiments(session, fit->experiments, fit->model, fit->start, fit->prediction)))
-      add_one(*why);
+    if (!wanted(task) || !complete) continue;
+    auto const loaded = [&](FitTask const& fit) {
+      return load_experiments(session, fit.experiments, fit.model, fit.start, fit.prediction);
+    };
+    if (auto const* fit = std::get_if<FitTask>(&task.what)) {
+      if (auto const why = refusal(task, *fit, session.file.models[static_cast<std::size_t>(fit->model)], loaded(*fit)))
+        add_one(*why);
+    } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
+      std::vector<std::vector<ExperimentData>> data;
+      for (FitTask const& fit : selection->fits) data.push_back(loaded(fit));
+      if (auto const why = refusal(task, *selection, session.file.models, data)) add_one(*why);
+    }
   }
   result.unreadable = only_unreadable;
   return result;

@@ -14,6 +14,10 @@ namespace sysid {
 std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
                                   std::vector<ExperimentData> const& data);
 
+/// The same of a selection: settings, then each candidate's priors and data. data: per candidate.
+std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std::vector<Model> const& models,
+                                  std::vector<std::vector<ExperimentData>> const& data);
+
 struct Readiness {
   Diagnostics diagnostics;
   bool unreadable = false;  // all of them are files that cannot be read
@@ -21,8 +25,8 @@ struct Readiness {
   void require() const;
 };
 
-/// Reads the data of the wanted fit and predict tasks and asks `refusal`; each mistake once. Data that a wanted simulate task of
-/// the file makes are left for later.
+/// Reads the data of the wanted fit, select and predict tasks and asks `refusal`; each mistake once. Data that a wanted simulate
+/// task of the file makes are left for later.
 Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted);
 
 /// The data of a fit, select or predict task, once for each model that reads them; empty for others.

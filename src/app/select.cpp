@@ -9,6 +9,7 @@
 #include "app/experiments.hpp"
 #include "app/fit_target.hpp"
 #include "app/likelihood_check.hpp"
+#include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/results.hpp"
@@ -67,14 +68,10 @@ class Select {
   }
 
   ExitCode run() {
+    std::vector<std::vector<ExperimentData>> data;
+    for (Candidate const& each : candidates_) data.push_back(each.data);
+    if (auto const why = refusal(task_, what_, session_.file.models, data)) throw UserError(*why);
     SelectorRow const& selector = *find_selector(what_.backend);
-    if (std::string const why = selector.refuse(what_.settings); !why.empty())
-      throw UserError({Severity::error,
-                       "E6203",
-                       fmt::format("these settings of `{}` do not go together: {}", selector.name, why),
-                       Label{task_.span, {}},
-                       {},
-                       "change one of them"});
     ModelSelectionTarget const target = make_target(false);
     RunContext context{seed_,
                        session_.progress,
@@ -361,6 +358,8 @@ class Select {
       if (candidate.space->dimension() != candidate.simulated->dimension())
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
       report.predictions.push_back(bands_along(trajectory, result, experiment, candidate.compiled->model));
+      for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
+        report.findings.push_back(std::move(finding));
     }
   }
 

@@ -68,3 +68,41 @@ TEST_CASE("a file without tasks says which it could have") {
   CHECK(run_tasks(source, *file, {}, options, progress, summaries, notices) == ExitCode::usage);
   CHECK(notices.str() == "there is no task in example.sysid\nhelp: add one, for example `posterior = fit decay to dish with mh`\n");
 }
+
+TEST_CASE("a selection that cannot begin is refused before the first task begins") {
+  TemporaryFolder const output;
+  std::string const flat =
+      "model straight {\n  state y\n  initial y = 1\n  parameter rate [1/day] ~ flat()\n"
+      "  parameter sigma ~ half_cauchy(scale = 1)\n  y' = -rate*y\n  observe size ~ normal(y, sd = sigma)\n}\n";
+  std::string const select = "choice = select straight to dish with abc_smc(particles = 20), seed = 1\n";
+  Answer const improper = run(model + flat + dish + fit + select, output.path);
+  CHECK(improper.exit == ExitCode::user_error);
+  CHECK(count(improper.messages, "error[E6204]") == 1);
+  CHECK(count(improper.messages, "`abc_smc` needs priors that can be drawn from; that of `rate` is flat") == 1);
+  Answer const rising =
+      run(model + dish + fit + "choice = select decay to dish with abc_smc(schedule = (10, 20)), seed = 1\n", output.path);
+  CHECK(rising.exit == ExitCode::user_error);
+  CHECK(count(rising.messages, "error[E6203]") == 1);
+  CHECK_FALSE(std::filesystem::exists(output.path / "posterior"));
+}
+
+TEST_CASE("an improper prior of the noise is refused where the likelihood is asked beside the distance") {
+  std::string const vague =
+      "model decay {\n  state y\n  initial y = 1\n  parameter k ~ log_uniform(0.1, 10)\n"
+      "  parameter level ~ flat()\n  y' = -k*y\n  observe size ~ normal(y, sd = exp(level))\n}\n";
+  auto const refused = [&](std::string const& settings) {
+    WorkingFolder const here(error_examples);
+    Source source("example.sysid",
+                  vague + dish + "choice = select decay to dish with abc_smc(particles = 20" + settings + "), seed = 1\n");
+    Diagnostics diagnostics;
+    auto const file = load(source, diagnostics);
+    REQUIRE_MESSAGE(file, render(diagnostics, source));
+    SilentProgress progress;
+    std::ostringstream ignored;
+    RunOptions const options;
+    Session session(source, *file, options, progress, ignored, ignored);
+    return count(render(check_readiness(session, [](Task const&) { return true; }).diagnostics, source), "that of `level` is flat");
+  };
+  CHECK(refused("") == 1);
+  CHECK(refused(", cross_check = no") == 0);
+}
