@@ -251,6 +251,17 @@ TEST_CASE("a model that is as near as the others but hardly proposed dies by cha
   CHECK(said == lost);
 }
 
+TEST_CASE("a candidate without parameters takes part with all its prior probability while it is near enough") {
+  // Within a threshold eps the other one keeps a part eps of its prior: p = 1/(1 + eps).
+  Toy const toy(
+      {{"fixed", 0.5, {}, [](std::span<double const>) { return 0.01; }}, {"free", 0.5, {{Prior::uniform, -1, 1}}, size_of_first}});
+  SelectionResult const result =
+      run(toy, with({{"particles", std::int64_t{4000}}, {"schedule", std::vector<double>{0.5, 0.2, 0.1}}}));
+  REQUIRE(result.populations.size() == 3);
+  for (PopulationRecord const& population : result.populations)
+    CHECK(std::fabs(population.models[0].probability - 1 / (1 + population.threshold)) < 0.03);
+}
+
 TEST_CASE("degenerate cases end in words") {
   SUBCASE("no draw comes within the first threshold") {
     Toy const toy({{"far", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return 5.0; }}});
