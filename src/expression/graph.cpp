@@ -260,18 +260,28 @@ std::vector<NodeId> Graph::reachable(std::span<NodeId const> roots) const {
   NodeId last = 0;
   for (NodeId const root : roots) last = std::max(last, root);
   std::vector<bool> marked(roots.empty() ? 0 : last + std::size_t{1});
-  for (NodeId const root : roots) marked[root] = true;
   std::vector<NodeId> found;
-  for (std::size_t i = marked.size(); i-- > 0;) {
-    if (!marked[i]) continue;
-    found.push_back(static_cast<NodeId>(i));
-    Node const& node = nodes_[i];
+  auto const mark = [&](NodeId id) {
+    if (!marked[id]) found.push_back(id);
+    marked[id] = true;
+  };
+  for (NodeId const root : roots) mark(root);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    Node const& node = nodes_[found[i]];
     int const operands = sysid::operand_count(node);
-    if (operands > 0) marked[node.a] = true;
-    if (operands > 1) marked[node.b] = true;
-    if (operands > 2) marked[node.c] = true;
+    if (operands > 0) mark(node.a);
+    if (operands > 1) mark(node.b);
+    if (operands > 2) mark(node.c);
   }
-  return {found.rbegin(), found.rend()};
+  // Few of a large graph are sorted, many are read off.
+  if (found.size() < marked.size() / 16) {
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+  found.clear();
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    if (marked[i]) found.push_back(static_cast<NodeId>(i));
+  return found;
 }
 
 void Graph::set_span(NodeId id, Span span) {

@@ -41,7 +41,8 @@ class Algebra {
   Algebra(Graph& graph, std::span<NodeId const> roots);
 
   NodeId rewrite(NodeId id);
-  /// `id` as a sum of products, sums under constant and per-parameter factors multiplied out.
+  /// `id` as a sum of products, sums under constant and per-parameter factors multiplied out; as one where that would make more
+  /// than a thousand (sums that share their addends make twice as many with each step).
   std::vector<Product> expand(NodeId id);
   NodeId sum(std::vector<Product> terms);
   NodeId product(Product const& product);
@@ -60,6 +61,7 @@ class Algebra {
   bool may_open(NodeId id) const { return id >= uses_.size() || uses_[id] <= 1; }
   void collect(NodeId id, int exponent, Product& into, bool open);
   void collect_terms(NodeId id, bool negative, std::vector<Product>& terms, bool open);
+  double count_terms(NodeId id, std::unordered_map<NodeId, double>& counts);
   void expand_below(NodeId id, Product const& scale, std::vector<Product>& terms);
   void multiply_atom(Product& into, NodeId atom, int exponent);
   void multiply_factor(std::vector<Product::Factor>& factors, NodeId base, int exponent);

@@ -1,11 +1,14 @@
 // Sums: expressions taken apart into products, common factors taken out, and put together as a chain of fused multiply-adds.
 #include <algorithm>
 #include <map>
+#include <unordered_map>
 
 #include "program/algebra.hpp"
 
 namespace sysid {
 namespace {
+
+constexpr double most_terms = 1000;
 
 bool is_sum(Operation operation) {
   return operation == Operation::add || operation == Operation::subtract || operation == Operation::negate;
@@ -28,9 +31,29 @@ void Algebra::collect_terms(NodeId id, bool negative, std::vector<Product>& term
 }
 
 std::vector<Product> Algebra::expand(NodeId id) {
+  std::unordered_map<NodeId, double> counts;
+  if (count_terms(id, counts) > most_terms) {
+    Product whole = unit();
+    collect(id, 1, whole, true);
+    return {whole};
+  }
   std::vector<Product> terms;
   expand_below(id, unit(), terms);
   return terms;
+}
+
+/// How many terms `expand_below` would make.
+double Algebra::count_terms(NodeId id, std::unordered_map<NodeId, double>& counts) {
+  if (auto const counted = counts.find(id); counted != counts.end()) return counted->second;
+  Node const& node = graph_[id];
+  double count = 1;
+  if (is_sum(node.operation))
+    count = count_terms(node.a, counts) + (node.operation == Operation::negate ? 0 : count_terms(node.b, counts));
+  else if (node.operation == Operation::multiply && !binding_.is_step(node.a))
+    count = count_terms(node.b, counts);
+  else if ((node.operation == Operation::multiply || node.operation == Operation::divide) && !binding_.is_step(node.b))
+    count = count_terms(node.a, counts);
+  return counts[id] = count;
 }
 
 void Algebra::expand_below(NodeId id, Product const& scale, std::vector<Product>& terms) {

@@ -108,6 +108,7 @@ TEST_CASE("long and many") {
 TEST_CASE("numbers without bounds") {
   answered("a literal", oscillator("let a = 1e400"), "E1108");
   answered("a size", regression("parameter q(1000000000) ~ normal(0, sd = 1)", "sum(q)"), "E2702");
+  answered("a long vector", regression("parameter q(10000) ~ normal(0, sd = 1)", "sum(q)"), "");
   answered("a tower", regression("parameter q(9^9^9^9) ~ normal(0, sd = 1)", "sum(q)"), "E2701");
   answered("an argument", "model m(n = 1000000000) {\n  state q(n)\n  initial q = 0\n  q' = -q\n}\n", "E2702");
   answered("an index", regression("parameter q(3) ~ normal(0, sd = 1)", "q[99999999999999999999]"), "E2701");

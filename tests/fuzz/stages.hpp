@@ -18,6 +18,7 @@
 #include "data/record.hpp"
 #include "data/table.hpp"
 #include "likelihood/compiled_model.hpp"
+#include "model/past.hpp"
 #include "simulate/simulator.hpp"
 #include "syntax/format.hpp"
 #include "syntax/parse.hpp"
@@ -49,10 +50,17 @@ inline void look_at(Diagnostics const& diagnostics, Source const& source) {
 inline void simulate_one_step(Model const& model) {
   std::shared_ptr<CompiledModel const> const compiled = compile(model, false, "rk4");
   (void)dump_program(*compiled);
+  int const history = data_lag(model);
+  std::vector<double> time, samples;
+  for (int i = -history; i < 2; ++i) {
+    time.push_back(0.01 * i);
+    samples.push_back(i < 0 ? 0 : 0.5 * (1 + i));
+  }
   Experiment experiment;
   experiment.time = {0, 0.01};
+  experiment.history.assign(model.channels.size(), std::vector<double>(static_cast<std::size_t>(history), 0.0));
   for (std::size_t i = 0; i < model.inputs.size(); ++i)
-    experiment.inputs.emplace_back(InputRule::linear, experiment.time, std::vector<double>{0.5, 1});
+    experiment.inputs.push_back(InputSignal(InputRule::linear, time, samples).view(history, 2));
   experiment.measured.assign(model.channels.size(), {0.25, 0.5});
   experiment.scored = {1, 1};
   std::vector<double> const parameters(static_cast<std::size_t>(compiled->parameter_rows()), 0.75);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "check/elaborate/errors.hpp"
 #include "check/elaborate/tree.hpp"
@@ -23,6 +24,17 @@ ast::Expression plus(ast::Expression a, ast::Expression b, Span span) {
   if (tree::is_number(a, 0)) return b;
   if (tree::is_number(b, 0)) return a;
   return tree::binary("+", std::move(a), std::move(b), span);
+}
+// From left to right; the halves of a long sum each for itself, so that the tree is not as deep as the sum is long.
+ast::Expression sum_of(std::span<ast::Expression const> terms, Span span) {
+  constexpr std::size_t longest = 200;
+  if (terms.size() > longest) {
+    std::size_t const half = terms.size() / 2;
+    return plus(sum_of(terms.first(half), span), sum_of(terms.subspan(half), span), span);
+  }
+  ast::Expression total = tree::number(0, span);
+  for (ast::Expression const& term : terms) total = plus(std::move(total), term, span);
+  return total;
 }
 ast::Expression times(ast::Expression const& a, ast::Expression const& b, Span span) {
   if (tree::is_number(a, 0) || tree::is_number(b, 0)) return tree::number(0, span);
@@ -160,13 +172,12 @@ std::optional<Array> ArrayAlgebra::product(Array const& left, Array const& right
   Array result{right.shape.rank == 1 ? (rows == 1 ? Shape{} : vector_of(rows)) : matrix_of(rows, columns), {}};
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j) {
-      ast::Expression entry = tree::number(0, span);
+      std::vector<ast::Expression> terms;
       for (int k = 0; k < inner; ++k) {
-        ast::Expression term = times(left.at(i, k), right.at(k, j), span);
-        if (!spend(tree::size(term, left_ + 1), span)) return std::nullopt;
-        entry = plus(std::move(entry), std::move(term), span);
+        terms.push_back(times(left.at(i, k), right.at(k, j), span));
+        if (!spend(tree::size(terms.back(), left_ + 1), span)) return std::nullopt;
       }
-      result.items.push_back(std::move(entry));
+      result.items.push_back(sum_of(terms, span));
     }
   return result;
 }
@@ -180,9 +191,7 @@ std::optional<Array> ArrayAlgebra::transpose(Array array, Span) {
 
 std::optional<Array> ArrayAlgebra::sum(Array const& array, Span span) {
   if (!spend(array, span)) return std::nullopt;
-  ast::Expression total = tree::number(0, span);
-  for (ast::Expression const& item : array.items) total = plus(std::move(total), item, span);
-  return scalar(std::move(total));
+  return scalar(sum_of(array.items, span));
 }
 
 std::optional<Array> ArrayAlgebra::dot(Array const& left, Array const& right, Span span) {
