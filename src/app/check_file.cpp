@@ -71,6 +71,7 @@ TaskPage check_task(Session& session, Task const& task) {
                     data_names(file, selection->fits.front().experiments), selection->backend);
     cover(session, data.front(), page);
     check_bands(page);
+    page.left_out = "prior draws and what the data can tell of each candidate: a `fit` of it in the file is looked at in full";
   } else {
     auto const& prediction = std::get<PredictTask>(task.what);
     page.what = fmt::format("predict {} on {}", file.tasks[static_cast<std::size_t>(prediction.fit)].name,
