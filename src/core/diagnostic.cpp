@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
+#include <tuple>
 
 namespace sysid {
 
@@ -196,11 +198,6 @@ std::string excerpt(Diagnostic const& diagnostic, Source const& source, Paint pa
   return out;
 }
 
-bool same(Diagnostic const& a, Diagnostic const& b) {
-  return a.code == b.code && a.message == b.message && a.primary.has_value() && b.primary.has_value() &&
-         a.primary->span == b.primary->span;
-}
-
 /// In the order in which they are shown.
 std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
   std::vector<Diagnostic const*> out;
@@ -211,13 +208,10 @@ std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
   });
   // A statement that stands for several (the elements of a vector, the uses of a model) may be found wrong several times.
   std::vector<Diagnostic const*> once;
-  for (Diagnostic const* each : out) {
-    auto said = once.rbegin();  // those of one place stand together
-    while (said != once.rend() && (*said)->primary && each->primary && (*said)->primary->span.begin == each->primary->span.begin &&
-           !same(**said, *each))
-      ++said;
-    if (said == once.rend() || !same(**said, *each)) once.push_back(each);
-  }
+  std::set<std::tuple<std::uint32_t, std::uint32_t, std::string_view, std::string_view>> said;
+  for (Diagnostic const* each : out)
+    if (!each->primary || said.emplace(each->primary->span.begin, each->primary->span.end, each->code, each->message).second)
+      once.push_back(each);
   return once;
 }
 
