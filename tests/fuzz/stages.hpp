@@ -48,7 +48,9 @@ inline void look_at(Diagnostics const& diagnostics, Source const& source) {
 
 /// One step of the model at parameters that need not make sense.
 inline void simulate_one_step(Model const& model) {
-  std::shared_ptr<CompiledModel const> const compiled = compile(model, false, "rk4");
+  SolverSettings solver;
+  if (model.implicit) solver.method = "ida";  // as the checker chooses
+  std::shared_ptr<CompiledModel const> const compiled = compile(model, false, solver.method);
   (void)dump_program(*compiled);
   int const history = data_lag(model);
   std::vector<double> time, samples;
@@ -69,7 +71,7 @@ inline void simulate_one_step(Model const& model) {
   for (double const value : parameters) batch.insert(batch.end(), lanes, value);
   std::vector<double> sums(static_cast<std::size_t>(compiled->likelihood->sum_count() * lanes));
   std::vector<Outcome> outcome(lanes);
-  Simulator const simulator(compiled->likelihood, Schedule(*compiled->likelihood, experiment, SolverSettings{}));
+  Simulator const simulator(compiled->likelihood, Schedule(*compiled->likelihood, experiment, solver));
   simulator.sums(ConstLanes(batch.data(), static_cast<int>(parameters.size()), lanes),
                  Lanes(sums.data(), compiled->likelihood->sum_count(), lanes), outcome);
 }
