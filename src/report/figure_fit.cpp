@@ -54,6 +54,7 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   if (!prediction.rows)
     for (double& t : time) t /= prediction.time_scale;
   bool const has_noise = !noisy_lower.empty(), has_data = !measured.empty();
+  bool const has_band = has_noise || quantity.response.draws != 1;  // an optimum is one trajectory
 
   double const point_size = time.size() > 100 ? 0.28 : 0.5;
   int const width = 760, height = has_data ? 430 : 290;
@@ -91,8 +92,8 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   out.script += panel(top, width, height);
   std::vector<Key> keys;
   if (has_data) keys.push_back({Key::points, data, "measured"});
-  keys.push_back({Key::line, model, "posterior mean"});
-  keys.push_back({Key::area, response_band, "95 % of the response"});
+  keys.push_back({Key::line, model, has_band ? "posterior mean" : "model"});
+  if (has_band) keys.push_back({Key::area, response_band, "95 % of the response"});
   if (has_noise) keys.push_back({Key::area, noise_band, "95 % with noise"});
   out.script += legend(keys, top.right, height - 14.0, width, height);
   out.script += "plot ";
@@ -121,10 +122,12 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
 
   if (has_data)
     out.caption = fmt::format("Measured and modelled {}. The residuals below should scatter without pattern; {}", quantity.name,
-                              has_noise ? "about one in twenty lies outside the light band, which includes the noise."
-                                        : "the band is that of the response, without noise.");
+                              has_noise  ? "about one in twenty lies outside the light band, which includes the noise."
+                              : has_band ? "the band is that of the response, without noise."
+                                         : "one trajectory has no band.");
   else
-    out.caption = fmt::format("The model's account of {}, which is not measured, with its 95 % band.", quantity.name);
+    out.caption =
+        fmt::format("The model's account of {}, which is not measured{}.", quantity.name, has_band ? ", with its 95 % band" : "");
   if (!w.whole)
     out.caption += fmt::format(" Shown are the first {} of {} scored samples.", w.count,
                                std::count(prediction.scored.begin(), prediction.scored.end(), 1));

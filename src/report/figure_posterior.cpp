@@ -110,7 +110,10 @@ Figure posterior_figure(Report const& report) {
     p.y = {0, 1.06 * peak, 0, {}};
     p.y_axis = false;
     p.x_label = axis_label(summary.name, summary.unit, p.x.exponent);
-    p.title = mean_and_sd(summary);
+    Summary on_axis = summary;
+    on_axis.mean = p.x.scaled(summary.mean);
+    on_axis.sd = p.x.scaled(summary.sd);
+    p.title = mean_and_sd(on_axis);
     double const infinity = std::numeric_limits<double>::infinity();
     out.script += data_block(fmt::format("all{}", i), histogram.outline(p.x, -infinity, infinity));
     out.script += data_block(fmt::format("inner{}", i), histogram.outline(p.x, summary.q5, summary.q95));
@@ -138,7 +141,7 @@ Figure posterior_figure(Report const& report) {
   }
   out.script += "unset multiplot\n";
   out.caption = fmt::format(
-      "Marginal posteriors; the darker part holds 90 %, the numbers above are mean ± sd.{}{}{}",
+      "Marginal posteriors; the darker part holds 90 %, the numbers above are mean ± sd, in the unit of the axis.{}{}{}",
       any_prior ? " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; "
                   "one that stands against an edge is cut "
                   "by the prior."

@@ -98,9 +98,31 @@ std::string join_points(std::string_view svg) {
   return out;
 }
 
+/// Coordinates of paths and polygons to a tenth of a pixel: gnuplot writes hundredths, a seventh of a file.
+std::string to_tenths(std::string_view svg) {
+  auto const is_part = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+  std::string out;
+  bool coordinates = false;
+  for (std::size_t at = 0; at < svg.size();) {
+    if (svg[at] == '\'') coordinates = !coordinates && (out.ends_with(" d=") || out.ends_with(" points = "));
+    std::size_t end = at;
+    while (coordinates && end < svg.size() && is_part(svg[end])) ++end;
+    std::string_view const number = svg.substr(at, end - at);
+    if (std::size_t const dot = number.find('.'); dot != number.npos && dot > 0 && dot + 3 == number.size()) {
+      out += fmt::format("{:.1f}", std::stod(std::string(number)));
+      if (out.ends_with(".0")) out.resize(out.size() - 2);
+    } else {
+      end = std::max(end, at + 1);
+      out += svg.substr(at, end - at);
+    }
+    at = end;
+  }
+  return out;
+}
+
 /// Removes what gnuplot writes for features that are not used, and makes its identifiers unique within a page.
 void polish(std::string& svg, std::string const& name) {
-  svg = join_points(svg);
+  svg = to_tenths(join_points(svg));
   std::size_t const begin = svg.find("<defs>"), end = svg.find("</defs>");
   if (begin != std::string::npos && end != std::string::npos && svg.find("<use", end) == std::string::npos)
     svg.erase(begin, end + 8 - begin);

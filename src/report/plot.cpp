@@ -29,12 +29,11 @@ Axis axis(double low, double high, int count, double margin) {
   out.high = out.scaled(high);
   double const rough = (out.high - out.low) / std::max(count, 1);
   double const unit = std::pow(10.0, std::floor(std::log10(rough)));
-  double step = 10 * unit;
-  for (double const factor : {1.0, 2.0, 5.0})
-    if (factor * unit >= 0.7 * rough) {
-      step = factor * unit;
-      break;
-    }
+  auto const ticks_at = [&](double step) { return std::floor(out.high / step + 1e-9) - std::ceil(out.low / step - 1e-9) + 1; };
+  double step = unit;
+  // The finest that is no finer than asked for, as long as two ticks are left to read a scale from.
+  for (double const factor : {2.0, 5.0, 10.0})
+    if (step < 0.7 * rough && ticks_at(factor * unit) >= 2) step = factor * unit;
   int const decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   for (double k = std::ceil(out.low / step - 1e-9); k * step <= out.high + 1e-9 * step; ++k) {
     double const value = k == 0 ? 0 : k * step;

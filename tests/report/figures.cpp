@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "example.hpp"
 #include "report/gnuplot.hpp"
@@ -104,6 +105,41 @@ TEST_CASE("a long record is shown in part and says so") {
   plot::Figure const figure = fit_figure(prediction, quantity);
   CHECK(figure.caption.ends_with("Shown are the first 1000 of 5000 scored samples."));
   CHECK(figure.script.size() < 200000);
+}
+
+TEST_CASE("one trajectory is no posterior mean and has no band") {
+  Report report = example::duffing(40);
+  PredictedQuantity& quantity = report.predictions[0].quantities[0];
+  CHECK(fit_figure(report.predictions[0], quantity).script.find("'posterior mean'") != std::string::npos);
+  quantity.noisy = {};
+  quantity.response.draws = 1;
+  plot::Figure const figure = fit_figure(report.predictions[0], quantity);
+  CHECK(figure.script.find("'posterior mean'") == std::string::npos);
+  CHECK(figure.script.find("'95 % of the response'") == std::string::npos);
+  CHECK(figure.script.find("'model'") != std::string::npos);
+  CHECK(figure.caption.ends_with("one trajectory has no band."));
+}
+
+TEST_CASE("the numbers over a marginal are in the unit of its axis") {
+  Report report = example::duffing(40);
+  report.summary.resize(1);
+  report.draws.names.resize(1);
+  report.draws.units.resize(1);
+  report.summary[0].mean = 998087;
+  report.summary[0].sd = 4395;
+  for (Chain& chain : report.draws.chains)
+    for (std::size_t d = 0; d < chain.values.size(); ++d) chain.values[d][0] = 998087 + 4395 * std::sin(static_cast<double>(d));
+  CHECK(posterior_figure(report).script.find("'0.9981 ± 0.0044'") != std::string::npos);
+}
+
+TEST_CASE("curves are written to a tenth of a pixel") {
+  if (!gnuplot_installed()) return;
+  auto const svg = draw({"f", "", "", plot::preamble("f", 300, 200) + "plot [0:1] x with lines, 2*x with filledcurves y1=0\n"});
+  REQUIRE(svg);
+  std::size_t const path = svg->find(" d='M");
+  REQUIRE(path != std::string::npos);
+  std::string const coordinates = svg->substr(path, svg->find('\'', path + 4) - path);
+  CHECK_MESSAGE(!std::regex_search(coordinates, std::regex("\\.[0-9][0-9]")), coordinates);
 }
 
 TEST_CASE("the autocorrelation of an alternating series alternates") {

@@ -42,6 +42,13 @@ TEST_CASE("a constant has an axis with room around it") {
   }
 }
 
+TEST_CASE("two ticks are left to read a scale from, however few are asked for") {
+  for (double const high : {2.1, 4.2, 7.0, 9.9, 33.0})
+    for (double const low : {-0.93 * high, 0.0, 0.2 * high})
+      CHECK_MESSAGE(axis(low, high, 3).ticks.size() >= 2, low << " to " << high);
+  CHECK(axis(-3.98, 4.11, 3, 0.06).ticks.size() == 5);  // -4, -2, 0, 2, 4
+}
+
 TEST_CASE("a negative tick has a real minus and zero has none") {
   Axis const a = axis(-1, 1, 2);
   REQUIRE(a.ticks.size() == 3);
