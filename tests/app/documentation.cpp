@@ -284,6 +284,34 @@ TEST_CASE("findings that the methods page lists are made somewhere") {
   CHECK(count > 15);
 }
 
+TEST_CASE("every case stands in the table of cases, shows a figure, quotes a run and says whose its data are") {
+  std::string const table = read_file(root / "models/README.md");
+  std::regex const picture("!\\[[^\\]]+\\]\\(([^)/]+\\.svg)\\)");
+  for (auto const& entry : fs::directory_iterator(root / "models")) {
+    if (!entry.is_directory()) continue;
+    std::string const name = entry.path().filename().string();
+    CHECK_MESSAGE(table.find("(" + name + "/README.md)") != std::string::npos, "models/README.md leaves out " << name);
+    Page const page = read_page(entry.path() / "README.md");
+    std::string prose;
+    for (std::string const& line : page.prose) prose += line + " ";
+    bool const ours = prose.find("licence of the project ([BSD 3-Clause](../../LICENSE))") != std::string::npos;
+    CHECK_MESSAGE((ours || prose.find("*Source*:") != std::string::npos), page.name << " does not say whose its data are");
+    CHECK_MESSAGE(std::any_of(page.blocks.begin(), page.blocks.end(),
+                              [&](Fence const& block) {
+                                return block.info.starts_with("text from ./sysid run models/" + name + "/") &&
+                                       block.joined().find("verdict: ") != std::string::npos;
+                              }),
+                  page.name << " quotes no verdict");
+    std::sregex_iterator figure(prose.begin(), prose.end(), picture), end;
+    CHECK_MESSAGE(figure != end, page.name << " shows no figure");
+    for (; figure != end; ++figure) {
+      std::string const file = (*figure)[1].str();
+      REQUIRE_MESSAGE(fs::exists(entry.path() / file), page.name << ": no " << file);
+      CHECK_MESSAGE(fs::file_size(entry.path() / file) < 150'000, file << " is too large for a page");
+    }
+  }
+}
+
 TEST_CASE("links lead to files and headings that exist") {
   int count = 0;
   std::regex const link("\\]\\(([^)\\s]+)\\)");
