@@ -10,6 +10,7 @@
 #include "app/settled_draws.hpp"
 #include "app/tolerance.hpp"
 #include "core/elementary.hpp"
+#include "expression/switching.hpp"
 #include "inference/convergence.hpp"
 #include "report/number.hpp"
 #include "simulate/thread_pool.hpp"
@@ -22,6 +23,9 @@ constexpr int looked_at = 8;                  // draws whose slopes are taken
 constexpr int candidates = 24;                // draws among which those are looked for
 constexpr double wild = 1000;                 // predicted and measured ranges this far apart: a wrong unit or a wild prior
 constexpr double many_failures = 0.2;         // share of failed solves that deserves a warning
+constexpr double bare_mention = 3.2;          // a Bayes factor "not worth more than a bare mention" (Kass and Raftery 1995)
+constexpr double visible_shift = 0.05;        // of the distance that noise leaves; what a selection checks at its end
+constexpr double gross_move = 0.1;            // of a response's sd: an nmse of 1, which a model is called excellent below
 constexpr double right_enough = 1e-2;         // change of a response, of its size, when the solver is refined: good for slopes
 constexpr double converged = 1e-3;            // at the last refinement: neither unstable nor chaotic
 constexpr double tolerable_roughness = 1e-3;  // error of the slopes as a part of them
@@ -53,6 +57,7 @@ struct Converged {
   int lane;
   std::size_t level;       // the first solver whose response is right enough
   Eigen::MatrixXd errors;  // [R x solvers - 1] what each refinement changes, SI
+  double moved;            // by the first: of a channel's response, the largest part of its sd
 };
 
 // The largest part of a slope that is not known; parameters without influence apart.
@@ -75,9 +80,30 @@ double move_of(LocalSlopes const& local, Eigen::Index level) {
   return (move.cwiseAbs().array() / expect(local).shrinkage.array()).maxCoeff();
 }
 
+// Whether states switch an equation from one branch to another that does not begin where the first ends. A fixed step that passes
+// the place makes no difference between a little earlier and a little later: the response is constant in what moves the place, but
+// for leaps from one step to the next, and its slopes mean nothing.
+bool jumps(Model const& model) {
+  if (!model.integrated() || model.implicit) return false;
+  Graph graph = model.graph;
+  std::vector<NodeId> derivatives;
+  for (State const& state : model.states) derivatives.push_back(state.derivative);
+  std::vector<SwitchingSurface> const surfaces = switching_surfaces(graph, derivatives);
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [](SwitchingSurface const& each) { return each.reads_states && each.jumps; });
+}
+
+// The middle one; what is not finite comes last.
+double middle(std::vector<double> values) {
+  for (double& value : values)
+    if (!std::isfinite(value)) value = std::numeric_limits<double>::infinity();
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
 class LookAhead {
  public:
-  LookAhead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, TaskPage& page)
+  LookAhead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page)
       : session_(session),
         what_(what),
         page_(page),
@@ -99,6 +125,10 @@ class LookAhead {
     while (static_cast<int>(solvers_.size()) <= refinements) solvers_.push_back(solvers_.back().finer());
     for (SolverSettings const& solver : solvers_)
       outputs_.emplace_back(compiled_, space_, experiments_, solver, start_rows(what.start), session.options.execution, pool);
+    if (what.solver.fixed_step() && jumps(model_))
+      on_jumps_.emplace(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, "dopri5", what.prediction),
+                        space_, experiments_, SolverSettings{.method = "dopri5", .relative = smooth_enough}, start_rows(what.start),
+                        session.options.execution, pool);
   }
 
   void run() {
@@ -120,6 +150,10 @@ class LookAhead {
   void add(Severity severity, std::string code, std::string message, std::string help) {
     page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
   }
+
+  bool candidate() const { return !page_.candidate.empty(); }
+  // Whether the task makes the solver finer until it settles the result: fits do, selections take theirs as it is.
+  bool settles() const { return what_.settle && !candidate(); }
 
   std::string unlooked() const { return model_.integrated() ? "identifiability and the solver: " : "identifiability: "; }
 
@@ -163,32 +197,46 @@ class LookAhead {
     page_.prior = std::move(prior);
   }
 
+  // Rows [first, end) of the predictions: one channel of one experiment each.
+  std::vector<std::pair<int, int>> responses() const {
+    std::vector<std::pair<int, int>> all;
+    std::vector<Output::Place> const& places = outputs_.front().places();
+    for (int r = 0; r < static_cast<int>(places.size()); ++r) {
+      Output::Place const& place = places[static_cast<std::size_t>(r)];
+      if (all.empty() || places[static_cast<std::size_t>(all.back().first)].experiment != place.experiment ||
+          places[static_cast<std::size_t>(all.back().first)].channel != place.channel)
+        all.emplace_back(r, r);
+      all.back().second = r + 1;
+    }
+    return all;
+  }
+
   // Ranges of all channels; the draws that predict them within a factor of `wild`, nearest first.
   std::vector<Draw> predict() {
     Output const& coarse = outputs_.front();
     std::vector<Draw> draws;
     for (int w = 0; w < prior_draws; ++w)
       if (settled_.followed[static_cast<std::size_t>(w)]) draws.push_back({w, 0});
-    for (std::size_t first = 0, last = 0; first < coarse.places().size(); first = last) {
-      Output::Place const& place = coarse.places()[first];
-      while (last < coarse.places().size() && coarse.places()[last].experiment == place.experiment &&
-             coarse.places()[last].channel == place.channel)
-        ++last;
-      compare(place, static_cast<int>(first), static_cast<int>(last), settled_.centres, draws);
-    }
+    for (auto const& [first, end] : responses())
+      compare(coarse.places()[static_cast<std::size_t>(first)], first, end, settled_.centres, draws);
     double const share = static_cast<double>(page_.prior->failed) / prior_draws;
     double const lost = static_cast<double>(page_.prior->failed_as_stated - page_.prior->failed) / prior_draws;
     if (page_.prior->failed == prior_draws)
       add(Severity::error, "prior_fails", fmt::format("the simulation fails at every one of {} prior draws", prior_draws),
           "look at the priors, the units of the input and the equation at the place named");
     else if (share > many_failures)
-      add(Severity::warning, "prior_fails", fmt::format("{:.0f} % of the simulations of prior draws fail", 100 * share),
+      add(!candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, "prior_fails",
+          fmt::format("{:.0f} % of the simulations of prior draws fail{}", 100 * share,
+                      candidate() ? fmt::format(": they cost the candidate a factor of {:.2g} in probability, if all else is equal",
+                                                1 / (1 - share))
+                                  : ""),
           "narrow the priors, or look at the equation at the place named");
-    if (!what_.settle && lost > many_failures)
+    if (!settles() && lost > many_failures)
       add(Severity::warning, "integration_step",
           fmt::format("with {} {:.0f} % of the prior draws leave the range of numbers that adaptive steps follow",
                       what_.solver.text(), 100 * lost),
-          "the search does not see what fails: take shorter steps, or `solver = dopri5` or `cvode`");
+          fmt::format("{}: take shorter steps, or `solver = dopri5` or `cvode`",
+                      candidate() ? "what fails is never accepted" : "the search does not see what fails"));
     std::erase_if(draws, [](Draw const& draw) { return !std::isfinite(draw.mismatch); });
     std::stable_sort(draws.begin(), draws.end(), [](Draw const& a, Draw const& b) { return a.mismatch < b.mismatch; });
     return draws;
@@ -242,13 +290,17 @@ class LookAhead {
     }
     std::vector<LocalSlopes> locals;
     std::vector<double> moves(solvers_.size() - 1, 0.0);
+    std::vector<double> response_moves, shifts;
     for (Converged const& draw : converge(sane)) {
       if (static_cast<int>(locals.size()) == looked_at) break;
-      LocalSlopes local = slopes_at(draw);
+      double shift = 0;
+      LocalSlopes local = slopes_at(draw, shift);
       if (!local.sensitivity.finite || roughness(local.sensitivity) > tolerable_roughness) continue;
       for (std::size_t level = 0; level < moves.size(); ++level)
         moves[level] = std::max(moves[level], move_of(local, static_cast<Eigen::Index>(level)));
       locals.push_back(std::move(local));
+      response_moves.push_back(draw.moved);
+      shifts.push_back(shift);
     }
     if (locals.size() < 2) {
       page_.left_out = unlooked() + "the response is not smooth in the parameters at the draws looked at";
@@ -259,7 +311,9 @@ class LookAhead {
     page_.information->noise = noise_;
     if (shortened_) page_.information->rows = static_cast<int>(most_scored);
     describe_information(coordinates_, locals, measured_channels(), page_);
-    if (!moves.empty()) describe_solvers(moves);
+    if (moves.empty()) return;
+    describe_solvers(moves);
+    if (candidate()) describe_distances(middle(std::move(response_moves)), middle(std::move(shifts)));
   }
 
   std::vector<Converged> converge(std::vector<Draw> const& sane) const {
@@ -272,7 +326,7 @@ class LookAhead {
     LaneArray points(draws_.rows(), width), before(rows, width), now(rows, width);
     std::vector<Converged> all;
     for (int w = 0; w < width; ++w) {
-      all.push_back({sane[static_cast<std::size_t>(w)].lane, solvers_.size(), Eigen::MatrixXd(rows, refinements)});
+      all.push_back({sane[static_cast<std::size_t>(w)].lane, solvers_.size(), Eigen::MatrixXd(rows, refinements), 0});
       for (int r = 0; r < points.rows(); ++r) points(r, w) = draws_(r, all.back().lane);
     }
     outputs_.front().centres(points, before);
@@ -285,15 +339,21 @@ class LookAhead {
       outputs_[level + 1].centres(points, now);
       for (int w = 0; w < width; ++w) {
         Converged& draw = all[static_cast<std::size_t>(w)];
-        double size = 0, change = 0, mean = 0;
-        for (int r = 0; r < rows; ++r) mean += now(r, w) / rows;
-        for (int r = 0; r < rows; ++r) {
-          double const moved = now(r, w) - before(r, w);
-          draw.errors(r, static_cast<Eigen::Index>(level)) = moved;
-          change += moved * moved;
-          size += (now(r, w) - mean) * (now(r, w) - mean);
+        double& moved = last[static_cast<std::size_t>(w)];
+        moved = 0;
+        for (auto const& [first, end] : responses()) {
+          double size = 0, change = 0, mean = 0;
+          for (int r = first; r < end; ++r) mean += now(r, w) / (end - first);
+          for (int r = first; r < end; ++r) {
+            double const difference = now(r, w) - before(r, w);
+            draw.errors(r, static_cast<Eigen::Index>(level)) = difference;
+            change += difference * difference;
+            size += (now(r, w) - mean) * (now(r, w) - mean);
+          }
+          double const part = change == 0 ? 0 : std::sqrt(change / size);  // NaN where a solve failed
+          if (!(part <= moved)) moved = part;
         }
-        last[static_cast<std::size_t>(w)] = std::sqrt(change / size);  // NaN where a solve failed
+        if (level == 0) draw.moved = moved;
         if (last[static_cast<std::size_t>(w)] < right_enough) draw.level = std::min(draw.level, level);
       }
       std::swap(before, now);
@@ -304,12 +364,13 @@ class LookAhead {
     return kept;
   }
 
-  // Slopes of the response in units of its noise; first states are nuisances.
-  LocalSlopes slopes_at(Converged const& draw) const {
+  // Slopes of the response in units of its noise; first states are nuisances. shift: mean square, in the same units, of what the
+  // first refinement changes.
+  LocalSlopes slopes_at(Converged const& draw, double& shift) const {
     // Slopes of adaptive steps need a tolerance far below the steps of their differences.
     std::size_t level = draw.level;
     while (!what_.solver.fixed_step() && level + 1 < solvers_.size() && solvers_[level].relative > smooth_enough) ++level;
-    Output const& output = outputs_[level];
+    Output const& output = on_jumps_ ? *on_jumps_ : outputs_[level];
     int const rows = static_cast<int>(output.places().size()), all = draws_.rows();
     int const own = static_cast<int>(space_->rows().size());
     LaneArray here(all, 1);
@@ -342,6 +403,7 @@ class LookAhead {
       if (!(noise[static_cast<std::size_t>(r)] > 0)) return local;
       errors.row(r) /= noise[static_cast<std::size_t>(r)];
     }
+    if (errors.cols() > 0) shift = errors.col(0).squaredNorm() / rows;
     if (!(local.scale.array() > 0).all()) return local;
     auto const weighted = [&](ConstLanes points, Lanes out) {
       LaneArray whole(all, points.width());
@@ -368,14 +430,14 @@ class LookAhead {
   void describe_solvers(std::vector<double> const& moves) {
     InformationPage& information = *page_.information;
     information.refinement = what_.solver.finer_words();
-    if (!what_.settle) information.stated = what_.solver.text();
+    if (!settles()) information.taken = what_.solver.text();
     for (std::size_t level = 0; level < moves.size(); ++level) {
       information.moves.emplace_back(solvers_[level].text(), moves[level]);
       if (moves[level] > tolerable_move) continue;
       information.advised = solvers_[level].text();
       break;
     }
-    if (!what_.settle && moves.front() > tolerable_move)
+    if (!what_.settle && !candidate() && moves.front() > tolerable_move)
       add(Severity::warning, "integration_step",
           fmt::format("with {} the solver shapes the result: with {} parameters move by up to {}", what_.solver.text(),
                       what_.solver.finer_words(), moves.front() > 5 ? "many sds" : fmt::format("{:.2g} sd", moves.front())),
@@ -383,9 +445,28 @@ class LookAhead {
                                       : fmt::format("take {}, or leave its settings out and they are chosen", information.advised));
   }
 
+  // What a selection compares are distances, and its thresholds end where noise or the best model leaves them: so the integrator is
+  // judged by what it does to those.
+  void describe_distances(double response_move, double shift) {
+    page_.information->response_move = response_move;
+    std::string const help =
+        page_.information->advised.empty() ? "take a finer solver" : fmt::format("take {}", page_.information->advised);
+    if (!(response_move <= gross_move))
+      add(Severity::warning, "integration_step",
+          fmt::format("with {} the solver shapes the distances: {} moves the middle response by {} of its sd", what_.solver.text(),
+                      what_.solver.finer_words(),
+                      std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than all"),
+          help);
+    else if (noise_.empty() && shift > visible_shift)
+      add(Severity::warning, "integration_step",
+          fmt::format("with {} the solver shapes the distances: {} moves them by {:.2g} of what the stated noise leaves",
+                      what_.solver.text(), what_.solver.finer_words(), shift),
+          help);
+  }
+
   Session& session_;
   FitTask const& what_;
-  TaskPage& page_;
+  Outlook& page_;
   std::shared_ptr<CompiledModel const> compiled_;
   Model const& model_;
   std::shared_ptr<ParameterSpace const> space_;
@@ -393,6 +474,7 @@ class LookAhead {
   bool shortened_ = false;
   std::vector<SolverSettings> solvers_;  // as stated, then ever finer
   std::vector<Output> outputs_;          // of each
+  std::optional<Output> on_jumps_;       // ends its steps where the equations jump
   std::vector<JudgedParameter> coordinates_;
   LaneArray draws_;  // [point rows x prior_draws]
   SettledDraws settled_;
@@ -401,7 +483,7 @@ class LookAhead {
 
 }  // namespace
 
-void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, TaskPage& page) {
+void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
   LookAhead(session, what, data, page).run();
 }
 

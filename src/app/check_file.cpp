@@ -50,6 +50,19 @@ void check_bands(TaskPage& page) {
              "was it held between the samples, or sampled without a filter against aliases?"});
 }
 
+// Each candidate as the fit of it would be, unless the selection cannot begin.
+void look_ahead_at_candidates(Session& session, Task const& task, SelectTask const& selection, TaskPage& page) {
+  std::vector<std::vector<ExperimentData>> data;
+  for (FitTask const& fit : selection.fits)
+    data.push_back(load_experiments(session, fit.experiments, fit.model, fit.start, fit.prediction));
+  if (refusal(task, selection, session.file.models, data)) return;
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
+  for (std::size_t k = 0; k < selection.fits.size(); ++k) {
+    page.outlooks.emplace_back().candidate = set.models[k].name;
+    look_ahead(session, selection.fits[k], data[k], page.outlooks.back());
+  }
+}
+
 TaskPage check_task(Session& session, Task const& task) {
   CheckedFile const& file = session.file;
   TaskPage page;
@@ -63,15 +76,16 @@ TaskPage check_task(Session& session, Task const& task) {
     page.what = fmt::format("fit {} to {} with {}", model.name, data_names(file, fit->experiments), fit->backend);
     auto const experiments = cover(session, data.front(), page);
     check_bands(page);
-    if (experiments && !refusal(task, *fit, model, *experiments)) look_ahead(session, *fit, *experiments, page);
+    if (experiments && !refusal(task, *fit, model, *experiments))
+      look_ahead(session, *fit, *experiments, page.outlooks.emplace_back());
   } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
     CandidateSet const& set = file.candidates[static_cast<std::size_t>(selection->candidates)];
     page.what =
         fmt::format("select {} ({} {}) to {} with {}", set.name, set.models.size(), set.models.size() == 1 ? "model" : "models",
                     data_names(file, selection->fits.front().experiments), selection->backend);
-    cover(session, data.front(), page);
+    auto const experiments = cover(session, data.front(), page);
     check_bands(page);
-    page.left_out = "prior draws and what the data can tell of each candidate: a `fit` of it in the file is looked at in full";
+    if (experiments) look_ahead_at_candidates(session, task, *selection, page);
   } else {
     auto const& prediction = std::get<PredictTask>(task.what);
     page.what = fmt::format("predict {} on {}", file.tasks[static_cast<std::size_t>(prediction.fit)].name,
@@ -102,9 +116,9 @@ CheckResult check_file(Session& session) {
     try {
       result.page.tasks.push_back(check_task(session, task));
     } catch (IoError const&) {  // said by `readiness`
-      result.page.tasks.push_back({task.name, "its data cannot be read", {}, {}, {}, {}, {}});
+      result.page.tasks.push_back({task.name, "its data cannot be read", {}, {}, {}});
     } catch (UserError const&) {
-      result.page.tasks.push_back({task.name, "its data cannot be used", {}, {}, {}, {}, {}});
+      result.page.tasks.push_back({task.name, "its data cannot be used", {}, {}, {}});
     }
   }
   return result;

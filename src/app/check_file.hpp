@@ -25,6 +25,6 @@ ModelPage describe_structure(ast::File const& written, ast::File const& flat, Mo
 CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model);
 
 /// Simulates prior draws of a fit with its input and fills the page's prior, information and findings.
-void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, TaskPage& page);
+void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page);
 
 }  // namespace sysid

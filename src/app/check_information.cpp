@@ -17,7 +17,7 @@ constexpr double still_unknown = 0.25;  // of the prior's sd: what a confounded 
 class Description {
  public:
   Description(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals, std::string const& channels,
-              TaskPage& page)
+              Outlook& page)
       : coordinates_(coordinates), locals_(locals), channels_(channels), page_(page) {
     for (JudgedParameter const& each : coordinates)
       if (each.role == ParameterRole::response) asked_.push_back(each.words);
@@ -43,7 +43,9 @@ class Description {
   }
 
  private:
+  // Which candidate is probable does not hang on parameters that the data leave open, so a candidate's weigh a step less.
   void add(Severity severity, std::string code, std::string message, std::string help) {
+    if (!page_.candidate.empty()) severity = severity == Severity::error ? Severity::warning : Severity::note;
     page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
   }
 
@@ -136,7 +138,7 @@ class Description {
   std::vector<JudgedParameter> const& coordinates_;
   std::vector<LocalSlopes> const& locals_;
   std::string const& channels_;
-  TaskPage& page_;
+  Outlook& page_;
   std::vector<ParameterWords> asked_;  // those that may show in the response
   std::vector<bool> null_;             // of them, part of a null direction
   std::vector<Expectation> expectations_;
@@ -145,7 +147,7 @@ class Description {
 }  // namespace
 
 void describe_information(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
-                          std::string const& channels, TaskPage& page) {
+                          std::string const& channels, Outlook& page) {
   Description(coordinates, locals, channels, page).fill();
 }
 

@@ -19,6 +19,6 @@ struct JudgedParameter {
 /// Fills lines, rank and null directions of `page.information` and adds findings. locals: at two draws or more, with respect to the
 /// coordinates whose role is `response`, in their order. channels: "displacement", for sentences.
 void describe_information(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
-                          std::string const& channels, TaskPage& page);
+                          std::string const& channels, Outlook& page);
 
 }  // namespace sysid

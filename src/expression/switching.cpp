@@ -48,7 +48,7 @@ std::vector<SwitchingSurface> switching_surfaces(Graph& graph, std::span<NodeId 
     Node const node = graph[id];  // a copy: the graph grows
     auto const value = compared(graph, node);
     if (!value) continue;
-    SwitchingSurface surface{*value, node.operation == Operation::floor, false, false};
+    SwitchingSurface surface{*value, node.operation == Operation::floor, false, false, false};
     bool reads_time = false;
     for (NodeId const below : graph.reachable({&*value, 1})) {
       Node const& leaf = graph[below];
@@ -59,10 +59,15 @@ std::vector<SwitchingSurface> switching_surfaces(Graph& graph, std::span<NodeId 
       reads_time = reads_time || kind == LeafKind::time;
     }
     if (!surface.reads_states && !surface.reads_inputs && !reads_time) continue;
-    bool const known = std::any_of(surfaces.begin(), surfaces.end(), [&](SwitchingSurface const& other) {
+    surface.jumps =
+        node.operation != Operation::absolute && node.operation != Operation::minimum && node.operation != Operation::maximum;
+    auto const known = std::find_if(surfaces.begin(), surfaces.end(), [&](SwitchingSurface const& other) {
       return other.value == surface.value && other.at_integers == surface.at_integers;
     });
-    if (!known) surfaces.push_back(surface);
+    if (known == surfaces.end())
+      surfaces.push_back(surface);
+    else
+      known->jumps = known->jumps || surface.jumps;
   }
   return surfaces;
 }

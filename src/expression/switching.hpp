@@ -13,6 +13,7 @@ struct SwitchingSurface {
   bool at_integers = false;   // the argument of a floor: it switches wherever `value` crosses an integer
   bool reads_states = false;  // else time and inputs alone move it: where it is crossed is known before the solve
   bool reads_inputs = false;  // input or input_rate
+  bool jumps = false;         // what switches may jump: not an abs, min or max, which only bend
 };
 
 /// The surfaces below the roots, each once, in topological order; none for what moves with parameters alone:

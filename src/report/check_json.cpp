@@ -73,29 +73,59 @@ Json information_object(InformationPage const& page) {
     parameters.push_back(std::move(each));
   }
   for (auto const& [solver, move] : page.moves) moves.push_back({{"solver", solver}, {"move_sd", move}});
-  return {{"draws", page.draws},           {"rows", page.rows},        {"rank", {page.rank_low, page.rank_high}},
-          {"noise", page.noise},           {"parameters", parameters}, {"null_directions", page.null_directions},
-          {"ridges", page.ridges},         {"solvers", moves},         {"stated_solver", page.stated},
-          {"advised_solver", page.advised}};
+  return {{"draws", page.draws},
+          {"rows", page.rows},
+          {"rank", {page.rank_low, page.rank_high}},
+          {"noise", page.noise},
+          {"parameters", parameters},
+          {"null_directions", page.null_directions},
+          {"ridges", page.ridges},
+          {"solvers", moves},
+          {"taken_solver", page.taken},
+          {"advised_solver", page.advised},
+          {"response_move", page.response_move ? Json(*page.response_move) : Json(nullptr)}};
 }
 
+Json findings_array(Findings const& findings) {
+  Json out = Json::array();
+  for (Finding const& finding : findings)
+    out.push_back({{"severity", finding.severity == Severity::error     ? "error"
+                                : finding.severity == Severity::warning ? "warning"
+                                                                        : "note"},
+                   {"code", finding.code},
+                   {"message", finding.message},
+                   {"help", finding.help}});
+  return out;
+}
+
+void add_outlook(Outlook const& outlook, Json& out) {
+  out["prior"] = outlook.prior ? prior_object(*outlook.prior) : Json(nullptr);
+  out["information"] = outlook.information ? information_object(*outlook.information) : Json(nullptr);
+  out["left_out"] = outlook.left_out;
+}
+
+// A fit has its outlook in the object of the task, a selection one for each candidate in `candidates`.
 Json task_object(TaskPage const& task) {
-  Json findings = Json::array(), data = Json::array();
+  Json data = Json::array(), candidates = Json::array();
   for (CoveragePage const& coverage : task.coverage) data.push_back(coverage_object(coverage));
-  for (Finding const& finding : task.findings)
-    findings.push_back({{"severity", finding.severity == Severity::error     ? "error"
-                                     : finding.severity == Severity::warning ? "warning"
-                                                                             : "note"},
-                        {"code", finding.code},
-                        {"message", finding.message},
-                        {"help", finding.help}});
-  return {{"name", task.name},
-          {"what", task.what},
-          {"data", data},
-          {"prior", task.prior ? prior_object(*task.prior) : Json(nullptr)},
-          {"information", task.information ? information_object(*task.information) : Json(nullptr)},
-          {"left_out", task.left_out},
-          {"findings", findings}};
+  Json out = {{"name", task.name}, {"what", task.what}, {"data", data}};
+  Findings findings = task.findings;
+  Outlook own;
+  for (Outlook const& outlook : task.outlooks) {
+    if (outlook.candidate.empty()) {
+      own = outlook;
+      findings = task.all_findings();
+      continue;
+    }
+    Json candidate = {{"name", outlook.candidate}};
+    add_outlook(outlook, candidate);
+    candidate["findings"] = findings_array(outlook.findings);
+    candidates.push_back(std::move(candidate));
+  }
+  add_outlook(own, out);
+  out["findings"] = findings_array(findings);
+  out["candidates"] = std::move(candidates);
+  return out;
 }
 
 }  // namespace

@@ -78,17 +78,28 @@ struct InformationPage {
   std::vector<std::string> ridges;                    // pairs that trade against each other and are known all the same
   std::string refinement;                             // "half the step"
   std::vector<std::pair<std::string, double>> moves;  // solver, largest move of a parameter [sd] when it is refined
-  std::string stated;                                 // in the file; empty: the fit chooses
+  std::string taken;                                  // the one that the task goes on with; empty: the fit chooses
   std::string advised;                                // the first that settles the result; empty: none that was tried
+  std::optional<double> response_move;                // of a candidate: of the middle response, as a part of its sd, when refined
+};
+
+/// What is to be expected of one model of a task: of the fitted one, or of a candidate.
+struct Outlook {
+  std::string candidate;  // its name; empty in a fit
+  std::optional<PriorPage> prior;
+  std::optional<InformationPage> information;
+  std::string left_out;  // why something was not looked at
+  Findings findings;
 };
 
 struct TaskPage {
   std::string name, what;
   std::vector<CoveragePage> coverage;  // of each experiment
-  std::optional<PriorPage> prior;
-  std::optional<InformationPage> information;
-  std::string left_out;  // why something was not looked at
-  Findings findings;
+  std::vector<Outlook> outlooks;       // one of a fit, one for each candidate of a selection, none of other tasks
+  Findings findings;                   // of the data
+
+  /// Those of the data, then of each outlook.
+  Findings all_findings() const;
 };
 
 struct CheckPage {

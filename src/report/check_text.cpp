@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/elementary.hpp"
 #include "report/check_page.hpp"
@@ -130,20 +131,20 @@ std::string information_text(InformationPage const& page) {
     moves += fmt::format("{}{} sd from {}", moves.empty() ? "" : ", ", move > 5 ? "many" : significant(move, 2), solver);
   if (!moves.empty())
     out += entry("solver", {fmt::format("with {}, parameters move by {}", page.refinement, moves),
-                            page.advised.empty()  ? "none of these settles the result"
-                            : page.stated.empty() ? fmt::format("{} would do; the fit chooses for itself", page.advised)
-                                                  : fmt::format("{} would do; the file states {}", page.advised, page.stated)});
+                            page.advised.empty() ? "none of these settles the result"
+                            : page.taken.empty() ? fmt::format("{} would do; the fit chooses for itself", page.advised)
+                                                 : fmt::format("{} would do; the task takes {}", page.advised, page.taken)});
+  if (page.response_move && std::isfinite(*page.response_move))
+    out += entry("", {fmt::format("the middle response moves by {} % of its sd with {}, an nmse of {}",
+                                  significant(100 * *page.response_move, 2), page.refinement,
+                                  significant(100 * *page.response_move * *page.response_move, 2))});
   return out;
 }
 
-std::string task_text(TaskPage const& task) {
-  std::string out = fmt::format("task {}: {}\n", task.name, task.what);
-  for (CoveragePage const& data : task.coverage) out += coverage_text(data);
-  if (task.prior) out += prior_text(*task.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
-  if (task.information) out += information_text(*task.information);
-  if (!task.left_out.empty()) out += entry("left out", {task.left_out});
+std::string findings_text(Findings const& findings) {
+  std::string out;
   for (Severity const severity : {Severity::error, Severity::warning, Severity::note})
-    for (Finding const& finding : task.findings) {
+    for (Finding const& finding : findings) {
       if (finding.severity != severity) continue;
       char const* const mark = severity == Severity::error ? "serious" : severity == Severity::warning ? "warning" : "note";
       out += entry(mark, {finding.message});
@@ -152,12 +153,32 @@ std::string task_text(TaskPage const& task) {
   return out;
 }
 
+std::string task_text(TaskPage const& task) {
+  std::string out = fmt::format("task {}: {}\n", task.name, task.what);
+  for (CoveragePage const& data : task.coverage) out += coverage_text(data);
+  out += findings_text(task.findings);
+  for (Outlook const& outlook : task.outlooks) {
+    if (!outlook.candidate.empty()) out += fmt::format(" candidate {}\n", outlook.candidate);
+    if (outlook.prior) out += prior_text(*outlook.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
+    if (outlook.information) out += information_text(*outlook.information);
+    if (!outlook.left_out.empty()) out += entry("left out", {outlook.left_out});
+    out += findings_text(outlook.findings);
+  }
+  return out;
+}
+
 }  // namespace
+
+Findings TaskPage::all_findings() const {
+  Findings all = findings;
+  for (Outlook const& outlook : outlooks) all.insert(all.end(), outlook.findings.begin(), outlook.findings.end());
+  return all;
+}
 
 Severity grade(CheckPage const& page) {
   Severity worst = Severity::note;
   for (TaskPage const& task : page.tasks)
-    for (Finding const& finding : task.findings)
+    for (Finding const& finding : task.all_findings())
       if (static_cast<int>(finding.severity) < static_cast<int>(worst)) worst = finding.severity;
   return worst;
 }
@@ -168,7 +189,7 @@ std::string check_text(CheckPage const& page) {
   for (TaskPage const& task : page.tasks) out += task_text(task) + "\n";
   int serious = 0, warnings = page.warnings;
   for (TaskPage const& task : page.tasks)
-    for (Finding const& finding : task.findings) {
+    for (Finding const& finding : task.all_findings()) {
       serious += finding.severity == Severity::error;
       warnings += finding.severity == Severity::warning;
     }

@@ -10,42 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/checking.hpp"
 #include "app/running.hpp"
 
 using namespace sysid;
 
 namespace {
 
-std::filesystem::path const models = std::filesystem::path(SYSID_SOURCE_DIR) / "models";
 std::filesystem::path const golden = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/check";
-
-/// name: as if the text stood there, so that data beside it are found.
-CheckResult checked(std::filesystem::path const& name, std::string const& text, RunOptions options = {}) {
-  Source source(name.string(), text);
-  Diagnostics diagnostics;
-  auto const file = load(source, diagnostics);
-  if (!file) throw UserError(diagnostics.all().front());
-  SilentProgress silent;
-  std::ostream nowhere(nullptr);
-  Session session(source, *file, options, silent, nowhere, nowhere);
-  return check_file(session);
-}
-
-TaskPage const& task(CheckResult const& result, std::string const& name) {
-  for (TaskPage const& page : result.page.tasks)
-    if (page.name == name) return page;
-  throw InternalError("no task " + name);
-}
-
-std::vector<std::string> messages(CheckResult const& result, std::string const& code) {
-  std::vector<std::string> out;
-  for (TaskPage const& page : result.page.tasks)
-    for (Finding const& finding : page.findings)
-      if (finding.code == code) out.push_back(finding.message);
-  return out;
-}
-
-std::string shipped(std::string const& name) { return read_file(models / name); }
 
 // The task that makes the shipped record, which has no values for parameters that a test adds.
 std::string truth_task() {
@@ -95,7 +67,7 @@ posterior = fit loop to bench with mh(), seed = 1
 }  // namespace
 
 TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior it looks at") {
-  int count = 0;
+  int count = 0, outlooks = 0;
   for (auto const& entry : std::filesystem::recursive_directory_iterator(models)) {
     if (entry.path().extension() != ".sysid") continue;
     ++count;
@@ -108,18 +80,31 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
       CHECK(result.diagnostics.all().empty());
       for (TaskPage const& page : result.page.tasks) {
         for (Finding const& finding : page.findings) FAIL_CHECK(page.name << ": " << finding.message);
-        CHECK(page.left_out == "");
-        if (page.prior) CHECK(page.information->draws >= 2);
+        for (Outlook const& each : page.outlooks) {
+          ++outlooks;
+          for (Finding const& finding : each.findings) {
+            // True of rivals, told as notes: with n = 4 and a negative beta the slope of z grows as its fourth power, so a fifth of
+            // the prior is beyond what can be simulated; with n = 1 beta is small beside A/z, so little of it shows.
+            bool const true_of_rival = (each.candidate == "bouc_wen(n = 4)" && finding.code == "prior_fails") ||
+                                       (each.candidate == "bouc_wen(n = 1)" && finding.code == "barely_narrowed");
+            if (!true_of_rival || finding.severity != Severity::note)
+              FAIL_CHECK(page.name << " " << each.candidate << ": " << finding.message);
+          }
+          CHECK(each.left_out == "");
+          REQUIRE(each.prior);
+          CHECK(each.information->draws >= 2);
+        }
       }
     }
   }
   CHECK(count >= 4);
+  CHECK(outlooks >= 3 * (count + 5));  // five candidates and two beside the fits
 }
 
 TEST_CASE("steps too long for a prior's fast end are not a failing model; stated, they are a finding") {
   // Weekly rows, and rates of which most are above 1/day.
   CheckResult const chosen = checked(models / "sir/sir.sysid", shipped("sir/sir.sysid"));
-  PriorPage const& prior = *task(chosen, "posterior").prior;
+  PriorPage const& prior = *outlook(chosen, "posterior").prior;
   CHECK(prior.failed_as_stated > 64);
   CHECK(prior.failed < 26);
   CHECK(check_text(chosen.page).find("its steps are too long there") != std::string::npos);
@@ -143,7 +128,7 @@ TEST_CASE("a vague prior that the data do not narrow is named, a narrow one is k
 
 TEST_CASE("a ridge along which both parameters are narrowed is told, not warned of") {
   CheckResult const result = checked(models / "robertson/robertson.sysid", shipped("robertson/robertson.sysid"));
-  InformationPage const& information = *task(result, "estimate").information;
+  InformationPage const& information = *outlook(result, "estimate").information;
   REQUIRE(information.ridges.size() == 1);
   CHECK(information.ridges[0].find("k1 and k3 trade against each other, yet both are narrowed") == 0);
 }
@@ -241,7 +226,7 @@ TEST_CASE("a parameter that nothing reads is told by the checker alone, one that
   CheckResult const unread = checked(models / "duffing/idle.sysid", text);
   CHECK(messages(unread, "not_identifiable").empty());
   std::string instead;
-  for (InformationPage::Line const& line : task(unread, "posterior").information->lines)
+  for (InformationPage::Line const& line : outlook(unread, "posterior").information->lines)
     if (line.name == "idle") instead = line.instead;
   CHECK(instead == "used nowhere");
   CheckResult const derived =
@@ -275,10 +260,10 @@ data bench { file "map.csv"; time t [s]; input x = x; measure o = o }
 found = fit map to bench with map
 )";
   CheckResult const result = checked(folder.path() / "map.sysid", text);
+  InformationPage const& information = *outlook(result, "found").information;
+  CHECK(information.moves.empty());
   TaskPage const& page = task(result, "found");
-  REQUIRE(page.information);
-  CHECK(page.information->moves.empty());
-  CHECK(page.findings.empty());
+  CHECK(page.all_findings().empty());
   CHECK(page.coverage.at(0).inputs.at(0).rule.empty());
   std::string const shown = check_text(result.page);
   CHECK(shown.find("substeps") == std::string::npos);
@@ -310,7 +295,7 @@ ahead = fit decay to bench with map
 free = fit decay to bench with map, prediction = free_run
 )";
   CheckResult const result = checked(folder.path() / "decay.sysid", text);
-  auto const expected = [&](std::string const& name) { return task(result, name).information->lines.at(0); };
+  auto const expected = [&](std::string const& name) { return outlook(result, name).information->lines.at(0); };
   double const ahead = 0.001 / std::sqrt(1 / (1 - 0.25));
   CHECK(expected("ahead").low == doctest::Approx(ahead).epsilon(0.01));
   CHECK(expected("ahead").high == doctest::Approx(ahead).epsilon(0.01));
@@ -340,7 +325,7 @@ model wave {
 data bench { file "gap.csv"; time t [s]; measure o = o }
 best = fit wave to bench with map
 )");
-  TaskPage const& page = task(result, "best");
+  Outlook const& page = outlook(result, "best");
   CHECK(page.left_out == "");
   REQUIRE(page.information);
   CHECK(page.information->lines.at(0).low == doctest::Approx(0.1 / std::sqrt(square)).epsilon(1e-3));
@@ -360,14 +345,14 @@ TEST_CASE("a prior that reaches where the model diverges is said with the term t
       with(with(shipped("duffing/duffing.sysid"), "log_uniform(5e8, 5e10)", "uniform(-5e12, -5e11)"), truth_task(), "");
   CheckResult const result = checked(models / "duffing/softening.sysid", text);
   REQUIRE(messages(result, "prior_fails").size() == 1);
-  CHECK(task(result, "posterior").prior->failures.front().where.find("y^3") != std::string::npos);
+  CHECK(outlook(result, "posterior").prior->failures.front().where.find("y^3") != std::string::npos);
 }
 
 TEST_CASE("steps that the file states too coarse raise a warning with a number that would do") {
   std::string const text = with(shipped("silverbox/silverbox.sysid"), "thin = 4)", "thin = 4), substeps = 1");
   CheckResult const result = checked(models / "silverbox/coarse.sysid", text);
   REQUIRE(messages(result, "integration_step").size() == 1);
-  InformationPage const& information = *task(result, "posterior").information;
+  InformationPage const& information = *outlook(result, "posterior").information;
   CHECK(information.moves.size() > 1);
   CHECK_FALSE(information.advised.empty());
 }
@@ -378,7 +363,7 @@ TEST_CASE("what is wrong with the data of several tasks is said at once, and the
   REQUIRE(result.diagnostics.all().size() == 1);
   CHECK(result.diagnostics.all().front().code == "E4016");
   CHECK_FALSE(result.unreadable);
-  CHECK(task(result, "posterior").information);
+  CHECK(outlook(result, "posterior").information);
   CHECK(task(result, "forecast").coverage.empty());
 }
 
@@ -389,7 +374,7 @@ TEST_CASE("data that a task of the file will make are said to be made by it") {
   CheckResult const result = checked(folder.path() / "loop.sysid", bouc_wen, options);
   CHECK(result.diagnostics.all().empty());
   CHECK(task(result, "posterior").coverage.at(0).made_by == "truth");
-  CHECK_FALSE(task(result, "posterior").information);
+  CHECK(task(result, "posterior").outlooks.empty());
 }
 
 TEST_CASE("missing samples are counted per channel, and where the power of an input lies") {

@@ -36,6 +36,18 @@ TEST_CASE("each operation that switches gives what it compares") {
   CHECK(steps.front().at_integers);
 }
 
+TEST_CASE("what bends is told from what may jump, also where both switch at one place") {
+  Leaves s;
+  CHECK_FALSE(s.of(abs(s.x)).front().jumps);
+  CHECK_FALSE(s.of(max(s.x, s.y)).front().jumps);
+  CHECK(s.of(sign(s.x)).front().jumps);
+  CHECK(s.of(floor(s.x)).front().jumps);
+  CHECK(s.of(select(less(s.x, s.y), s.x, s.y)).front().jumps);
+  auto const both = s.of(abs(s.x) + sign(s.x));
+  REQUIRE(both.size() == 1);
+  CHECK(both.front().jumps);
+}
+
 TEST_CASE("surfaces of time and inputs alone are told from those of states") {
   Leaves s;
   auto const of_input = s.of(abs(s.u)), of_time = s.of(select(less(s.t, s.p), s.x, s.y)), of_state = s.of(abs(s.x - s.u));
