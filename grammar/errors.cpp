@@ -41,6 +41,11 @@ Diagnostic expected(Span where, std::string_view wanted, std::string_view found,
   return error("E1101", where, fmt::format("expected {} but found {}", wanted, found), std::move(help));
 }
 
+Diagnostic semicolon_in_brackets(Span where) {
+  return expected(where, "`,` or the closing bracket", "`;`",
+                  "what stands in brackets is separated by commas; `;` ends a statement");
+}
+
 Diagnostic unclosed(Token const& opener, Span noticed) {
   Diagnostic out = error("E1102", noticed, fmt::format("the {} opened with `{}` is never closed", noun(opener.text), opener.text),
                          fmt::format("close it with `{}`", closer(opener.text)));

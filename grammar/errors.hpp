@@ -11,6 +11,8 @@ namespace sysid::grammar::errors {
 
 /// E1101: `wanted` and `found` are noun phrases.
 Diagnostic expected(Span where, std::string_view wanted, std::string_view found, std::string help = "");
+/// E1101: `log_uniform(1; 10)`.
+Diagnostic semicolon_in_brackets(Span where);
 /// E1102: a bracket never closed; `noticed` is where it had to be closed at the latest.
 Diagnostic unclosed(Token const& opener, Span noticed);
 /// E1103

@@ -31,7 +31,7 @@ bool begins_with_verb(Gap const& gap) {
   return gap.statement.size() > verb && words::contains(words::verbs, gap.statement[verb].text);
 }
 
-constexpr std::array<Situation, 26> situations{{
+constexpr std::array<Situation, 28> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
      "a prior is written `parameter name ~ uniform(lower, upper)`"},
     {[](Gap const& g) { return g.wanted.starts_with("a distribution"); },
@@ -54,6 +54,9 @@ constexpr std::array<Situation, 26> situations{{
      "units are multiplied with a blank or `*`: `[N s/m]`"},
     {[](Gap const& g) { return (g.wanted == "`]`" || g.wanted == "']'") && found(g, ","); },
      "units are multiplied with a blank or `*`: `[N s/m]`"},
+    {[](Gap const& g) { return (g.wanted == "`]`" || g.wanted == "']'") && found(g, "-"); },
+     "units are multiplied with a blank or `*`, a power is written with `^`: `[N s/m]`, `[m s^-2]`"},
+    {[](Gap const& g) { return found(g, "=") && g.at == 0; }, "an equation has two sides: `left = right`"},
     {[](Gap const& g) { return found(g, "%") && g.at == 0; }, "a comment begins with `#` or `//`"},
     {[](Gap const& g) { return g.begins_with("initial") && g.wanted == wanted::equals && found(g, "("); },
      "the time is understood: `initial y = 0`"},

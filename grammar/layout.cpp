@@ -160,6 +160,9 @@ class LayoutPass {
     return !tokens_[i].is("}") && (inside_[i] > 0 || continues_after(tokens_[before], in_block) || continues_before(i, in_block));
   }
 
+  /// `;` where a comma is meant: the statement goes on, so that one message is enough.
+  bool ends_within_brackets(std::size_t i) const { return tokens_[i].is(";") && inside_[i] > 0; }
+
   void decide_newlines() {
     out_.text = std::string(source_.text());
     auto const blank = [&](std::size_t begin, std::size_t end) {
@@ -174,13 +177,15 @@ class LayoutPass {
       std::uint32_t const begin = i < tokens_.size() ? tokens_[i].span.begin : static_cast<std::uint32_t>(out_.text.size());
       bool const both = i > 0 && i < tokens_.size();
       bool const separator = both && tokens_[i - 1].kind == TokenKind::symbol &&
-                             std::string_view(";{}").find(tokens_[i - 1].text) != std::string_view::npos;
+                             std::string_view(";{}").find(tokens_[i - 1].text) != std::string_view::npos &&
+                             !ends_within_brackets(i - 1);
       bool const joined = both && !separator && joins(i - 1, i, in_block);
       // Between tokens stand blanks and newlines only, once comments are gone.
       for (std::uint32_t at = end; at < begin; ++at)
         if (out_.text[at] != '\n' || joined) out_.text[at] = ' ';
       if (i == tokens_.size()) break;
       Token& token = tokens_[i];
+      if (ends_within_brackets(i)) mistake(i, errors::semicolon_in_brackets(token.span));
       if (separator || (token.newline_before && !joined) || token.is("}")) ++statement;
       token.statement = statement;
       token.joins_before =

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/elementary.hpp"
 #include "inference/refit.hpp"
 #include "inference/residual_tests.hpp"
 #include "likelihood/output.hpp"
@@ -44,6 +45,22 @@ PearsonResiduals pearson(DistributionRow const& noise, std::vector<double> const
   }
   if (count > 0) result.excess_kurtosis /= count;
   return result;
+}
+
+// Whether the fit predicts a channel worse than the mean of what was measured would, by more than chance: of n samples of noise
+// about the right prediction the sums of squares about the two differ by less than sigma^2 chi-squared(2), of 99.9 % quantile 13.8.
+// Multiplicative noise is compared by logarithms, where its size is one. Nothing is said of a channel that did not change.
+bool explains_nothing(DistributionRow const& noise, std::vector<double> observed, std::vector<double> predicted) {
+  constexpr double excess = 13.8;
+  if (noise.lower != nullptr && !noise.discrete) {
+    for (std::vector<double>* const series : {&observed, &predicted})
+      for (double& value : *series) value = value > 0 ? elementary::log(value) : std::nan("");
+    for (std::size_t i = 0; i < observed.size(); ++i)
+      if (std::isnan(predicted[i])) observed[i] = std::nan("");
+  }
+  auto const samples =
+      static_cast<double>(std::count_if(observed.begin(), observed.end(), [](double value) { return !std::isnan(value); }));
+  return samples > 0 && nmse(observed, predicted) > 100 * (1 + excess / samples);
 }
 
 // residuals: standardised, one per sample of the experiment, NaN where not scored.
@@ -110,6 +127,12 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
     FitLine line{experiment.name, model.channels[channel].name, model.channels[channel].unit_text(), {}};
     line.scores = {{"nmse", nmse(observed, location)}, {"rmse", rmse(observed, location)}};
     DistributionRow const& noise = *model.channels[channel].noise.row;
+    if (explains_nothing(noise, observed, location))
+      check.findings.push_back(
+          {Severity::warning, "worse_than_the_mean",
+           fmt::format("{}{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
+                       model.channels[channel].name, on(target, e), nmse(observed, location)),
+           "the fit explains nothing of this channel: look at units, signs and columns, at the initial values, then at the model"});
     PearsonResiduals const sized =
         noise.discrete ? pearson(noise, experiment.measured[channel], trajectory.noise_arguments(parameters, c), series)
                        : PearsonResiduals{series, 0};

@@ -8,6 +8,7 @@
 
 #include "check/candidates.hpp"
 #include "check/consequences.hpp"
+#include "check/culprit.hpp"
 #include "check/data.hpp"
 #include "check/errors.hpp"
 #include "check/model.hpp"
@@ -77,7 +78,9 @@ std::optional<CheckedFile> check(Elaborated const& elaborated, Backends const& b
       bool const sound =
           made_of == lineage.made_of.end() || std::none_of(made_of->second.begin(), made_of->second.end(),
                                                            [&](std::string const& each) { return unsound.contains(each); });
+      std::size_t const before = diagnostics.all().size();
       auto checked = sound ? check_model(*model, functions, diagnostics) : std::nullopt;
+      if (sound && !checked) blame_declaration(*model, functions, before, diagnostics);
       if (!checked) unsound.insert(model->name.text);
       if (checked && lineage.only_checked.contains(model->name.text)) continue;
       names.models[model->name.text] = checked ? std::optional(static_cast<int>(file.models.size())) : std::nullopt;

@@ -8,6 +8,8 @@
 #include <string>
 #include <tuple>
 
+#include "check/unit_errors.hpp"
+
 namespace sysid {
 
 namespace {
@@ -56,12 +58,20 @@ void remove_consequences(ast::File const& file, Diagnostics& diagnostics) {
     if (each.code == "E2102" && each.primary) unknown_arguments.push_back(each.primary->span);
   }
   std::set<std::tuple<int, std::string, std::string>> said;
+  std::set<std::tuple<std::string, std::uint32_t, std::uint32_t, std::uint32_t>> units_said;
   auto const follows = [&](Diagnostic const& each) {
     int const model = model_of(file, each);
     if (is_one_of(each, unknown_names)) {
       // "`y` is not declared" and "`y` is not a state" are one mistake: what is said is the name.
       std::string const name = each.message.substr(0, each.message.find('`', each.message.find('`') + 1));
       return !said.insert({model, model >= 0 ? "" : each.code, name}).second;
+    }
+    // The elements of a vector are told apart by where their terms stand, and share the mistake. In a function, told at its call,
+    // the place in its body tells mistakes apart.
+    if (errors::is_unit_conflict(each)) {
+      bool const at_call = each.message.starts_with("in the function") && !each.secondary.empty();
+      Span const place = each.primary->span;
+      return !units_said.insert({each.code, place.begin, place.end, at_call ? each.secondary.front().span.begin : 0U}).second;
     }
     if (is_one_of(each, balance)) return unknown_in.contains(model);
     if (is_one_of(each, lacks))

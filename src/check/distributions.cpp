@@ -107,7 +107,7 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
   Distribution use;
   use.row = row;
   Graph& graph = scope.graph();
-  std::string const declared = unit ? "[" + unit_words(*unit) + "]" : "";
+  std::string const declared = unit ? "[" + unit_words(*unit, {}) + "]" : "";
   auto const argument_in = [&](std::optional<Unit> const& wanted, ast::Expression const& tree, std::string const& spelt,
                                bool is_width = false) {
     return scope.expression_in(wanted, variate.span, tree, {Occasion::Kind::distribution, spelt, variate.name, declared, is_width});

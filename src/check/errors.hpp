@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "check/unit_slips.hpp"
 #include "core/diagnostic.hpp"
 #include "core/unit.hpp"
 #include "syntax/ast.hpp"
@@ -25,7 +26,8 @@ Diagnostic beyond_highest(ast::Reference const& reference, int order);
 Diagnostic second_input_derivative(ast::Reference const& reference);
 Diagnostic not_a_number(Span span, std::string const& what);
 Diagnostic constant_needed(Span span, std::string const& what);
-Diagnostic unknown_unit(ast::Name const& name);
+/// meant: what it seems to stand for, when its letters tell; whole: the unit it stands in, as it should be written.
+Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant = std::nullopt, std::string const& whole = {});
 Diagnostic unit_exponent(Span span);
 Diagnostic list_here(Span span);
 Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted);

@@ -12,6 +12,9 @@ constexpr Synonym function_synonyms[] = {
     {"heaviside", "step"}, {"ln", "log"},   {"sgn", "sign"},    {"signum", "sign"}, {"squareroot", "sqrt"},
 };
 
+constexpr Synonym unit_synonyms[] = {
+    {"gn", "g_n"}, {"gee", "g_n"}, {"gravity", "g_n"}, {"decc", "degC"}, {"strain", "microstrain"}};
+
 // Help in place of a guess.
 constexpr Synonym name_synonyms[] = {
     {"time", "time is declared where it is used: `time t [s]`"},
@@ -112,20 +115,26 @@ Diagnostic constant_needed(Span span, std::string const& what) {
                "use numbers, constants and functions of them only");
 }
 
-Diagnostic unknown_unit(ast::Name const& name) {
+Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant, std::string const& whole) {
   if (name.text == "per") return error("E2011", name.span, "`per` is not a unit", "division is written with `/`: [N s/m]");
-  // Two units without a blank: `Nm`, `Ns`.
-  for (std::size_t i = 1; i < name.text.size(); ++i) {
-    std::string const left = name.text.substr(0, i), right = name.text.substr(i);
-    bool const common = std::find(common_unit_names().begin(), common_unit_names().end(), left) != common_unit_names().end() &&
-                        std::find(common_unit_names().begin(), common_unit_names().end(), right) != common_unit_names().end();
-    if (common)
-      return error("E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
-                   fmt::format("a blank or `*` multiplies: `{} {}`", left, right));
+  std::string const message = fmt::format("`{}` is not a unit known here", name.text);
+  if (name.text == "dB" || name.text == "db")
+    return error("E2011", name.span, message, "a level is a logarithm: give what it stands for, `10^(level/20)` for an amplitude");
+  if (!meant)
+    return error("E2011", name.span, message,
+                 guess_or(unit_synonyms, name.text, common_unit_names(),
+                          "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));
+  switch (meant->kind) {
+    case UnitSlip::Kind::power:
+      return error("E2011", name.span, message, fmt::format("a power is written with `^`: `{}`", whole));
+    case UnitSlip::Kind::product:
+      return error("E2011", name.span, message, fmt::format("a blank or `*` multiplies: `{}`", whole));
+    case UnitSlip::Kind::capitals:
+      return error("E2011", name.span, message, fmt::format("capitals count in units: write `{}`", whole));
+    case UnitSlip::Kind::quotient:
+      break;
   }
-  return error(
-      "E2011", name.span, fmt::format("`{}` is not a unit known here", name.text),
-      guess_or(name.text, common_unit_names(), "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));
+  return error("E2011", name.span, message, fmt::format("a quotient is written with `/`: `{}`", whole));
 }
 
 Diagnostic unit_exponent(Span span) {

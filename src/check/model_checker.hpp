@@ -28,6 +28,8 @@ class ModelChecker {
   /// The checked model, or nothing when an error was reported.
   std::optional<Model> run();
 
+  UnitCheck const& units() const { return scope_.units(); }
+
  private:
   struct StateInfo {
     ast::Declared const* declaration = nullptr;

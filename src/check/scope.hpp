@@ -51,6 +51,8 @@ class Scope {
   /// The same names, reporting elsewhere: for a look that may fail without being the user's mistake.
   Scope with(Diagnostics& diagnostics) const { return Scope(*this, diagnostics); }
 
+  UnitCheck const& units() const { return units_; }
+
   /// False, with a diagnostic, when the name is taken.
   bool declare(ast::Name const& name, Symbol symbol);
   bool define_function(ast::FunctionDefinition const& function);

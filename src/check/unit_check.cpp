@@ -2,7 +2,6 @@
 #include "check/unit_check.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -151,6 +150,11 @@ std::string frequency_in(ast::Expression const& tree, std::vector<DeclaredUnit> 
 
 }  // namespace
 
+void UnitCheck::declare(DeclaredUnit declared) {
+  add_unit_names(declared.unit.text, names_in_use_);
+  declared_.push_back(std::move(declared));
+}
+
 Label UnitCheck::unit_label(UnitOperand const& operand) const {
   return {operand.value.span, "[" + words(operand.value.unit) + "]"};
 }
@@ -161,12 +165,7 @@ std::string UnitCheck::words(Unit const& unit) const {
       if (each.unit.dimension == unit.dimension && each.unit.scale == 1 && each.unit.offset == unit.offset &&
           each.unit.radian == unit.radian && each.unit.hertz == unit.hertz)
         return each.unit.text;
-  bool const newtons = std::any_of(declared_.begin(), declared_.end(), [](DeclaredUnit const& each) {
-    std::string const& text = each.unit.text;
-    std::size_t const place = text.find('N');  // N, kN, MN
-    return place != std::string::npos && (place + 1 == text.size() || !std::isalpha(static_cast<unsigned char>(text[place + 1])));
-  });
-  return unit_words(unit, newtons);
+  return unit_words(unit, names_in_use_);
 }
 
 // "`y`", "`y` or `l`": declared names of this dimension.
@@ -216,11 +215,12 @@ std::string UnitCheck::cure(UnitOperand const& odd, std::string const& wanted, D
                                   coefficient ? coefficient->name : "", other);
     }
   }
-  if (std::string const names = named(missing, but); !names.empty()) return errors::multiply_by(kind_words(missing), names);
+  if (std::string const names = named(missing, but); !names.empty())
+    return errors::multiply_by(kind_words(missing, names_in_use_), names);
   if (std::string const names = named(inverse(missing), but); !names.empty())
-    return errors::divide_by(kind_words(inverse(missing)), names);
-  if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing), "");
-  if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing)), "");
+    return errors::divide_by(kind_words(inverse(missing), names_in_use_), names);
+  if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing, names_in_use_), "");
+  if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing), names_in_use_), "");
   return errors::should_be_in(wanted);
 }
 
@@ -309,7 +309,8 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   }
   conflict.wanted = words(wanted);
   conflict.found = words(operands[shown].value.unit);
-  conflict.help = cure(operands[shown], conflict.wanted, quotient(wanted.dimension, dimension_of(operands[shown])), false);
+  missing_.push_back(quotient(wanted.dimension, dimension_of(operands[shown])));
+  conflict.help = cure(operands[shown], conflict.wanted, missing_.back(), false);
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));
@@ -325,6 +326,7 @@ bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, b
       report(errors::cycles_in_angle(argument.value.span, function));
     return true;
   }
+  missing_.push_back(inverse(unit.dimension));
   report(errors::pure_argument({argument.value.span, "[" + words(unit) + "]"}, function,
                                cure(argument, "-", inverse(unit.dimension), true)));
   return false;
@@ -332,6 +334,7 @@ bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, b
 
 bool UnitCheck::power(UnitOperand const& base, UnitOperand const& exponent, std::optional<double> constant) {
   if (is_known(exponent) && !exponent.value.unit.dimensionless()) {
+    missing_.push_back(inverse(exponent.value.unit.dimension));
     report(errors::exponent_with_unit({exponent.value.span, "[" + words(exponent.value.unit) + "]"},
                                       cure(exponent, "-", inverse(exponent.value.unit.dimension), true)));
     return false;
@@ -354,8 +357,13 @@ bool UnitCheck::one_zero(Graph const& graph, UnitOperand const& a, UnitOperand c
   Zeros const zeros = compare_zeros(graph, first, second, addends);
   if (zeros == Zeros::agree) return true;
   bool const shows_first = a.tree == nullptr || b.tree == nullptr || first.unit.offset == 0;
-  UnitOperand const shown{shows_first ? first : second}, other{shows_first ? second : first};
-  report(errors::zeros_differ(zeros, unit_label(shown), unit_label(other)));
+  auto const words_of = [&](Typed const& value, ast::Expression const* tree) {
+    bool const is_name = tree != nullptr && std::holds_alternative<ast::Reference>(tree->node);
+    return errors::Temperature{unit_label({value}), tree == nullptr ? "" : unparse(*tree), is_name, value.unit};
+  };
+  errors::Temperature const one = words_of(first, a.tree == nullptr ? b.tree : a.tree);
+  errors::Temperature const two = words_of(second, a.tree == nullptr ? nullptr : b.tree);
+  report(errors::zeros_differ(zeros, shows_first ? one : two, shows_first ? two : one));
   return false;
 }
 

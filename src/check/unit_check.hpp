@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check/quantity.hpp"
+#include "check/unit_words.hpp"
 #include "core/diagnostic.hpp"
 #include "syntax/ast.hpp"
 
@@ -44,7 +45,7 @@ class UnitCheck {
   UnitCheck(UnitCheck const& other, Diagnostics& diagnostics) : UnitCheck(other) { diagnostics_ = &diagnostics; }
 
   /// Known to the help lines ("multiply it by a length; `y` is one").
-  void declare(DeclaredUnit declared) { declared_.push_back(std::move(declared)); }
+  void declare(DeclaredUnit declared);
 
   /// False, with a diagnostic, when the known units differ. The odd ones out are those that the majority does not share.
   bool agree(Occasion const& occasion, std::span<UnitOperand const> operands);
@@ -76,9 +77,13 @@ class UnitCheck {
   };
   std::vector<NotCompared> const& not_compared() const { return not_compared_; }
 
+  /// A unit as the text has it, else in the names that it uses.
+  std::string words(Unit const& unit) const;
+  /// Of every conflict the factor that what was shown lacks.
+  std::vector<Dimension> const& missing() const { return missing_; }
+
  private:
   void hint_cycles(std::span<UnitOperand const> operands);
-  std::string words(Unit const& unit) const;
   Label unit_label(UnitOperand const& operand) const;
   std::string named(Dimension const& dimension, std::vector<std::string> const& but) const;
   std::string cure(UnitOperand const& odd, std::string const& wanted, Dimension const& missing, bool pure) const;
@@ -87,9 +92,11 @@ class UnitCheck {
 
   Diagnostics* diagnostics_;
   std::vector<DeclaredUnit> declared_;
+  UnitNames names_in_use_;
   std::vector<Call> calls_;
   std::vector<std::pair<Span, std::string>> said_in_functions_;
   std::vector<NotCompared> not_compared_;
+  std::vector<Dimension> missing_;
 };
 
 }  // namespace sysid

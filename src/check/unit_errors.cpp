@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "check/units.hpp"
+
 namespace sysid::errors {
 namespace {
 
@@ -26,6 +30,10 @@ std::string term_message(UnitConflict const& conflict) {
 std::string with_names(std::string const& cure, std::string const& names) {
   if (names.empty()) return cure;
   return fmt::format("{}; {} is one", cure, names);
+}
+
+std::string subject(Temperature const& temperature) {
+  return temperature.is_name ? "`" + temperature.text + "`" : "what gives this quantity";
 }
 
 }  // namespace
@@ -77,24 +85,34 @@ Diagnostic condition_with_unit(Label condition, std::string const& text) {
   return at(Severity::error, "E2209", std::move(condition), {}, "a condition is true or false, not a quantity with a unit",
             fmt::format("compare it: `{} > 0`", text));
 }
-Diagnostic zeros_differ(Zeros zeros, Label shown, Label other) {
+Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
+  bool const shows_zero = shown.unit.offset != 0;
+  Temperature const &with_zero = shows_zero ? shown : other, &without = shows_zero ? other : shown;
   std::string message, help;
   switch (zeros) {
     case Zeros::in_doubt:
       message = "in this sum it is open whether a temperature or a difference of temperatures is meant";
-      help = "a difference is in [delta_degC]; temperatures are declared in one unit, to which columns and numbers are converted";
+      help = without.unit.offset == 0
+                 ? fmt::format("declare {} in [{}] if it is a difference, in [{}] if it is a temperature", subject(without),
+                               difference(with_zero.unit).text, with_zero.unit.text)
+                 : fmt::format("declare {} and {} in one unit, [{}] for temperatures or [{}] for differences", subject(without),
+                               subject(with_zero), with_zero.unit.text, difference(with_zero.unit).text);
       break;
     case Zeros::of_difference:
       message = "one of these is a temperature, the other a difference of temperatures";
-      help = "a difference is in [delta_degC]; a number that is a temperature says so, as in `T - 20 [degC]`";
+      help = without.text.empty() ? fmt::format("subtract the temperature that the difference counts from: `{} - 20 [{}]`",
+                                                with_zero.text, with_zero.unit.text)
+                                  : fmt::format("a temperature is `20 [{}] + {}`; a difference is declared in [{}]",
+                                                with_zero.unit.text, without.text, difference(with_zero.unit).text);
       break;
     case Zeros::agree:
     case Zeros::apart:
       message = "these temperatures count from different zeros";
-      help = "declare both in one unit: columns and numbers are converted to it, expressions are not";
+      help = fmt::format("declare {} in [{}], too: columns and numbers are converted to it, expressions are not", subject(shown),
+                         other.unit.text.empty() ? "K" : other.unit.text);
       break;
   }
-  return at(Severity::error, "E2211", std::move(shown), {std::move(other)}, message, help);
+  return at(Severity::error, "E2211", std::move(shown.label), {std::move(other.label)}, message, help);
 }
 Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
   return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
@@ -111,6 +129,25 @@ Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) 
 Diagnostic cycles_in_angle(Span argument, std::string const& function) {
   return at(Severity::warning, "E2210", {argument, "cycles"}, {}, fmt::format("`{}` takes radians, this counts cycles", function),
             "multiply by 2*pi");
+}
+
+bool is_unit_conflict(Diagnostic const& diagnostic) {
+  return diagnostic.severity == Severity::error && diagnostic.primary &&
+         (diagnostic.code == "E2103" || diagnostic.code.starts_with("E22"));
+}
+Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string const& unit, int places) {
+  std::string const more =
+      places == 2 ? "one more place conflicts with this unit" : fmt::format("{} more places conflict with this unit", places - 1);
+  auto const shown = std::find_if(conflict.secondary.begin(), conflict.secondary.end(),
+                                  [&](Label const& each) { return each.span == declared.span; });
+  if (shown == conflict.secondary.end())
+    conflict.secondary.push_back({declared.span, more});
+  else
+    shown->text += ", " + more;
+  std::string const vector = declared.text.substr(0, declared.text.find('['));  // whose elements share a declaration
+  conflict.help = fmt::format("declare `{}` in [{}]: then {} agree", vector, unit,
+                              places == 2 ? "both places" : fmt::format("all {} places", places));
+  return conflict;
 }
 
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function) {

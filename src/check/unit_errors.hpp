@@ -26,12 +26,24 @@ Diagnostic pure_argument(Label argument, std::string const& function, std::strin
 Diagnostic exponent_with_unit(Label exponent, std::string help);
 Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, std::string const& unit);
 Diagnostic condition_with_unit(Label condition, std::string const& text);
-Diagnostic zeros_differ(Zeros zeros, Label shown, Label other);
+/// A temperature, or a difference of two, where it meets another.
+struct Temperature {
+  Label label;
+  std::string text;  // as written; empty: a declaration
+  bool is_name = false;
+  Unit unit;
+};
+Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other);
 /// Warnings. counts_cycles: the shown quantity does, the other is in radians.
 Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles);
 /// name: of the frequency, or empty.
 Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name);
 Diagnostic cycles_in_angle(Span argument, std::string const& function);
+
+/// Quantities whose units do not agree, as an error.
+bool is_unit_conflict(Diagnostic const& diagnostic);
+/// The first of `places` conflicts that another unit of one declaration would resolve.
+Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string const& unit, int places);
 
 /// A mistake in the body of a function, told at the call.
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function);

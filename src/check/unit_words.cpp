@@ -13,17 +13,18 @@ struct Exponents {
   Dimension dimension() const { return {{{kg, 1}, {m, 1}, {s, 1}, {A, 1}, {K, 1}, {0, 1}, {0, 1}}}; }
 };
 
-// A unit that takes part in products (newton per metre) or stands alone only (nobody calls N/m^3 pascal per metre).
+// A unit that takes part in products (newton per metre, kelvin per watt) or stands alone only (nobody calls N/m^3 pascal per
+// metre).
 struct Named {
   std::string_view symbol;
   Exponents exponents;
   bool in_products;
 };
 constexpr Named named_units[] = {
-    {"N", {1, 1, -2, 0, 0}, true},    {"V", {1, 2, -3, -1, 0}, true},  {"Pa", {1, -1, -2, 0, 0}, false},
-    {"W", {1, 2, -3, 0, 0}, false},   {"C", {0, 0, 1, 1, 0}, false},   {"ohm", {1, 2, -3, -2, 0}, false},
-    {"F", {-1, -2, 4, 2, 0}, false},  {"H", {1, 2, -2, -2, 0}, false}, {"T", {1, 0, -2, -1, 0}, false},
-    {"Wb", {1, 2, -2, -1, 0}, false},
+    {"N", {1, 1, -2, 0, 0}, true},     {"V", {1, 2, -3, -1, 0}, true},   {"W", {1, 2, -3, 0, 0}, true},
+    {"J", {1, 2, -2, 0, 0}, false},    {"Pa", {1, -1, -2, 0, 0}, false}, {"C", {0, 0, 1, 1, 0}, false},
+    {"ohm", {1, 2, -3, -2, 0}, false}, {"F", {-1, -2, 4, 2, 0}, false},  {"H", {1, 2, -2, -2, 0}, false},
+    {"T", {1, 0, -2, -1, 0}, false},   {"Wb", {1, 2, -2, -1, 0}, false},
 };
 
 struct Kind {
@@ -55,6 +56,7 @@ constexpr Kind kinds[] = {
 };
 
 constexpr std::size_t kilogram = 0, second = 2;
+constexpr std::string_view prefixes = "GMkhdcmun";
 
 int size_of(Dimension const& dimension) {
   int size = 0;
@@ -73,14 +75,15 @@ std::string joined(std::string_view symbol, int power, Dimension const& rest) {
   return above + "/" + (below.empty() ? std::string(symbol) : "(" + std::string(symbol) + " " + below + ")");
 }
 
-std::string short_dimension(Dimension const& dimension, bool newtons) {
+std::string short_dimension(Dimension const& dimension, UnitNames const& in_use) {
   for (Named const& named : named_units)
-    if (named.exponents.dimension() == dimension) return std::string(named.symbol);
+    if (in_use.contains(named.symbol) && named.exponents.dimension() == dimension) return std::string(named.symbol);
   std::string text = format_dimension(dimension);
-  int size = size_of(dimension) + (newtons && dimension[second].numerator != 0 ? 3 : 0);
+  // Who writes newtons reads "N s/m" more easily than "kg/s".
+  int size = size_of(dimension) + (in_use.contains("N") && dimension[second].numerator != 0 ? 3 : 0);
   for (Named const& named : named_units)
     for (int const power : {1, -1}) {
-      if (!named.in_products) continue;
+      if (!named.in_products || !in_use.contains(named.symbol)) continue;
       Dimension const unit = power > 0 ? named.exponents.dimension() : inverse(named.exponents.dimension());
       Dimension const rest = quotient(dimension, unit);
       // A newton stands for the kilogram in it: m/s^2 is not N/kg.
@@ -92,6 +95,8 @@ std::string short_dimension(Dimension const& dimension, bool newtons) {
   return text;
 }
 
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
 }  // namespace
 
 Dimension quotient(Dimension const& a, Dimension const& b) {
@@ -101,13 +106,27 @@ Dimension quotient(Dimension const& a, Dimension const& b) {
 }
 Dimension inverse(Dimension const& dimension) { return quotient(Dimension{}, dimension); }
 
-std::string unit_words(Unit const& unit, bool newtons) {
+void add_unit_names(std::string_view text, UnitNames& names) {
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && is_letter(text[end])) ++end;
+    std::string_view const word = text.substr(at, end - at);
+    for (Named const& named : named_units) {
+      bool const prefixed = word.size() == named.symbol.size() + 1 && word.ends_with(named.symbol) &&
+                            prefixes.find(word[0]) != std::string_view::npos;
+      if (word == named.symbol || prefixed) names.emplace(named.symbol);
+    }
+    at = end + (end == at ? 1 : 0);
+  }
+}
+
+std::string unit_words(Unit const& unit, UnitNames const& in_use) {
   if (!unit.text.empty()) return unit.text;
   Dimension const rate = Exponents{0, 0, -1, 0, 0}.dimension();
   bool const cycles = unit.hertz == Rational{1, 1}, radians = unit.radian == Rational{1, 1};
   if (unit.dimension == rate && (cycles || radians)) return cycles ? "Hz" : "rad/s";
   if (unit.dimensionless()) return cycles ? "cycles" : radians ? "rad" : "-";
-  return short_dimension(unit.dimension, newtons);
+  return short_dimension(unit.dimension, in_use);
 }
 
 bool is_plain_kind(Dimension const& dimension) {
@@ -116,10 +135,10 @@ bool is_plain_kind(Dimension const& dimension) {
   return false;
 }
 
-std::string kind_words(Dimension const& dimension) {
+std::string kind_words(Dimension const& dimension, UnitNames const& in_use) {
   for (Kind const& kind : kinds)
     if (kind.exponents.dimension() == dimension) return std::string(kind.name);
-  return "something in [" + short_dimension(dimension, false) + "]";
+  return "something in [" + short_dimension(dimension, in_use) + "]";
 }
 
 }  // namespace sysid

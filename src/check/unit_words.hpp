@@ -1,5 +1,7 @@
 // Units and kinds of quantities as people call them, for messages: [N], not [kg m/s^2]; "a length".
 #pragma once
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -7,12 +9,17 @@
 
 namespace sysid {
 
-/// The unit as the user wrote it, else in SI with the names that shorten it: "N", "N/m^3", "m/s^2", "rad/s"; "-" for a pure number.
-/// newtons: where they are in use, "N s/m" rather than "kg/s".
-std::string unit_words(Unit const& unit, bool newtons = false);
+/// Names of derived units that a text writes, without prefixes: "N" of kN/mm.
+using UnitNames = std::set<std::string, std::less<>>;
+/// Adds the names in a unit as it is written.
+void add_unit_names(std::string_view text, UnitNames& names);
+
+/// The unit as the user wrote it, else in kg, m, s and the other base units, shortened by the names that are in use: "N/m^3" of a
+/// text with newtons, "kg/(m^2 s^2)" without; "rad/s"; "-" for a pure number.
+std::string unit_words(Unit const& unit, UnitNames const& in_use);
 
 /// "a length", "a time", "a stiffness"; "something in [kg/m]" for a dimension without a common name.
-std::string kind_words(Dimension const& dimension);
+std::string kind_words(Dimension const& dimension, UnitNames const& in_use);
 /// Whether that is a plain thing to be asked for: a length, not an energy.
 bool is_plain_kind(Dimension const& dimension);
 

@@ -1,7 +1,10 @@
 // Unit expressions: products of atoms and groups with constant rational exponents.
 #include "check/units.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "check/errors.hpp"
 #include "syntax/unparse.hpp"
@@ -29,6 +32,40 @@ std::optional<double> constant_exponent(ast::Expression const& expression) {
   return std::nullopt;
 }
 
+// Words that are no units, and the expression as it should be written.
+struct Repair {
+  std::vector<std::pair<ast::Name, std::optional<UnitSlip>>> slips;
+  bool complete = true;
+};
+void repair(ast::UnitExpression& expression, Repair& found) {
+  for (ast::UnitFactor& factor : expression.factors) {
+    if (auto* inner = std::get_if<ast::Box<ast::UnitExpression>>(&factor.base)) {
+      repair(**inner, found);
+      continue;
+    }
+    ast::Name& name = std::get<ast::Name>(factor.base);
+    if (unit_atom(name.text)) continue;
+    std::optional<UnitSlip> slip = unit_slip(name.text);
+    found.slips.emplace_back(name, slip);
+    found.complete = found.complete && slip;
+    if (!slip) continue;
+    if (factor.reciprocal) std::replace(slip->meant.begin(), slip->meant.end(), '/', ' ');  // [kg/ms2] is no quotient of two
+    bool const several = slip->meant.find(' ') != std::string::npos;
+    name.text = several && factor.reciprocal ? "(" + slip->meant + ")" : slip->meant;
+  }
+}
+
+// One message where the whole can be repaired, else one for each word.
+void report_unknown(ast::UnitExpression const& expression, Diagnostics& diagnostics) {
+  ast::UnitExpression repaired = expression;
+  Repair found;
+  repair(repaired, found);
+  for (auto const& [name, slip] : found.slips) {
+    diagnostics.add(errors::unknown_unit(name, slip, "[" + (found.complete ? unparse(repaired) : slip ? slip->meant : "") + "]"));
+    if (found.complete) return;
+  }
+}
+
 std::optional<Unit> product(ast::UnitExpression const& expression, Diagnostics& diagnostics) {
   Unit result;
   bool good = true;
@@ -37,7 +74,6 @@ std::optional<Unit> product(ast::UnitExpression const& expression, Diagnostics& 
     std::optional<Unit> base;
     if (auto const* name = std::get_if<ast::Name>(&factor.base)) {
       base = unit_atom(name->text);
-      if (!base) diagnostics.add(errors::unknown_unit(*name));
     } else {
       base = product(*std::get<ast::Box<ast::UnitExpression>>(factor.base), diagnostics);
     }
@@ -69,6 +105,7 @@ std::optional<Unit> product(ast::UnitExpression const& expression, Diagnostics& 
 
 std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics) {
   std::optional<Unit> unit = product(expression, diagnostics);
+  if (!unit) report_unknown(expression, diagnostics);
   if (unit) unit->text = unparse(expression);
   if (unit && unit->text.size() > 1 && unit->text.front() == '[') unit->text = unit->text.substr(1, unit->text.size() - 2);
   return unit;

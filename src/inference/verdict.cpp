@@ -1,4 +1,4 @@
-// Wording of the verdict.
+// Wording of the verdict: each finding with the word that `sysid explain` knows it by.
 #include "inference/verdict.hpp"
 
 #include <fmt/format.h>
@@ -27,10 +27,14 @@ Verdict judge(Findings const& findings) {
     for (Finding const& finding : findings) {
       if (finding.severity != severity) continue;
       char const* const mark = severity == Severity::error ? "failed" : severity == Severity::warning ? "warning" : "note";
-      verdict.text += fmt::format("\n  {}: {}", mark, finding.message);
+      verdict.text += fmt::format("\n  {}[{}]: {}", mark, finding.code, finding.message);
       if (!finding.help.empty()) verdict.text += fmt::format("\n    what to do: {}", finding.help);
     }
   }
+  if (findings.empty()) return verdict;
+  bool const alike =
+      std::all_of(findings.begin(), findings.end(), [&](Finding const& each) { return each.code == findings.front().code; });
+  verdict.text += fmt::format("\n  more: sysid explain {}", alike ? findings.front().code : "CODE, for each word in brackets");
   return verdict;
 }
 

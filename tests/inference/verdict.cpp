@@ -18,7 +18,8 @@ TEST_CASE("warnings and notes pass but are shown") {
   CHECK(verdict.pass);
   CHECK(verdict.exit_code == 0);
   CHECK(verdict.text ==
-        "the checks pass, with one thing to look at\n  warning: a second mode\n    what to do: look at both\n  note: a note");
+        "the checks pass, with one thing to look at\n  warning[second_mode]: a second mode\n    what to do: look at both\n"
+        "  note[n]: a note\n  more: sysid explain CODE, for each word in brackets");
 }
 
 TEST_CASE("an error fails the run and leads the list") {
@@ -27,6 +28,11 @@ TEST_CASE("an error fails the run and leads the list") {
   CHECK_FALSE(verdict.pass);
   CHECK(verdict.exit_code == 1);
   CHECK(verdict.text ==
-        "do not use these numbers yet: a check failed\n  failed: the chain did not move\n    what to do: adapt\n  warning: a "
-        "warning");
+        "do not use these numbers yet: a check failed\n  failed[e]: the chain did not move\n    what to do: adapt\n"
+        "  warning[w]: a warning\n  more: sysid explain CODE, for each word in brackets");
+}
+
+TEST_CASE("where all findings have one code the last line can be typed as it stands") {
+  Verdict const verdict = judge({{Severity::warning, "noise_size", "of a", ""}, {Severity::warning, "noise_size", "of b", ""}});
+  CHECK(verdict.text.ends_with("\n  warning[noise_size]: of b\n  more: sysid explain noise_size"));
 }

@@ -26,8 +26,9 @@ TEST_CASE("the terminal shows aligned columns under the user's names, failures a
         "  3 x non-finite: k3*y^3 at duffing.sysid:12 (first at t = 0.01250 s)\n"
         "\n"
         "verdict: the checks pass, with one thing to look at\n"
-        "  warning: a second mode holds 2 %\n"
-        "    what to do: look at the starts\n");
+        "  warning[modes]: a second mode holds 2 %\n"
+        "    what to do: look at the starts\n"
+        "  more: sysid explain modes\n");
 }
 
 TEST_CASE("each channel of each experiment has one line of scores, with the unit of its rmse and each score once") {

@@ -1,0 +1,63 @@
+// What a fit says of a model that predicts a channel worse than a constant would, and of channels of noise alone, where no model is
+// better than that.
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/running.hpp"
+#include "core/random.hpp"
+
+using namespace sysid;
+using nlohmann::json;
+
+namespace {
+
+// The findings of a fit by `map` of a model without dynamics to 200 samples of `value(stream)`.
+template <class Value>
+json findings_of(std::string const& statements, Value const& value) {
+  TemporaryFolder folder;
+  Stream stream({1, Purpose::test, 0, 0});
+  std::string table = "x,y\n";
+  for (int i = 0; i < 200; ++i) table += fmt::format("{},{}\n", i % 2 == 0 ? -1 : 1, value(stream));
+  write_file(folder.path() / "record.csv", table);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "m.sysid",
+           "model m {\n input x [-]\n " + statements +
+               "\n}\ndata record { file \"record.csv\"; input x = x [-]; measure y = y [-] }\n"
+               "posterior = fit m to record with map, seed = 1\n",
+           options);
+  return json::parse(read_file(options.output / "posterior/summary.json")).at("findings");
+}
+
+bool has(json const& findings, std::string const& code) {
+  for (json const& finding : findings)
+    if (finding.at("code") == code) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("a fit that predicts worse than the mean of the record says so, however wide its noise") {
+  // The record lies about 5, the model about 0: sums of squares about 25 and 0.01 a sample.
+  json const findings = findings_of(
+      "parameter a [-] ~ normal(0, sd = 1)\n parameter s [-] ~ log_uniform(0.01, 100)\n observe y ~ "
+      "normal(a*x, sd = s)",
+      [](Stream& stream) { return 5 + 0.1 * stream.normal(); });
+  CHECK(has(findings, "worse_than_the_mean"));
+}
+
+TEST_CASE("nothing is said where there is nothing to explain") {
+  auto const silent = [](std::string const& statements, auto const& value) {
+    return !has(findings_of(statements, value), "worse_than_the_mean");
+  };
+  CHECK(silent("parameter a [-] ~ normal(0, sd = 1)\n observe y ~ normal(a*x, sd = 1)", [](Stream& s) { return s.normal(); }));
+  CHECK(silent("parameter r [-] ~ log_uniform(0.1, 100)\n observe y ~ poisson(r)",
+               [](Stream& s) { return std::floor(4 * s.uniform()); }));
+  // About its median the mean square of a log-normal variate of sd 1 is 109 % of its variance: logarithms are compared.
+  CHECK(silent("parameter r [-] ~ log_uniform(0.1, 100)\n observe y ~ log_normal(r, sd = 1)",
+               [](Stream& s) { return std::exp(s.normal()); }));
+}
