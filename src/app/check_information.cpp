@@ -30,7 +30,7 @@ class Description {
     std::size_t i = 0;
     for (JudgedParameter const& coordinate : coordinates_) {
       InformationPage::Line line{coordinate.words.name, coordinate.words.unit, coordinate.relative, 0, 0, 0, {}};
-      line.prior_sd = coordinate.relative ? coordinate.spread : coordinate.spread / coordinate.words.scale;
+      line.prior_width = coordinate.relative ? coordinate.spread : coordinate.spread / coordinate.words.scale;
       if (coordinate.role == ParameterRole::response)
         expect_knowledge(i++, line);
       else
@@ -75,10 +75,10 @@ class Description {
       least = std::min(least, each.shrinkage(static_cast<Eigen::Index>(i)));
       most = std::max(most, each.shrinkage(static_cast<Eigen::Index>(i)));
     }
-    line.low = least * line.prior_sd;
-    line.high = most * line.prior_sd;
+    line.low = least * line.prior_width;
+    line.high = most * line.prior_width;
     if (null_[i]) line.instead = "not determined";
-    bool const vague = !line.relative || line.prior_sd > informed;
+    bool const vague = !line.relative || line.prior_width > informed;
     if (!null_[i] && vague && least > barely_narrowed)
       add(Severity::warning, "barely_narrowed",
           fmt::format("the data will hardly narrow {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} prior draws)",

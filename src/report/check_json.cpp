@@ -59,13 +59,14 @@ Json prior_object(PriorPage const& prior) {
           {"failed", prior.failed},
           {"failed_as_stated", prior.failed_as_stated},
           {"failures", failures},
+          {"failures_not_traced", prior.untraced},
           {"channels", channels}};
 }
 
 Json information_object(InformationPage const& page) {
   Json parameters = Json::array(), moves = Json::array();
   for (InformationPage::Line const& line : page.lines) {
-    Json each = {{"name", line.name}, {"unit", line.unit}, {"relative", line.relative}, {"prior_sd", line.prior_sd}};
+    Json each = {{"name", line.name}, {"unit", line.unit}, {"relative", line.relative}, {"prior_width", line.prior_width}};
     if (line.instead.empty())
       each["expected_sd"] = {line.low, line.high};
     else

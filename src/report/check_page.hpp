@@ -48,10 +48,11 @@ struct CoveragePage {
 
 /// What draws of the prior predict with the actual input.
 struct PriorPage {
-  int draws = 0, failed = 0;  // failed: with every solver that was tried
-  int failed_as_stated = 0;   // with the solver of the task,
-  std::string stated;         // this one
-  std::vector<Failure> failures;
+  int draws = 0, failed = 0;      // failed: with every solver that was tried
+  int failed_as_stated = 0;       // with the solver of the task,
+  std::string stated;             // this one
+  std::vector<Failure> failures;  // where draws fail, one each, and
+  int untraced = 0;               // so many that were not looked into
   struct Channel {
     std::string name, unit;                // "displacement", "displacement on bare.train" where there are several experiments
     double low = 0, middle = 0, high = 0;  // 5, 50 and 95 % of the draws' ranges, declared unit
@@ -69,7 +70,7 @@ struct InformationPage {
   struct Line {
     std::string name, unit;
     bool relative = false;     // sds are shares of the value
-    double prior_sd = 0;       // declared unit, or a share
+    double prior_width = 0;    // declared unit, or a share
     double low = 0, high = 0;  // expected posterior sd over the draws
     std::string instead;       // in their place: "no influence", "noise of displacement"
   };

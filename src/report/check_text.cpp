@@ -93,12 +93,13 @@ std::string coverage_text(CoveragePage const& data) {
 
 std::string prior_text(PriorPage const& prior, std::string const& time_unit, double time_scale) {
   std::vector<std::string> lines = {prior.failed == 0 ? fmt::format("{} draws, all simulations stay finite", prior.draws)
-                                                      : fmt::format("{} of {} simulations fail", prior.failed, prior.draws)};
+                                                      : fmt::format("{} of {} fail", prior.failed, prior.draws)};
   if (prior.failed_as_stated > prior.failed)
     lines.push_back(fmt::format("with {} {} of them fail: its steps are too long there", prior.stated, prior.failed_as_stated));
   for (Failure const& failure : prior.failures)
     lines.push_back(fmt::format("  {} x {}: {} (first at t = {} {})", failure.count, name(failure.kind), failure.where,
                                 significant(failure.time / time_scale, 4), time_unit));
+  if (prior.untraced > 0) lines.push_back(fmt::format("  {} x not looked into, as the first eight were", prior.untraced));
   for (PriorPage::Channel const& channel : prior.channels)
     lines.push_back(fmt::format("{}: nine in ten predict a range of {} to {}, the middle one {}; measured {}", channel.name,
                                 significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
@@ -112,16 +113,17 @@ std::string share(double value) {
 }
 
 std::string information_text(InformationPage const& page) {
-  std::vector<std::vector<std::string>> rows = {{"", "prior sd", "expected sd after the fit"}};
+  std::vector<std::vector<std::string>> rows = {{"", "prior width", "expected sd after the fit"}};
   for (InformationPage::Line const& line : page.lines) {
     auto const number = [&](double value) { return line.relative ? share(value) : with_unit(significant(value, 2), line.unit); };
-    rows.push_back({line.name, number(line.prior_sd),
+    rows.push_back({line.name, number(line.prior_width),
                     !line.instead.empty() ? line.instead : fmt::format("{} to {}", number(line.low), number(line.high))});
   }
   std::string out = table("information", rows, 1);
   std::vector<std::string> lines;
   lines.push_back(fmt::format("at {} prior draws whose response is nearest in size to the data{}", page.draws,
                               page.noise.empty() ? std::string() : "; noise as with " + page.noise));
+  lines.push_back("prior width: half of what holds the central 68 % of the prior, its sd where it is normal");
   if (page.rows > 0) lines.push_back(fmt::format("over the first {} scored rows; the whole record tells more", page.rows));
   for (std::string const& direction : page.null_directions) lines.push_back(direction);
   for (std::string const& ridge : page.ridges) lines.push_back(ridge);
@@ -199,7 +201,11 @@ std::string check_text(CheckPage const& page) {
   if (page.errors > 0) found.push_back(count(page.errors, "error"));
   if (serious > 0) found.push_back(count(serious, "serious finding"));
   if (warnings > 0) found.push_back(count(warnings, "warning"));
-  out += fmt::format("{}\n", found.empty() ? "nothing found" : fmt::format("{}", fmt::join(found, ", ")));
+  bool const all = std::all_of(page.tasks.begin(), page.tasks.end(), [](TaskPage const& task) {
+    return std::all_of(task.outlooks.begin(), task.outlooks.end(), [](Outlook const& each) { return each.left_out.empty(); });
+  });
+  out += fmt::format("{}\n", found.empty() ? all ? "nothing found" : "nothing found in what was looked at"
+                                           : fmt::format("{}", fmt::join(found, ", ")));
   return out;
 }
 

@@ -92,6 +92,10 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
           }
           CHECK(each.left_out == "");
           REQUIRE(each.prior);
+          CHECK(each.prior->draws == 128);
+          // Within ten: a unit a thousand times too large or too small lies beyond the bar of a hundred, whichever model has it.
+          for (PriorPage::Channel const& channel : each.prior->channels)
+            CHECK(std::abs(std::log10(channel.middle / channel.measured)) < 1);
           CHECK(each.information->draws >= 2);
         }
       }
@@ -338,6 +342,82 @@ TEST_CASE("data in another unit than they were recorded in are seen in the prior
   REQUIRE(said.size() == 1);
   CHECK(said[0].find("displacement") != std::string::npos);
   CHECK(said[0].find("smaller") != std::string::npos);
+}
+
+TEST_CASE("millimetres declared as metres are seen, and metres declared as millimetres") {
+  std::string const text = shipped("duffing/duffing.sysid");
+  auto const smaller = messages(
+      checked(models / "duffing/unit.sysid", with(text, "displacement = displacement [m]", "displacement = displacement [mm]")),
+      "prior_far_from_data");
+  REQUIRE(smaller.size() == 1);
+  CHECK(smaller[0].find("larger than the one measured") != std::string::npos);
+}
+
+TEST_CASE("a prior of both signs over decades too many is seen, though its middle is not far off") {
+  std::string const text =
+      with(with(shipped("duffing/duffing.sysid"), "log_uniform(1e3, 1e5)", "uniform(-1e9, 1e9)"), truth_task(), "");
+  CheckResult const result = checked(models / "duffing/wide.sysid", text);
+  auto const said = messages(result, "prior_far_from_data");
+  REQUIRE(said.size() == 1);
+  CHECK(said[0].find("% of the prior draws predict a range of displacement more than 100 times larger or smaller") !=
+        std::string::npos);
+  PriorPage::Channel const& channel = outlook(result, "posterior").prior->channels.at(0);
+  CHECK(channel.middle / channel.measured < 100);
+}
+
+TEST_CASE("failed draws are counted as draws, once each, however many solves they fail in") {
+  auto const sum = [](PriorPage const& page) {
+    int all = page.untraced;
+    for (Failure const& failure : page.failures) all += static_cast<int>(failure.count);
+    return all;
+  };
+  PriorPage const two =
+      *outlook(checked(models / "silverbox/two_stretches.sysid", shipped("silverbox/two_stretches.sysid")), "posterior").prior;
+  CHECK(two.failed > 0);
+  CHECK(sum(two) == two.failed);
+  std::string const text =
+      with(with(shipped("duffing/duffing.sysid"), "log_uniform(5e8, 5e10)", "uniform(-1e12, 1e11)"), truth_task(), "");
+  CheckResult const result = checked(models / "duffing/softening.sysid", text);
+  PriorPage const& many = *outlook(result, "posterior").prior;
+  CHECK(many.failed > 8);
+  CHECK(many.untraced == many.failed - 8);
+  CHECK(sum(many) == many.failed);
+  CHECK(check_text(result.page).find(std::to_string(many.failed) + " of 128 fail") != std::string::npos);
+}
+
+TEST_CASE("of a large model less is looked at, and what is left out is said") {
+  // A chain of 199 masses with a spring of its own each: 398 states, 202 parameters, 1000 samples.
+  constexpr int masses = 199;
+  TemporaryFolder folder;
+  std::string table = "t,x,last\n", states, initial, springs, equations;
+  for (int i = 0; i < 1000; ++i)
+    table += std::to_string(0.01 * i) + "," + std::to_string(10 * std::sin(0.7 * i)) + "," +
+             std::to_string(0.1 * std::sin(0.13 * i)) + "\n";
+  write_file(folder.path() / "chain.csv", table);
+  for (int i = 1; i <= masses; ++i) {
+    std::string const n = std::to_string(i), q = "q" + n, comma = i == 1 ? "" : ", ";
+    states += comma + q;
+    initial += comma + q + " = 0, " + q + "' = 0";
+    springs += "  parameter k" + n + " ~ log_uniform(1000, 10000)\n";
+    equations += "  m*" + q + "'' + c*" + q + "' + k" + n + "*" + (i == 1 ? q : "(" + q + " - q" + std::to_string(i - 1) + ")");
+    if (i < masses) equations += " - k" + std::to_string(i + 1) + "*(q" + std::to_string(i + 1) + " - " + q + ")";
+    equations += i == masses ? " = x\n" : " = 0\n";
+  }
+  CheckResult const result =
+      checked(folder.path() / "chain.sysid", "model chain {\n  input x\n  state " + states + "\n  initial " + initial +
+                                                 "\n  parameter m ~ log_uniform(0.5, 2)\n  parameter c ~ log_uniform(0.1, 10)\n  "
+                                                 "parameter sigma ~ log_uniform(1e-6, 1e-3)\n" +
+                                                 springs + equations + "  observe last ~ normal(q199, sd = sigma)\n}\n" +
+                                                 "data bench { file \"chain.csv\"; time t [s]; input x = x hold linear; measure "
+                                                 "last = last }\nbest = fit chain to bench with map\n");
+  Outlook const& page = outlook(result, "best");
+  REQUIRE(page.prior);
+  CHECK(page.prior->draws < 64);
+  CHECK(page.prior->draws >= 16);
+  CHECK_FALSE(page.information);
+  CHECK(page.left_out.find("slopes towards 202 parameters of a model of this size would take longer than a check may") !=
+        std::string::npos);
+  CHECK(check_text(result.page).find("nothing found in what was looked at") != std::string::npos);
 }
 
 TEST_CASE("a prior that reaches where the model diverges is said with the term that does") {
