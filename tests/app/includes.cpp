@@ -26,6 +26,7 @@ std::map<std::string, Folders> const allowed = {
     {"program", {"program", "model", "distribution", "function", "expression", "core"}},
     {"simulate", {"simulate", "program", "data", "expression", "core"}},
     {"likelihood", {"likelihood", "simulate", "program", "model", "data", "distribution", "function", "expression", "core"}},
+    {"regression", {"regression", "data", "expression", "core"}},
     {"inference", {"inference", "likelihood", "core"}},
     {"report", {"report", "inference", "likelihood", "core"}},
 };

@@ -1,0 +1,85 @@
+// Choosing the terms of a linear regression: one interface, one row of a table per method.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "core/settings.hpp"
+
+namespace sysid::regression {
+
+/// known = terms * coefficients + independent noise of one unknown sd. Columns have any scale and are linearly independent; a
+/// selector's result does not depend on the scales.
+struct LinearProblem {
+  Eigen::VectorXd known;     // [K]
+  Eigen::MatrixXd terms;     // [K x J]
+  std::vector<char> always;  // [J] 1: part of every support
+};
+
+/// Terms that stand together, with their coefficients under least squares on them alone.
+struct Support {
+  std::vector<int> terms;       // rising
+  Eigen::VectorXd coefficient;  // one per term of the support
+  Eigen::MatrixXd covariance;   // of those, with the support's own noise estimate
+  double noise_sd = 0;          // residual sd, K - |terms| degrees of freedom
+  double log_evidence = 0;      // against the support of the `always` terms alone; all methods by `log_bayes_factor`
+  double probability = 0;       // spike_slab: posterior; else 0 or 1
+};
+
+/// What happened to a term, and the number that decided it.
+struct TermChoice {
+  bool kept = false;
+  double measure = 0;       // threshold: contribution when dropped, or at the end; ard: contribution at the evidence's maximum;
+                            // spike_slab: inclusion probability
+  double precision = 0;     // ard: of the coefficient's prior, column scaled to unit root mean square; infinite: dropped
+  int dropped_in = 0;       // threshold: the round, from 1; 0: kept
+  double mean = 0, sd = 0;  // of the method: spike_slab averages over supports, ard's posterior; threshold: least squares
+};
+
+struct Choice {
+  std::vector<TermChoice> terms;  // [J]
+  Support chosen;
+  std::vector<Support> supports;  // candidates, best first; the chosen one is among them, first where it is the best
+  Eigen::MatrixXd joint;          // spike_slab: [J x J] probability that both are in; else empty
+  double noise_sd = 0;
+  int iterations = 0;
+  bool converged = true;
+  bool exact = true;  // false: sampled
+};
+
+struct SelectorContext {
+  std::uint64_t seed = 1;
+  std::uint64_t equation = 0;              // keys the stream with the seed
+  std::function<bool()> interrupted = {};  // empty: never
+};
+
+struct SelectorRow {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view measure;  // what `TermChoice::measure` is, for tables
+  std::span<SettingRow const> settings;
+  std::string (*refuse)(Settings const&);
+  Choice (*choose)(LinearProblem const&, Settings const&, SelectorContext const&);
+};
+
+/// In the order in which they are listed; `spike_slab` first, the default.
+std::span<SelectorRow const> selectors();
+SelectorRow const* find_selector(std::string_view name);
+
+/// Least squares on a support. terms: rising, linearly independent, fewer than K.
+Support least_squares(LinearProblem const& problem, std::vector<int> terms);
+
+/// log of the Bayes factor of a support against the `always` terms alone (Liang et al. 2008, eq. 5):
+///
+///   (n - p)/2 log(1 + g) - n/2 log(1 + g (1 - R^2))
+///
+/// under Zellner's prior with this g on the p selectable coefficients, flat on the always ones, 1/sigma on the noise; n = K less
+/// the number of always terms; R^2 of what those leave.
+double log_bayes_factor(double n, double p, double r_squared, double g);
+
+}  // namespace sysid::regression
