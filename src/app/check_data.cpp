@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/check_file.hpp"
-#include "inference/fourier.hpp"
+#include "core/fourier.hpp"
 
 namespace sysid {
 namespace {

@@ -20,6 +20,7 @@ enum class Purpose : std::uint32_t {
   prediction = 10,  // measurement noise of predictions
   population = 11,  // parameters of an experiment that was not fitted, from their prior
   particle = 12,    // proposals of populations of particles
+  supports = 13,    // moves between supports of a dictionary
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

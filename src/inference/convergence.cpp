@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "core/elementary.hpp"
-#include "inference/fourier.hpp"
+#include "core/fourier.hpp"
 
 namespace sysid {
 namespace {

@@ -7,7 +7,7 @@ namespace sysid::regression {
 
 struct Concern {
   enum class Kind {
-    // no equation can be had; the discovery ends with it
+    // no equation can be had; the discovery of it ends here. Up to nothing_left: `fatal` goes by this order
     not_measured,        // terms or the known side need a state that no channel measures (or `measured` lacks a derivative)
     unequal_steps,       // the record's time steps differ by more than 1e-6
     too_few_rows,        // windows or samples left are not more than twice the free terms; value: how many there are
@@ -30,15 +30,16 @@ struct Concern {
   };
 
   Kind kind = Kind::unexplained;
-  std::vector<int> terms;  // of the equation
-  int channel = -1;        // where one is meant
+  std::vector<int> terms = {};  // of the equation
+  int channel = -1;             // where one is meant
   double value = 0;
-  std::string clause;  // one plain sentence, lower case, no full stop, naming terms and numbers
+  std::string clause = {};  // one plain sentence, lower case, no full stop, naming terms and numbers
 };
 
 using Concerns = std::vector<Concern>;
 
 /// Whether the discovery cannot go on with it.
 bool fatal(Concern::Kind kind);
+bool any_fatal(Concerns const& concerns);
 
 }  // namespace sysid::regression

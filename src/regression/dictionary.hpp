@@ -32,15 +32,15 @@ struct Term {
 struct Equation {
   std::string name;  // as messages call it: "y", "prey"
   NodeId known = 0;  // without free coefficients
-  std::vector<Term> terms;
+  std::vector<Term> terms = {};
 };
 
 /// Index c is column c of Experiment::measured; several channels may measure one state at different orders.
 struct Channel {
   std::string name;
   int state = 0;
-  int order = 0;                   // 2: an acceleration
-  std::optional<double> noise_sd;  // estimated from the record where absent
+  int order = 0;                        // 2: an acceleration
+  std::optional<double> noise_sd = {};  // estimated from the record where absent
 };
 
 struct Dictionary {

@@ -74,12 +74,15 @@ SelectorRow const* find_selector(std::string_view name);
 /// Least squares on a support. terms: rising, linearly independent, fewer than K.
 Support least_squares(LinearProblem const& problem, std::vector<int> terms);
 
-/// log of the Bayes factor of a support against the `always` terms alone (Liang et al. 2008, eq. 5):
+/// log of the Bayes factor of a support against the `always` terms alone, which leave `base` of the squares, the support `squares`:
 ///
-///   (n - p)/2 log(1 + g) - n/2 log(1 + g (1 - R^2))
+///   centred at the estimate   -p/2 log(1 + g) + n/2 log(base / squares)                  unit information for g = n; Kass,
+///   Wasserman 1995 centred at zero           (n - p)/2 log(1 + g) - n/2 log(1 + g squares / base)       Zellner; Liang et al.
+///   2008, eq. 5
 ///
-/// under Zellner's prior with this g on the p selectable coefficients, flat on the always ones, 1/sigma on the noise; n = K less
-/// the number of always terms; R^2 of what those leave.
-double log_bayes_factor(double n, double p, double r_squared, double g);
+/// under a normal prior with covariance g sigma^2 (A^T A)^-1 on the p selectable coefficients, flat on the always ones, 1/sigma on
+/// the noise; n: rows less the number of always terms. Centred at zero the factor stays below (1 + g)^((n-p)/2) however small
+/// `squares` are: with little noise it can no longer tell terms that matter from those that do not.
+double log_bayes_factor(double n, double p, double squares, double base, double g, bool centred_at_estimate);
 
 }  // namespace sysid::regression

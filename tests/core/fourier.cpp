@@ -1,5 +1,5 @@
 // The transform against its defining sum.
-#include "inference/fourier.hpp"
+#include "core/fourier.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Radix-2 transforms by decimation in frequency and in time.
-#include "inference/fourier.hpp"
+#include "core/fourier.hpp"
 
 #include <bit>
 #include <numbers>

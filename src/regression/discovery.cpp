@@ -1,0 +1,225 @@
+// The steps of a discovery, equation by equation.
+#include "regression/discovery.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "regression/dependence.hpp"
+#include "regression/triangle.hpp"
+
+namespace sysid::regression {
+namespace {
+
+/// Choice and whitening go on until a support repeats; at most this often, should two take turns.
+constexpr int most_choices = 5;
+/// Residual against noise from which on something is missing in the dictionary, and the least share that makes it worth a word.
+constexpr double unexplained_above = 2;
+constexpr double unexplained_share = 1e-3;
+
+LinearProblem problem_of(Equation const& equation, Columns const& columns, std::vector<int> const& usable) {
+  LinearProblem problem;
+  problem.known = columns.known;
+  problem.terms.resize(columns.terms.rows(), static_cast<Eigen::Index>(usable.size()));
+  for (std::size_t k = 0; k < usable.size(); ++k) {
+    problem.terms.col(static_cast<Eigen::Index>(k)) = columns.terms.col(usable[k]);
+    problem.always.push_back(equation.terms[static_cast<std::size_t>(usable[k])].always ? 1 : 0);
+  }
+  return problem;
+}
+
+/// Over all terms of the dictionary, 0 where a term is not in the support; support's indices are into `usable`.
+Eigen::VectorXd spread(Support const& support, std::vector<int> const& usable, Eigen::Index count) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(count);
+  for (std::size_t k = 0; k < support.terms.size(); ++k)
+    all(usable[static_cast<std::size_t>(support.terms[k])]) = support.coefficient(static_cast<Eigen::Index>(k));
+  return all;
+}
+
+Support renumbered(Support support, std::vector<int> const& usable) {
+  for (int& term : support.terms) term = usable[static_cast<std::size_t>(term)];
+  return support;
+}
+
+std::vector<int> all_of(std::size_t count) {
+  std::vector<int> all;
+  for (std::size_t k = 0; k < count; ++k) all.push_back(static_cast<int>(k));
+  return all;
+}
+
+/// Terms of which one is needed and not which: at least one is in, seldom both, neither for sure.
+void add_interchangeable(Equation const& equation, Eigen::MatrixXd const& joint, Concerns& concerns) {
+  for (int a = 0; a < joint.rows(); ++a)
+    for (int b = a + 1; b < joint.rows(); ++b) {
+      double const one = joint(a, a), other = joint(b, b), both = joint(a, b), any = one + other - both;
+      if (std::min(one, other) < 0.05 || any < 0.9 || both > 0.25 * std::min(one, other)) continue;
+      Concern concern{.kind = Concern::Kind::interchangeable, .terms = {a, b}, .value = any};
+      concern.clause = fmt::format(
+          "{} stand for each other: one is needed with probability {:.2f}, which one the data do not say "
+          "({:.2f} and {:.2f})",
+          names_of(equation, {a, b}), any, one, other);
+      concerns.push_back(std::move(concern));
+    }
+}
+
+class Finder {
+ public:
+  Finder(Equation const& equation, Projection const& projection, int index, Method const& method)
+      : equation_(equation), projection_(projection), index_(index), method_(method) {}
+
+  FoundEquation find() {
+    found_.name = equation_.name;
+    for (Term const& term : equation_.terms) found_.terms.push_back({.name = term.name});
+    found_.concerns = projection_.concerns(index_);
+    if (any_fatal(found_.concerns)) return std::move(found_);
+    Columns const& columns = projection_.columns(index_);
+    found_.rows = static_cast<int>(columns.known.size());
+    if (found_.rows > 0) {
+      Usable usable = independent_terms(equation_, columns);
+      usable_ = std::move(usable.terms);
+      found_.concerns.insert(found_.concerns.end(), usable.concerns.begin(), usable.concerns.end());
+    }
+    if (!enough(columns)) return std::move(found_);
+    for (FoundTerm& term : found_.terms) term.left_out = true;
+    for (int const term : usable_) found_.terms[static_cast<std::size_t>(term)].left_out = false;
+    report(columns, choose(columns));
+    return std::move(found_);
+  }
+
+ private:
+  bool enough(Columns const& columns) {
+    Concern concern;
+    if (found_.rows <= 2 * static_cast<int>(usable_.size()) || found_.rows == 0) {
+      concern.kind = Concern::Kind::too_few_rows;
+      concern.value = found_.rows;
+      concern.clause = fmt::format("{} {} for {} terms are too few; at least {} are needed", found_.rows,
+                                   projection_.half_width() > 0 ? "windows" : "samples", usable_.size(), 2 * usable_.size() + 1);
+    } else if (usable_.empty()) {
+      concern.kind = Concern::Kind::nothing_left;
+      concern.clause = "no term is left to choose from";
+    } else if (!(columns.known.squaredNorm() > 0) || !columns.known.allFinite()) {
+      concern.kind = Concern::Kind::nothing_to_explain;
+      concern.clause = columns.known.allFinite() ? "the known side is zero on the whole record"
+                                                 : "the known side is not finite somewhere on the record";
+    } else {
+      return true;
+    }
+    found_.concerns.push_back(std::move(concern));
+    return false;
+  }
+
+  Choice choose(Columns const& columns) {
+    auto const count = static_cast<Eigen::Index>(equation_.terms.size());
+    SelectorContext const context{method_.seed, static_cast<std::uint64_t>(index_), method_.interrupted};
+    auto const select = [&] {
+      return method_.selector->choose(problem_of(equation_, whitened_, usable_), method_.selector_settings, context);
+    };
+    auto const fitted = [&](Columns const& on) {
+      return spread(least_squares(problem_of(equation_, on, usable_), all_of(usable_.size())), usable_, count);
+    };
+    whitened_ = columns;
+    if (projection_.reweightings() == 0) return select();
+    // First with all terms, whose sum is well determined where single coefficients are not; then with those chosen.
+    whitened_ = projection_.whitened(index_, fitted(columns));
+    whitened_ = projection_.whitened(index_, fitted(whitened_));
+    Choice choice = select();
+    for (int round = 0; round < most_choices; ++round) {
+      std::vector<int> const before = choice.chosen.terms;
+      Eigen::VectorXd weights = spread(choice.chosen, usable_, count);
+      for (int k = 0; k < projection_.reweightings(); ++k) {
+        whitened_ = projection_.whitened(index_, weights);
+        weights = spread(least_squares(problem_of(equation_, whitened_, usable_), before), usable_, count);
+      }
+      choice = select();
+      if (choice.chosen.terms == before) break;
+    }
+    return choice;
+  }
+
+  void report(Columns const& columns, Choice const& choice) {
+    found_.found = true;
+    found_.iterations = choice.iterations;
+    found_.converged = choice.converged;
+    found_.exact = choice.exact;
+    found_.chosen = renumbered(choice.chosen, usable_);
+    for (Support const& support : choice.supports) found_.supports.push_back(renumbered(support, usable_));
+    auto const count = static_cast<Eigen::Index>(equation_.terms.size());
+    double const known = columns.known.norm();
+    for (std::size_t k = 0; k < usable_.size(); ++k) {
+      TermChoice const& from = choice.terms[k];
+      FoundTerm& to = found_.terms[static_cast<std::size_t>(usable_[k])];
+      to.kept = from.kept;
+      to.measure = from.measure;
+      to.precision = from.precision;
+      to.dropped_in = from.dropped_in;
+      to.mean = from.mean;
+      to.mean_sd = from.sd;
+    }
+    std::vector<double> const inflation = variance_inflation(whitened_, found_.chosen.terms);
+    Eigen::VectorXd residual = columns.known, whitened_residual = whitened_.known;
+    for (std::size_t k = 0; k < found_.chosen.terms.size(); ++k) {
+      auto const i = static_cast<Eigen::Index>(k);
+      int const j = found_.chosen.terms[k];
+      FoundTerm& term = found_.terms[static_cast<std::size_t>(j)];
+      term.coefficient = found_.chosen.coefficient(i);
+      term.sd = std::sqrt(found_.chosen.covariance(i, i));
+      term.contribution = std::abs(term.coefficient) * columns.terms.col(j).norm() / known;
+      term.inflation = inflation[k];
+      residual -= term.coefficient * columns.terms.col(j);
+      whitened_residual -= term.coefficient * whitened_.terms.col(j);
+    }
+    found_.explained = 1 - residual.squaredNorm() / (known * known);
+    if (choice.joint.size() > 0) {
+      found_.joint = Eigen::MatrixXd::Zero(count, count);
+      for (std::size_t a = 0; a < usable_.size(); ++a)
+        for (std::size_t b = 0; b < usable_.size(); ++b)
+          found_.joint(usable_[a], usable_[b]) = choice.joint(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      add_interchangeable(equation_, found_.joint, found_.concerns);
+    }
+    Concerns const near = near_dependence(equation_, whitened_, found_.chosen.terms);
+    found_.concerns.insert(found_.concerns.end(), near.begin(), near.end());
+    if (projection_.calibrated()) judge_residual(whitened_residual, residual.norm() / known);
+    if (!choice.converged) {
+      Concern concern{.kind = Concern::Kind::no_convergence, .value = static_cast<double>(choice.iterations)};
+      concern.clause = fmt::format("the choice of terms had not settled after {} iterations", choice.iterations);
+      found_.concerns.push_back(std::move(concern));
+    }
+  }
+
+  void judge_residual(Eigen::VectorXd const& residual, double share) {
+    double const freedom = static_cast<double>(residual.size()) - static_cast<double>(found_.chosen.terms.size());
+    found_.noise_ratio = std::sqrt(residual.squaredNorm() / freedom);
+    if (found_.noise_ratio < unexplained_above || share < unexplained_share) return;
+    Concern concern{.kind = Concern::Kind::unexplained, .value = found_.noise_ratio};
+    concern.clause = fmt::format(
+        "what the terms leave unexplained is {:.3g} times what the measurement noise accounts for: a forcing or "
+        "a term is missing",
+        found_.noise_ratio);
+    found_.concerns.push_back(std::move(concern));
+  }
+
+  Equation const& equation_;
+  Projection const& projection_;
+  int index_;
+  Method const& method_;
+  FoundEquation found_;
+  std::vector<int> usable_;
+  Columns whitened_;
+};
+
+}  // namespace
+
+Discovery discover(Dictionary const& dictionary, std::span<Experiment const> experiments, Method const& method) {
+  std::unique_ptr<Projection> const projection = method.form->project(dictionary, experiments, method.form_settings);
+  Discovery discovery;
+  discovery.noise_sd = projection->noise_sd();
+  discovery.half_width = projection->half_width();
+  for (std::size_t e = 0; e < dictionary.equations.size(); ++e) {
+    discovery.equations.push_back(Finder(dictionary.equations[e], *projection, static_cast<int>(e), method).find());
+    discovery.interrupted = discovery.interrupted || (method.interrupted && method.interrupted());
+  }
+  return discovery;
+}
+
+}  // namespace sysid::regression

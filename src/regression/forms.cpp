@@ -1,0 +1,32 @@
+// The ways to have derivatives, one line each.
+#include "regression/columns.hpp"
+#include "regression/sampled.hpp"
+#include "regression/weak.hpp"
+
+namespace sysid::regression {
+namespace {
+
+std::string no_refusal(Settings const&) { return {}; }
+
+Form const rows[] = {
+    {"weak", "integrals against test functions, derivatives moved onto them, noise covariance known", weak::settings(),
+     &weak::refuse, &weak::project},
+    {"savitzky_golay", "local polynomials, inputs filtered alike", savitzky_golay::settings(), &savitzky_golay::refuse,
+     &savitzky_golay::project},
+    {"smoothing_spline", "a spline through each channel, inputs filtered alike", smoothing_spline::settings(), &no_refusal,
+     &smoothing_spline::project},
+    {"central", "central differences, for records without noise", {}, &no_refusal, &central::project},
+    {"measured", "each derivative has its own channel", {}, &no_refusal, &measured::project},
+};
+
+}  // namespace
+
+std::span<Form const> forms() { return rows; }
+
+Form const* find_form(std::string_view name) {
+  for (Form const& row : rows)
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+}  // namespace sysid::regression

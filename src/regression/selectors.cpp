@@ -1,0 +1,47 @@
+// The selectors, one line each, and what they share.
+#include <algorithm>
+#include <cmath>
+
+#include "core/elementary.hpp"
+#include "regression/ard.hpp"
+#include "regression/selector.hpp"
+#include "regression/spike_slab.hpp"
+#include "regression/threshold.hpp"
+#include "regression/triangle.hpp"
+
+namespace sysid::regression {
+namespace {
+
+std::string no_refusal(Settings const&) { return {}; }
+
+SelectorRow const rows[] = {
+    {"spike_slab", "posterior probabilities of supports and terms", "inclusion probability", spike_slab::settings(), &no_refusal,
+     &spike_slab::choose},
+    {"ard", "one prior precision per coefficient, evidence maximised", "contribution", ard::settings(), &no_refusal, &ard::choose},
+    {"threshold", "drops the term that contributes least, again and again", "contribution", threshold::settings(), &no_refusal,
+     &threshold::choose},
+};
+
+}  // namespace
+
+std::span<SelectorRow const> selectors() { return rows; }
+
+SelectorRow const* find_selector(std::string_view name) {
+  for (SelectorRow const& row : rows)
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+Support least_squares(LinearProblem const& problem, std::vector<int> terms) {
+  return support_of(reduce(problem), std::move(terms));
+}
+
+double log_bayes_factor(double n, double p, double squares, double base, double g, bool centred_at_estimate) {
+  if (!(base > 0)) return 0;
+  // What is left of exact data is rounding: 1e-30 of the squares keeps the logarithm finite.
+  double const share = std::clamp(squares / base, 1e-30, 1.0);
+  if (centred_at_estimate) return -p / 2 * elementary::log1p(g) - n / 2 * elementary::log(share);
+  return (n - p) / 2 * elementary::log1p(g) - n / 2 * elementary::log1p(g * share);
+}
+
+}  // namespace sysid::regression

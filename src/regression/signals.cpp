@@ -1,0 +1,193 @@
+// Facts about channels and inputs, computed from their samples alone.
+#include "regression/signals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/elementary.hpp"
+#include "core/fourier.hpp"
+
+namespace sysid::regression {
+
+int channel_of(Dictionary const& dictionary, int state, int order) {
+  for (std::size_t c = 0; c < dictionary.channels.size(); ++c)
+    if (dictionary.channels[c].state == state && dictionary.channels[c].order == order) return static_cast<int>(c);
+  return -1;
+}
+
+int base_channel(Dictionary const& dictionary, int state, int order) {
+  for (int base = order; base >= 0; --base)
+    if (int const channel = channel_of(dictionary, state, base); channel >= 0) return channel;
+  return -1;
+}
+
+Symbol const* symbol_of(Dictionary const& dictionary, NodeId leaf) {
+  for (Symbol const& symbol : dictionary.symbols)
+    if (symbol.leaf == leaf) return &symbol;
+  return nullptr;
+}
+
+std::vector<Symbol> symbols_below(Dictionary const& dictionary, std::span<NodeId const> roots) {
+  std::vector<NodeId> const below = dictionary.graph.reachable(roots);
+  std::vector<Symbol> symbols;
+  for (Symbol const& symbol : dictionary.symbols)
+    if (std::find(below.begin(), below.end(), symbol.leaf) != below.end()) symbols.push_back(symbol);
+  return symbols;
+}
+
+std::string symbol_text(Dictionary const& dictionary, int state, int order) {
+  return dictionary.states[static_cast<std::size_t>(state)] + std::string(static_cast<std::size_t>(order), '\'');
+}
+
+std::optional<double> uniform_step(Experiment const& experiment) {
+  std::vector<double> const& time = experiment.time;
+  double const step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  for (std::size_t i = 1; i < time.size(); ++i)
+    if (!(std::abs(time[i] - time[i - 1] - step) <= 1e-6 * step)) return std::nullopt;
+  return step;
+}
+
+namespace {
+
+struct DifferenceSum {
+  double squares = 0;
+  std::size_t count = 0;
+
+  void add(std::span<double const> samples) {
+    constexpr double weights[] = {1, -6, 15, -20, 15, -6, 1};
+    for (std::size_t i = 0; i + 7 <= samples.size(); ++i) {
+      double difference = 0;
+      for (std::size_t k = 0; k < 7; ++k) difference += weights[k] * samples[i + k];
+      if (!std::isfinite(difference)) continue;
+      squares += difference * difference;
+      ++count;
+    }
+  }
+  double sd() const { return count == 0 ? 0 : std::sqrt(squares / (924 * static_cast<double>(count))); }
+};
+
+}  // namespace
+
+double estimated_noise(std::span<double const> samples) {
+  DifferenceSum sum;
+  sum.add(samples);
+  return sum.sd();
+}
+
+double fastest_period(std::span<double const> samples, double step) {
+  std::size_t const n = samples.size();
+  std::vector<double> filled(samples.begin(), samples.end());
+  std::size_t last = n;  // the finite sample before, n: none
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!std::isfinite(filled[i])) continue;
+    std::size_t const first = last == n ? 0 : last + 1;
+    for (std::size_t k = first; k < i; ++k)
+      filled[k] = last == n
+                      ? filled[i]
+                      : filled[last] + (filled[i] - filled[last]) * static_cast<double>(k - last) / static_cast<double>(i - last);
+    last = i;
+  }
+  if (last == n) return std::numeric_limits<double>::infinity();
+  for (std::size_t k = last + 1; k < n; ++k) filled[k] = filled[last];
+
+  double mean = 0;
+  for (double const value : filled) mean += value / static_cast<double>(n);
+  std::size_t const size = std::bit_ceil(std::max<std::size_t>(n, 4));
+  Fourier::Parts re(size, 0.0), im(size, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    double const angle = 2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    re[i] = (filled[i] - mean) * (1 - elementary::cos(angle));
+  }
+  Fourier(size).to_reversed(re, im);
+  int const bits = std::countr_zero(size);
+  std::vector<double> power(size / 2 + 1);
+  double total = 0;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    std::size_t reversed = 0;
+    for (int b = 0; b < bits; ++b) reversed |= ((k >> b) & 1) << (bits - 1 - b);
+    power[k] = re[reversed] * re[reversed] + im[reversed] * im[reversed];
+    total += power[k];
+  }
+  if (!(total > 0)) return std::numeric_limits<double>::infinity();
+  double sum = 0;
+  std::size_t k = 0;
+  while (k + 1 < power.size() && (sum += power[k]) < 0.95 * total) ++k;
+  return static_cast<double>(size) * step / static_cast<double>(std::max<std::size_t>(k, 1));
+}
+
+std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Experiment const> experiments) {
+  std::vector<double> sds;
+  for (std::size_t c = 0; c < dictionary.channels.size(); ++c) {
+    DifferenceSum differences;
+    double squares = 0;
+    std::size_t count = 0;
+    for (Experiment const& experiment : experiments) {
+      std::vector<double> const& samples = experiment.measured[c];
+      differences.add(samples);
+      for (double const value : samples)
+        if (std::isfinite(value)) squares += value * value, ++count;
+    }
+    double const rms = count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
+    double const sd = dictionary.channels[c].noise_sd.value_or(differences.sd());
+    double const least = std::max(1e-9 * rms, std::numeric_limits<double>::min());
+    sds.push_back(std::max(sd, least));
+  }
+  return sds;
+}
+
+Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used) {
+  Concerns concerns;
+  for (Experiment const& experiment : experiments)
+    if (!uniform_step(experiment)) {
+      Concern concern{.kind = Concern::Kind::unequal_steps};
+      concern.clause = fmt::format("the time steps of `{}` are not equal to one in a million", experiment.name);
+      concerns.push_back(std::move(concern));
+    }
+  for (int const channel : used) {
+    auto const c = static_cast<std::size_t>(channel);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Experiment const& experiment : experiments)
+      for (std::size_t i = 0; i < experiment.measured[c].size(); ++i)
+        if (std::isfinite(experiment.measured[c][i])) {
+          low = std::min(low, experiment.measured[c][i]);
+          high = std::max(high, experiment.measured[c][i]);
+        }
+    std::string const& name = dictionary.channels[c].name;
+    if (low > high) {
+      Concern concern{.kind = Concern::Kind::not_measured, .channel = channel};
+      concern.clause = fmt::format("`{}` holds no sample", name);
+      concerns.push_back(std::move(concern));
+    } else if (low == high) {
+      Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
+      concern.clause =
+          fmt::format("`{}` is {:.4g} on the whole record: a system at rest says nothing about its equation", name, low);
+      concerns.push_back(std::move(concern));
+    }
+  }
+  return concerns;
+}
+
+bool usable(Experiment const& experiment, std::span<int const> used, int row) {
+  auto const i = static_cast<std::size_t>(row);
+  if (!experiment.scored.empty() && experiment.scored[i] == 0) return false;
+  return std::all_of(used.begin(), used.end(),
+                     [&](int channel) { return std::isfinite(experiment.measured[static_cast<std::size_t>(channel)][i]); });
+}
+
+InputSides input_sides(InputSignal const& signal, int order) {
+  InputSides sides;
+  int const rows = signal.rows();
+  auto const read = [&](int interval, double s) { return order == 0 ? signal.value(interval, s) : signal.rate(interval, s); };
+  for (int i = 0; i < rows; ++i) {
+    sides.before.push_back(i > 0 ? read(i - 1, 1) : read(0, 0));
+    sides.after.push_back(i + 1 < rows ? read(i, 0) : read(rows - 2, 1));
+  }
+  return sides;
+}
+
+}  // namespace sysid::regression
