@@ -74,15 +74,22 @@ SelectorRow const* find_selector(std::string_view name);
 /// Least squares on a support. terms: rising, linearly independent, fewer than K.
 Support least_squares(LinearProblem const& problem, std::vector<int> terms);
 
-/// log of the Bayes factor of a support against the `always` terms alone, which leave `base` of the squares, the support `squares`:
+/// How the coefficients of a support are spread before the data: normal with covariance g sigma^2 (A^T A)^-1, and
+enum class CoefficientPrior {
+  beta_prime,        // centred at zero, g unknown under a beta prime prior (Maruyama, George 2011, a = -3/4)
+  unit_information,  // centred at the estimate, g given (Kass, Wasserman 1995: with g = n nearly the Schwarz criterion)
+  zellner,           // centred at zero, g given (Liang et al. 2008, eq. 5)
+};
+
+/// log of the Bayes factor of a support with p selectable terms, which leaves `squares`, against the `always` terms alone, which
+/// leave `base`; n rows less the always terms, q = squares / base, priors flat on the always terms and 1/sigma on the noise:
 ///
-///   centred at the estimate   -p/2 log(1 + g) + n/2 log(base / squares)                  unit information for g = n; Kass,
-///   Wasserman 1995 centred at zero           (n - p)/2 log(1 + g) - n/2 log(1 + g squares / base)       Zellner; Liang et al.
-///   2008, eq. 5
+///   beta_prime         lgamma(p/2 + 1/4) + lgamma((n - p)/2) - lgamma(1/4) - lgamma(n/2) - ((n - p)/2 - 1/4) log q
+///   unit_information   -p/2 log(1 + g) - n/2 log q
+///   zellner            (n - p)/2 log(1 + g) - n/2 log(1 + g q)
 ///
-/// under a normal prior with covariance g sigma^2 (A^T A)^-1 on the p selectable coefficients, flat on the always ones, 1/sigma on
-/// the noise; n: rows less the number of always terms. Centred at zero the factor stays below (1 + g)^((n-p)/2) however small
-/// `squares` are: with little noise it can no longer tell terms that matter from those that do not.
-double log_bayes_factor(double n, double p, double squares, double base, double g, bool centred_at_estimate);
+/// As q falls to 0 zellner stays bounded: with little noise it no longer tells terms that matter a little from those that do
+/// not matter. beta_prime grows without bound and asks the more of one more term the less the others leave (by sqrt(q) about).
+double log_bayes_factor(CoefficientPrior prior, double n, double p, double squares, double base, double g);
 
 }  // namespace sysid::regression

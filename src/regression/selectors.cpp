@@ -36,12 +36,20 @@ Support least_squares(LinearProblem const& problem, std::vector<int> terms) {
   return support_of(reduce(problem), std::move(terms));
 }
 
-double log_bayes_factor(double n, double p, double squares, double base, double g, bool centred_at_estimate) {
+double log_bayes_factor(CoefficientPrior prior, double n, double p, double squares, double base, double g) {
   if (!(base > 0)) return 0;
   // What is left of exact data is rounding: 1e-30 of the squares keeps the logarithm finite.
-  double const share = std::clamp(squares / base, 1e-30, 1.0);
-  if (centred_at_estimate) return -p / 2 * elementary::log1p(g) - n / 2 * elementary::log(share);
-  return (n - p) / 2 * elementary::log1p(g) - n / 2 * elementary::log1p(g * share);
+  double const q = std::clamp(squares / base, 1e-30, 1.0), log_q = elementary::log(q);
+  switch (prior) {
+    case CoefficientPrior::beta_prime:
+      return elementary::lgamma(p / 2 + 0.25) + elementary::lgamma((n - p) / 2) - elementary::lgamma(0.25) -
+             elementary::lgamma(n / 2) - ((n - p) / 2 - 0.25) * log_q;
+    case CoefficientPrior::unit_information:
+      return -p / 2 * elementary::log1p(g) - n / 2 * log_q;
+    case CoefficientPrior::zellner:
+      return (n - p) / 2 * elementary::log1p(g) - n / 2 * elementary::log1p(g * q);
+  }
+  return 0;
 }
 
 }  // namespace sysid::regression

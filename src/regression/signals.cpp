@@ -94,6 +94,8 @@ double fastest_period(std::span<double const> samples, double step) {
   }
   if (last == n) return std::numeric_limits<double>::infinity();
   for (std::size_t k = last + 1; k < n; ++k) filled[k] = filled[last];
+  auto const [low, high] = std::minmax_element(filled.begin(), filled.end());
+  if (*low == *high) return std::numeric_limits<double>::infinity();
 
   double mean = 0;
   for (double const value : filled) mean += value / static_cast<double>(n);

@@ -14,9 +14,10 @@ namespace sysid::regression::spike_slab {
 namespace {
 
 constexpr SettingRow rows[] = {
-    {"prior", SettingKind::word, "unit_information", 0, 0, "unit_information zellner",
-     "of coefficients: centred at their estimate, or at zero"},
-    {"g", SettingKind::real, "0", 0, 1e300, "", "prior variance over that of the estimate; 0: the number of rows"},
+    {"prior", SettingKind::word, "beta_prime", 0, 0, "beta_prime unit_information zellner",
+     "of coefficients: of unknown width, of width g about their estimate, or of width g about zero"},
+    {"g", SettingKind::real, "0", 0, 1e300, "",
+     "of unit_information and zellner: prior variance over that of the estimate; 0: the number of rows"},
     {"sizes", SettingKind::word, "beta_binomial", 0, 0, "beta_binomial uniform",
      "equal probability of every number of terms, or of every support"},
     {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
@@ -44,7 +45,10 @@ class Scale {
       (problem.always[static_cast<std::size_t>(j)] != 0 ? always : selectable).push_back(j);
     n_ = triangle.rows - static_cast<double>(always.size());
     g_ = settings.real("g") > 0 ? settings.real("g") : n_;
-    at_estimate_ = settings.word("prior") == "unit_information";
+    std::string const& prior = settings.word("prior");
+    prior_ = prior == "beta_prime"         ? CoefficientPrior::beta_prime
+             : prior == "unit_information" ? CoefficientPrior::unit_information
+                                           : CoefficientPrior::zellner;
     beta_binomial_ = settings.word("sizes") == "beta_binomial";
     base_ = residual_squares(triangle, always);
   }
@@ -60,7 +64,7 @@ class Scale {
   }
   Weighed weigh(Bits support, double squares) const {
     auto const size = static_cast<double>(std::count(support.begin(), support.end(), true));
-    double const evidence = log_bayes_factor(n_, size, squares, base_, g_, at_estimate_);
+    double const evidence = log_bayes_factor(prior_, n_, size, squares, base_, g_);
     return {std::move(support), evidence, evidence + log_prior(size)};
   }
   Weighed weigh(Bits support) const {
@@ -78,7 +82,8 @@ class Scale {
 
   Triangle const& triangle_;
   double n_, g_, base_;
-  bool at_estimate_, beta_binomial_;
+  CoefficientPrior prior_;
+  bool beta_binomial_;
 };
 
 /// Depth first: each selectable term is either left out or made orthogonal to what follows, so a support costs J operations.

@@ -153,8 +153,8 @@ double default_log_evidence(Triangle const& triangle, std::vector<char> const& a
   for (std::size_t j = 0; j < always.size(); ++j)
     if (always[j] != 0) base.push_back(static_cast<int>(j));
   double const n = triangle.rows - static_cast<double>(base.size());
-  return log_bayes_factor(n, static_cast<double>(terms.size() - base.size()), residual_squares(triangle, terms),
-                          residual_squares(triangle, base), n, true);
+  return log_bayes_factor(CoefficientPrior::beta_prime, n, static_cast<double>(terms.size() - base.size()),
+                          residual_squares(triangle, terms), residual_squares(triangle, base), n);
 }
 
 }  // namespace sysid::regression

@@ -42,7 +42,7 @@ struct Elimination {
 };
 std::vector<Elimination> eliminate(Triangle const& triangle, std::vector<char> const& always);
 
-/// log_bayes_factor of a support against the `always` terms, g = number of rows left, prior centred at the estimate.
+/// log_bayes_factor of a support against the `always` terms under the beta prime prior.
 double default_log_evidence(Triangle const& triangle, std::vector<char> const& always, std::vector<int> const& terms);
 
 }  // namespace sysid::regression

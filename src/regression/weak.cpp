@@ -17,7 +17,7 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"half_width", SettingKind::integer, "0", 0, 1e6, "",
-     "half-width of a window in samples; 0: a quarter of the fastest period, at least 10"},
+     "half-width of a window in samples; 0: a third of the fastest period, at least 10"},
     {"step", SettingKind::integer, "0", 0, 1e6, "", "samples from window to window; 0: a sixth of the half-width"},
     {"power", SettingKind::integer, "8", 4, 24, "", "p of the test function (1 - s^2)^p"},
     {"reweightings", SettingKind::integer, "3", 0, 20, "", "how often the noise covariance is computed anew from the coefficients"},
@@ -117,9 +117,9 @@ class WeakProjection : public Projection {
     double period = std::numeric_limits<double>::infinity();
     for (int const channel : channels)
       period = std::min(period, fastest_period(experiment.measured[static_cast<std::size_t>(channel)], step));
-    double const quarter = period / (4 * step);
+    double const third = period / (3 * step);
     double const most = static_cast<double>(experiment.time.size()) / 8;
-    return std::max(least_half_width, static_cast<int>(std::round(std::min(quarter, most))));
+    return std::max(least_half_width, static_cast<int>(std::round(std::min(third, most))));
   }
 
   void project(Equation const& equation, Settings const& settings) {
@@ -177,17 +177,22 @@ class WeakProjection : public Projection {
     half_width_ = std::max(half_width_, windows.half);
     int const stride = settings.integer("step") > 0 ? static_cast<int>(settings.integer("step")) : std::max(1, windows.half / 6);
     int const reach = windows.half + windows.smoother_half, count = static_cast<int>(experiment.time.size());
-    int last_gap = -1;
-    for (int i = 0; i < std::min(2 * reach, count); ++i)
-      if (!usable(experiment, projected.channels, i)) last_gap = i;
-    for (int centre = reach, seen = 2 * reach; centre + reach < count; centre += stride) {
-      for (; seen <= centre + reach; ++seen)
-        if (!usable(experiment, projected.channels, seen)) last_gap = seen;
+    // A window is lost when it touches a missing sample; rows kept aside are no loss.
+    std::vector<int> const nothing;
+    int last_aside = -1, last_gap = -1, seen = 0;
+    for (int centre = reach; centre + reach < count; centre += stride) {
+      for (; seen <= centre + reach; ++seen) {
+        if (!usable(experiment, nothing, seen))
+          last_aside = seen;
+        else if (!usable(experiment, projected.channels, seen))
+          last_gap = seen;
+      }
+      if (last_aside >= centre - reach) continue;
       ++windows_tried_;
-      if (last_gap < centre - reach)
-        windows.centres.push_back(centre);
-      else
+      if (last_gap >= centre - reach)
         ++windows_lost_;
+      else
+        windows.centres.push_back(centre);
     }
     if (windows.centres.empty()) return;
     WeakIntegrals integrals(dictionary_, experiment, test_, std::move(windows));
@@ -213,7 +218,7 @@ class WeakProjection : public Projection {
     if (windows_lost_ > 0) {
       double const share = static_cast<double>(windows_lost_) / windows_tried_;
       Concern concern{.kind = Concern::Kind::missing, .value = share};
-      concern.clause = fmt::format("{:.3g} % of the windows touch a sample that is missing or not scored", 100 * share);
+      concern.clause = fmt::format("{:.3g} % of the windows touch a missing sample and are left out", 100 * share);
       projected.concerns.push_back(std::move(concern));
     }
     windows_lost_ = windows_tried_ = 0;
