@@ -16,9 +16,9 @@
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
-#include "app/results.hpp"
 #include "app/session.hpp"
 #include "app/solver_record.hpp"
+#include "app/task_checkpoint.hpp"
 #include "app/tolerance.hpp"
 #include "core/files.hpp"
 #include "inference/bound_check.hpp"
@@ -68,18 +68,6 @@ Summary of_derived(Draws const& draws, std::size_t column) {
   return summary;
 }
 
-// A run that drew its seed goes on with that one.
-std::uint64_t stored_seed(Session& session, Task const& task, FitTask const& what) {
-  auto const path = checkpoint_path(session.result_folder(task));
-  if (session.options.resume && !session.options.seed && !what.seed && std::filesystem::exists(path)) {
-    std::string const bytes = read_file(path);
-    json const stored = json::from_cbor(bytes.begin(), bytes.end(), true, false);
-    if (stored.is_object() && stored.contains("who") && stored.at("who").contains("seed"))
-      return stored.at("who").at("seed").get<std::uint64_t>();
-  }
-  return session.seed(task, what.seed);
-}
-
 class Fit {
  public:
   Fit(Session& session, int index, Task const& task, FitTask const& what)
@@ -87,14 +75,16 @@ class Fit {
         index_(index),
         task_(task),
         what_(what),
-        folder_(session.result_folder(task)),
-        seed_(stored_seed(session, task, what)),
+        checkpoint_(session, task, what.seed),
+        seed_(checkpoint_.seed()),
         backend_(*find_backend(what.backend)),
         compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
         model_(compiled_->model),
         space_(parameter_space(model_, what.experiments)),
         data_(load_experiments(session, what.experiments, what.model, what.start, what.prediction)),
-        began_(std::chrono::steady_clock::now()) {}
+        began_(std::chrono::steady_clock::now()) {
+    checkpoint_.of_data(data_);
+  }
 
   ExitCode run() {
     if (auto const why = refusal(task_, what_, model_, data_)) throw UserError(*why);
@@ -103,18 +93,18 @@ class Fit {
                        {},      session_.options.checkpoint_interval,
                        {},      {},
                        {}};
-    json const stored = stored_checkpoint();
-    if (stored.is_null()) {
+    std::optional<json> const stored = checkpoint_.stored();
+    if (!stored) {
       if (!prepare(context)) return stop_early();
     } else {
-      preparation_ = restore_preparation(stored.at("preparation"));
-      if (stored.contains("state")) context.resume = stored.at("state");
+      preparation_ = restore_preparation(stored->at("preparation"));
+      if (stored->contains("state")) context.resume = stored->at("state");
       session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
     }
     target_ = make_target(preparation_.solver);
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
-    context.checkpoint = [this](json const& state) { save(state); };
+    context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
     FitResult result = backend_.run(*target_, what_.settings, context);
     if (result.failure) throw UserError(no_result(*result.failure));
     if (result.interrupted && result.draws.total() == 0) return stop_early();
@@ -179,42 +169,10 @@ class Fit {
   }
 
   ExitCode stop_early() const {
-    bool const kept = std::filesystem::exists(checkpoint_path(folder_));
+    bool const kept = std::filesystem::exists(checkpoint_.path());
     session_.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task_.name,
                                     kept ? "goes on from there" : "starts it again");
     return ExitCode::interrupted;
-  }
-
-  // --- checkpoints
-  // ----------------------------------------------------------------------------------------------------------------
-  json who() const {
-    json digests = json::array();
-    for (ExperimentData const& each : data_) digests.push_back({each.experiment.name, each.record.digest});
-    return {{"model", session_.source.all_text()}, {"data", digests}, {"task", task_.name}, {"seed", seed_}};
-  }
-
-  void save(json const& state) const {
-    json const all = {{"who", who()}, {"preparation", store(preparation_)}, {"state", state}};
-    std::vector<std::uint8_t> const bytes = json::to_cbor(all);
-    write_file(checkpoint_path(folder_), std::string_view(reinterpret_cast<char const*>(bytes.data()), bytes.size()));
-  }
-
-  json stored_checkpoint() const {
-    auto const path = checkpoint_path(folder_);
-    if (!session_.options.resume || !std::filesystem::exists(path)) return nullptr;
-    std::string const bytes = read_file(path);
-    json stored = json::from_cbor(bytes.begin(), bytes.end(), true, false);
-    if (!stored.is_object() || !stored.contains("who"))
-      throw UserError(
-          {Severity::error, "E6207", fmt::format("`{}` is damaged", path.string()), std::nullopt, {}, "start again with --force"});
-    if (stored.at("who") != who())
-      throw UserError({Severity::error,
-                       "E6208",
-                       fmt::format("`{}` is of another text, data or seed", path.string()),
-                       std::nullopt,
-                       {},
-                       "restore the files of that run, or start again with --force"});
-    return stored;
   }
 
   // --- the end
@@ -270,13 +228,13 @@ class Fit {
     report.timing = {{"wall_seconds", wall.count()},
                      {"threads", static_cast<std::int64_t>(session_.threads())},
                      {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
-    write_result(report, folder_, session_.options.figures);
+    write_result(report, session_.result_folder(task_), session_.options.figures);
     session_.out << terminal_summary(report);
     if (interrupted) {
       session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
       return ExitCode::interrupted;
     }
-    remove_file(checkpoint_path(folder_));
+    remove_file(checkpoint_.path());
     session_.fitted[index_] = {std::move(report.draws), preparation_.solver};
     return verdict.pass ? ExitCode::success : ExitCode::doubtful;
   }
@@ -324,7 +282,7 @@ class Fit {
   int index_;
   Task const& task_;
   FitTask const& what_;
-  std::filesystem::path folder_;
+  TaskCheckpoint checkpoint_;
   std::uint64_t seed_;
   BackendRow const& backend_;
   std::shared_ptr<CompiledModel const> compiled_;

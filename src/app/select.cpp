@@ -9,17 +9,17 @@
 #include "app/experiments.hpp"
 #include "app/fit_target.hpp"
 #include "app/likelihood_check.hpp"
+#include "app/polish.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/results.hpp"
+#include "app/selection_checks.hpp"
 #include "app/session.hpp"
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
 #include "core/diagnostic.hpp"
-#include "core/elementary.hpp"
 #include "core/files.hpp"
-#include "inference/mh.hpp"
 #include "inference/verdict.hpp"
 #include "likelihood/model_selection_target.hpp"
 #include "likelihood/simulated_parameters.hpp"
@@ -32,25 +32,6 @@ namespace sysid {
 namespace {
 
 using json = nlohmann::json;
-
-/// A model that is less probable is not polished.
-constexpr double worth_polishing = 0.01;
-
-/// A threshold further above the noise floor than this leaves more than the noise does.
-constexpr double far_above_floor = 1.15;
-
-/// A finer solver may move the median distance by this part of the threshold.
-constexpr double tolerable_shift = 0.05;
-
-/// One candidate with all that simulates it.
-struct Candidate {
-  CandidateModel const* what;
-  FitTask const* fit;
-  std::shared_ptr<CompiledModel const> compiled;
-  std::vector<ExperimentData> data;
-  std::shared_ptr<ParameterSpace const> space, simulated;  // of all parameters; of those that a simulation without noise reads
-  DistanceMeasure measure;
-};
 
 class Select {
  public:
@@ -169,150 +150,11 @@ class Select {
     Ledger extra;
     session_.progress.begin("the likelihood's side", candidates_.size());
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      modes.push_back(modes_near(*likelihood_target(k), result.models[k], seed_, extra));
+      modes.push_back(modes_near(*likelihood_target(session_, candidates_[k]), result.models[k], seed_, extra));
       session_.progress.advance(k + 1, result.models[k].name);
     }
     session_.progress.end();
     return modes;
-  }
-
-  std::unique_ptr<ModelTarget> likelihood_target(std::size_t k) const {
-    Candidate const& each = candidates_[k];
-    return make_fit_target(session_, *each.fit, each.compiled, each.space, experiments_of(each.data), each.fit->solver);
-  }
-
-  static void add_likelihoods(std::vector<std::vector<Mode>> const& modes, SelectionReport& selection, Findings& findings) {
-    std::vector<double> logs, probabilities;
-    double highest = -std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < modes.size(); ++k) {
-      logs.push_back(log_evidence(modes[k]));
-      highest = std::max(highest, logs[k] + elementary::log(selection.result.models[k].prior));
-    }
-    if (!std::isfinite(highest)) return;
-    double total = 0;
-    for (std::size_t k = 0; k < logs.size(); ++k) {
-      probabilities.push_back(elementary::exp(logs[k] + elementary::log(selection.result.models[k].prior) - highest));
-      total += probabilities.back();
-    }
-    for (std::size_t k = 0; k < logs.size(); ++k) {
-      probabilities[k] /= total;
-      selection.likelihoods[k] = LikelihoodCheck{logs[k], probabilities[k]};
-    }
-    for (Finding& finding : compare_probabilities(selection.result, probabilities)) findings.push_back(std::move(finding));
-  }
-
-  /// What noise leaves of the leading model's distance: the noise it states, or where a prior leaves that open the one that its
-  /// mode has found.
-  void add_floor(ModelSelectionTarget const& target, std::vector<std::vector<Mode>> const& modes, SelectionReport& selection,
-                 Findings& findings) const {
-    auto const lead = static_cast<std::size_t>(selection.leader());
-    Candidate const& candidate = candidates_[lead];
-    Model const& model = candidate.compiled->model;
-    bool const stated = candidate.space->dimension() == candidate.simulated->dimension();
-    LaneArray declared(candidate.space->dimension(), 1);
-    if (stated) {
-      SelectedModel const& best = selection.result.models[lead];
-      for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = best.summaries[static_cast<std::size_t>(d)].mean;
-    } else {
-      if (modes.empty() || modes[lead].empty()) return;
-      for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = modes[lead].front().declared[static_cast<std::size_t>(d)];
-    }
-    std::vector<double> variance(model.channels.size());
-    std::string words;
-    for (std::size_t c = 0; c < model.channels.size(); ++c) {
-      if (candidate.measure.weights[c] == 0) continue;
-      if (model.channels[c].noise.row->name != "normal") return;
-      double sum = 0, count = 0;
-      for (std::size_t e = 0; e < candidate.data.size(); ++e) {
-        Experiment const& experiment = candidate.data[e].experiment;
-        LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
-        candidate.space->select(candidate.space->values_of_declared(declared), static_cast<int>(e), parameters);
-        Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
-                                    session_.options.execution);
-        auto const arguments = trajectory.noise_arguments(parameters, static_cast<int>(c));
-        for (std::size_t i = 0; i < arguments.size(); ++i)
-          if (experiment.scored[i] != 0 && !experiment.measured[c].empty() && std::isfinite(experiment.measured[c][i]))
-            sum += arguments[i][1] * arguments[i][1], count += 1;
-      }
-      variance[c] = count > 0 ? sum / count : 0;
-      words += fmt::format("{}sd {}{} in {}", words.empty() ? "" : ", ",
-                           significant(model.channels[c].from_si(std::sqrt(variance[c])), 3),
-                           model.channels[c].unit ? " [" + model.channels[c].unit_text() + "]" : "", model.channels[c].name);
-    }
-    std::vector<double> sd;
-    for (double const v : variance) sd.push_back(std::sqrt(v));
-    double const floor = target.distance(static_cast<int>(lead)).floor(sd);
-    if (!std::isfinite(floor)) return;
-    selection.floor = floor;
-    selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", words);
-    if (selection.result.threshold > far_above_floor * floor)
-      findings.push_back({Severity::warning, "threshold_above_noise",
-                          fmt::format("the final threshold {} is {:.1f} times what {} leaves of the distance, {}",
-                                      significant(selection.result.threshold, 4), selection.result.threshold / floor,
-                                      selection.floor_words, significant(floor, 4)),
-                          "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or "
-                          "none of the models is the right one"});
-  }
-
-  Settings polish_settings() const {
-    Settings settings(mh::settings());
-    std::int64_t const samples = what_.settings.integer("polish_samples");
-    settings.set("samples", samples);
-    settings.set("burn_in", samples / 5);
-    settings.set("thin", std::max<std::int64_t>(1, samples / 2500));
-    return settings;
-  }
-
-  /// Chains on the exact likelihood, from the modes that the particles lead to.
-  void polish(std::vector<std::vector<Mode>> const& modes, SelectionReport& selection, Findings& findings) {
-    selection.polished.resize(candidates_.size());
-    selection.polished_draws.resize(candidates_.size());
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      SelectedModel const& model = selection.result.models[k];
-      if (model.probability < worth_polishing || modes[k].empty()) continue;
-      auto const target = likelihood_target(k);
-      Ledger extra;
-      RunContext context{seed_, session_.progress, extra, [this] { return session_.interrupted(); }, {}, 60, {}, modes[k], {}};
-      FitResult chains = mh::run(*target, polish_settings(), context);
-      if (chains.failure || chains.interrupted || chains.draws.total() == 0) {
-        findings.push_back({Severity::warning, "not_polished",
-                            fmt::format("`{}` was not polished: {}", model.name,
-                                        chains.failure ? chains.failure->message : std::string("the run was interrupted")),
-                            ""});
-        continue;
-      }
-      selection.polished[k] = summarise(chains);
-      selection.polished_draws[k] = std::move(chains.draws);
-      for (Finding finding : chains.findings) {
-        if (finding.severity == Severity::note) continue;
-        finding.message = fmt::format("polishing `{}`: {}", model.name, finding.message);
-        findings.push_back(std::move(finding));
-      }
-    }
-  }
-
-  // --- checks
-  // -------------------------------------------------------------------------------------------------------------------
-
-  /// Particles of the leading model once more with a finer solver: their distances must not be those of the integrator.
-  void check_solver(SelectionReport const& selection, Findings& findings) const {
-    auto const lead = static_cast<std::size_t>(selection.leader());
-    if (!candidates_[lead].compiled->model.integrated()) return;
-    SelectedModel const& model = selection.result.models[lead];
-    int const count = std::min<int>(100, static_cast<int>(model.distance.size()));
-    ModelSelectionTarget const finer = make_target(true);
-    std::vector<double> distance(static_cast<std::size_t>(count)), shift;
-    std::vector<Simulated> ending(static_cast<std::size_t>(count));
-    SelectionTarget::Batch const batch{static_cast<int>(lead), model.theta.view().columns(0, count), distance, ending};
-    finer.distances({&batch, 1}, std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < distance.size(); ++i) shift.push_back(std::abs(distance[i] - model.distance[i]));
-    std::nth_element(shift.begin(), shift.begin() + count / 2, shift.end());
-    double const median = shift[static_cast<std::size_t>(count / 2)];
-    if (!(median <= tolerable_shift * selection.result.threshold))
-      findings.push_back({Severity::warning, "step_not_settled",
-                          fmt::format("with {} distances move by {:.2g} of the threshold: part of them is the integrator's",
-                                      candidates_[lead].fit->solver.finer_words(), median / selection.result.threshold),
-                          "take a finer solver, `substeps = 4` or `solver = dopri5`"});
   }
 
   // --- the end
@@ -369,7 +211,7 @@ class Select {
   }
 
   ExitCode finish(ModelSelectionTarget const& target, SelectionResult result) {
-    bool const interrupted = result.interrupted;
+    bool interrupted = result.interrupted;
     Candidate const& first = candidates_.front();
     SelectionReport selection;
     selection.result = std::move(result);
@@ -388,19 +230,26 @@ class Select {
                polished = !interrupted && what_.settings.flag("polish");
     std::vector<std::vector<Mode>> modes;
     if (checked || polished) modes = find_modes(selection.result);
-    if (checked) add_likelihoods(modes, selection, report.findings);
+    auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
+    if (checked) add(add_likelihoods(modes, selection));
     if (!interrupted) {
-      add_floor(target, modes, selection, report.findings);
-      check_solver(selection, report.findings);
+      auto const lead = static_cast<std::size_t>(selection.leader());
+      add(add_noise_floor(session_, leading, target.distance(static_cast<int>(lead)),
+                          modes.empty() ? std::vector<Mode>{} : modes[lead], selection));
+      if (leading.compiled->model.integrated())
+        add(check_distances(make_target(true), static_cast<int>(lead), selection.result, leading.fit->solver));
     }
-    if (polished) polish(modes, selection, report.findings);
+    if (polished) {
+      Polish polish = polish_candidates(session_, candidates_, modes, what_.settings.integer("polish_samples"), seed_, selection);
+      add(polish.findings);
+      interrupted = polish.interrupted;
+    }
     if (interrupted)
-      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: this is its last whole population",
+      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: this is what it had by then",
                                  "go on with --resume; it ends with the bytes of an unbroken run"});
     report.findings.push_back({Severity::note, "width_of_threshold",
                                "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
-                               "after an early stop, smaller "
-                               "after a late one",
+                               "after an early stop, smaller after a late one",
                                polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
     if (!interrupted) add_predictions(selection, report);
     report.settings = {{"backend", what_.backend}};

@@ -108,22 +108,27 @@ class Crew {
     return true;
   }
 
+  /// Whether a lane goes on from here: notes its sums, and its ending when it does not.
+  bool goes_on(int lane, bool alive, ConstLanes sums, int column, int sample) {
+    for (int r = 0; r < sums.rows(); ++r) out_(r, lane) = sums(r, column);
+    if (!alive || !finite(sums, column))
+      end(lane, Ending::failed, sample - 1);
+    else if (!wanted_(sums, column, first_ + lane))
+      end(lane, Ending::given_up, -1);
+    else if (sample == end_)
+      end(lane, Ending::finished, -1);
+    else
+      return true;
+    return false;
+  }
+
   /// Which lanes of a block, at places [lane, lane + count) of the crew, stay.
   void look(Block const& block, int sample, int lane, int count, std::vector<std::uint8_t>& stays) {
     LaneArray sums(program_.sum_count(), count);
     read_sums(block, sample, count, sums);
     for (int w = 0; w < count; ++w) {
-      int const mine = at_[static_cast<std::size_t>(lane + w)];
-      for (int r = 0; r < sums.rows(); ++r) out_(r, mine) = sums(r, w);
-      bool const alive = (sample == end_ || finite(block.states(), w)) && finite(sums, w);
-      if (!alive)
-        end(mine, Ending::failed, sample - 1);
-      else if (!wanted_(sums, w, first_ + mine))
-        end(mine, Ending::given_up, -1);
-      else if (sample == end_)
-        end(mine, Ending::finished, -1);
-      else
-        stays[static_cast<std::size_t>(lane + w)] = 1;
+      auto const place = static_cast<std::size_t>(lane + w);
+      stays[place] = goes_on(at_[place], finite(block.states(), w), sums, w, sample) ? 1 : 0;
     }
   }
 
@@ -167,19 +172,8 @@ class Crew {
     LaneArray sums(program_.sum_count(), count);
     read_sums(block, sample, count, sums);
     for (int w = 0; w < count; ++w) {
-      if (running[static_cast<std::size_t>(w)] == 0) continue;
-      int const mine = at_[static_cast<std::size_t>(w)];
-      for (int r = 0; r < sums.rows(); ++r) out_(r, mine) = sums(r, w);
-      bool const alive = block.death()[static_cast<std::size_t>(w)] < 0 && finite(sums, w);
-      running[static_cast<std::size_t>(w)] = 0;
-      if (!alive)
-        end(mine, Ending::failed, sample - 1);
-      else if (!wanted_(sums, w, first_ + mine))
-        end(mine, Ending::given_up, -1);
-      else if (sample == end_)
-        end(mine, Ending::finished, -1);
-      else
-        running[static_cast<std::size_t>(w)] = 1;
+      auto const place = static_cast<std::size_t>(w);
+      if (running[place] != 0) running[place] = goes_on(at_[place], block.death()[place] < 0, sums, w, sample) ? 1 : 0;
     }
   }
 

@@ -1,0 +1,25 @@
+// One candidate of a selection with all that simulates it.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "app/experiments.hpp"
+#include "app/session.hpp"
+#include "likelihood/distance.hpp"
+#include "likelihood/model_target.hpp"
+
+namespace sysid {
+
+struct Candidate {
+  CandidateModel const* what;
+  FitTask const* fit;
+  std::shared_ptr<CompiledModel const> compiled;
+  std::vector<ExperimentData> data;
+  std::shared_ptr<ParameterSpace const> space, simulated;  // of all parameters; of those that a simulation without noise reads
+  DistanceMeasure measure;
+};
+
+/// The candidate as a fit would see it.
+std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate);
+
+}  // namespace sysid

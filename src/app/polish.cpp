@@ -1,0 +1,70 @@
+// One run of `mh` per model that is worth it.
+#include "app/polish.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/fit_target.hpp"
+#include "inference/mh.hpp"
+
+namespace sysid {
+namespace {
+
+/// A model that is less probable is not polished.
+constexpr double worth_polishing = 0.01;
+
+Settings settings_for(std::int64_t samples) {
+  Settings settings(mh::settings());
+  settings.set("samples", samples);
+  settings.set("burn_in", samples / 5);
+  settings.set("thin", std::max<std::int64_t>(1, samples / 2500));
+  return settings;
+}
+
+}  // namespace
+
+std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate) {
+  return make_fit_target(session, *candidate.fit, candidate.compiled, candidate.space, experiments_of(candidate.data),
+                         candidate.fit->solver);
+}
+
+Polish polish_candidates(Session& session, std::vector<Candidate> const& candidates, std::vector<std::vector<Mode>> const& modes,
+                         std::int64_t samples, std::uint64_t seed, SelectionReport& selection) {
+  Polish polish;
+  selection.polished.resize(candidates.size());
+  selection.polished_draws.resize(candidates.size());
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    SelectedModel const& model = selection.result.models[k];
+    if (model.probability < worth_polishing) continue;
+    auto const missed = [&](std::string const& why) {
+      polish.findings.push_back({Severity::warning, "not_polished", fmt::format("`{}` was not polished: {}", model.name, why), ""});
+    };
+    if (modes[k].empty()) {
+      missed("no climb from its particles ends at a finite likelihood");
+      continue;
+    }
+    auto const target = likelihood_target(session, candidates[k]);
+    Ledger extra;
+    RunContext context{seed, session.progress, extra, [&] { return session.interrupted(); }, {}, 60, {}, modes[k], {}};
+    FitResult chains = mh::run(*target, settings_for(samples), context);
+    if (chains.interrupted) {
+      polish.interrupted = true;
+      return polish;
+    }
+    if (chains.failure || chains.draws.total() == 0) {
+      missed(chains.failure ? chains.failure->message : std::string("no draws"));
+      continue;
+    }
+    selection.polished[k] = summarise(chains);
+    selection.polished_draws[k] = std::move(chains.draws);
+    for (Finding finding : chains.findings) {
+      if (finding.severity == Severity::note) continue;
+      finding.message = fmt::format("polishing `{}`: {}", model.name, finding.message);
+      polish.findings.push_back(std::move(finding));
+    }
+  }
+  return polish;
+}
+
+}  // namespace sysid
