@@ -98,6 +98,31 @@ TEST_CASE("a selection interrupted again and again ends with the bytes of an unb
   CHECK(promised_files(options.output) == reference());
 }
 
+TEST_CASE("a selection interrupted while it polishes is not a finished one") {
+  std::string const text = with(shortened(), "target = 2", "target = 2, polish = yes, polish_samples = 2000");
+  auto const run = [&](std::filesystem::path const& folder, std::uint64_t after, bool resume) {
+    RunOptions options;
+    options.output = folder;
+    options.interrupt_after = after;
+    options.resume = resume;
+    int const exit = run_text(model, text, options, {"select"}).exit;
+    clear_interrupt();
+    return exit;
+  };
+  TemporaryFolder whole, folder;
+  std::uint64_t const populations = [] {
+    json const summary = json::parse(reference().at("selection/summary.json"));
+    return summary.at("populations").at("count").get<std::uint64_t>();
+  }();
+  CHECK(run(whole.path() / "results", 0, false) != 75);
+  // The chains poll at every batch of their iterations: hundreds of times more often than populations are made.
+  REQUIRE(run(folder.path() / "results", 100 * populations, false) == 75);
+  json const summary = json::parse(read_file(folder.path() / "results/selection/summary.json"));
+  CHECK(summary.at("populations").at("threshold") == 2);
+  CHECK(run(folder.path() / "results", 0, true) != 75);
+  CHECK(promised_files(folder.path() / "results") == promised_files(whole.path() / "results"));
+}
+
 TEST_CASE("a prediction from stored particles is the one that follows the selection at once") {
   TemporaryFolder folder;
   RunOptions options;

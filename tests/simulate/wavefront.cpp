@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -106,6 +107,23 @@ TEST_CASE("without a bound every lane that stays finite finishes, and those that
     CHECK(all.endings[i] == (outcome[i].ok ? Ending::finished : Ending::failed));
     CHECK((all.failed_at[i] >= 0) == !outcome[i].ok);
   }
+}
+
+TEST_CASE("a state that overflows within the last samples fails its lane, though no sum reads it") {
+  SimulationSource source = squared_residuals("rk4");
+  Graph& g = source.graph;
+  source.initial.push_back(g.constant(1));
+  source.derivative.push_back(g.multiply(g.constant(1920), g.leaf(LeafKind::state, 2)));  // exp(1920 t) overflows at 0.37 of 0.4 s
+  source.records.push_back(g.leaf(LeafKind::state, 2));
+  auto const program = std::make_shared<SimulationProgram const>(compile(source));
+  Simulator const simulator(program, Schedule(*program, record(), {.substeps = 1}));
+  LaneArray theta(5, 1);
+  for (int r = 0; r < 5; ++r) theta(r, 0) = std::array{1.0, 20.0, 1e4, 5e9, 1e8}[static_cast<std::size_t>(r)];
+  LaneArray whole(1, 1);
+  std::vector<Outcome> outcome(1);
+  simulator.sums(theta, whole, outcome);
+  CHECK_FALSE(outcome[0].ok);
+  CHECK(run(simulator, theta, std::numeric_limits<double>::infinity()).endings[0] == Ending::failed);
 }
 
 TEST_CASE("the ending of a lane depends on that lane alone: widths of blocks, threads and neighbours change nothing") {
