@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/reporting.hpp"
+#include "likelihood/simulated_parameters.hpp"
 
 namespace sysid {
 
@@ -40,6 +41,19 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
     prediction.quantities.push_back(std::move(predicted));
   }
   return prediction;
+}
+
+Findings leave_out_noise(Model const& model, Prediction& prediction) {
+  std::vector<std::string> const names = derived_from_noise(model);
+  std::string gone;
+  std::erase_if(prediction.quantities, [&](PredictedQuantity const& each) {
+    bool const reads = each.measured.empty() && std::find(names.begin(), names.end(), each.name) != names.end();
+    if (reads) gone += (gone.empty() ? "`" : ", `") + each.name + "`";
+    return reads;
+  });
+  if (gone.empty()) return {};
+  return {{Severity::note, "reads_noise",
+           fmt::format("{} left out: a selection by distance says nothing about the noise that is read there", gone), ""}};
 }
 
 Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several) {

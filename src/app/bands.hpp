@@ -11,6 +11,9 @@ namespace sysid {
 Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
                        Model const& model);
 
+/// Without what reads a parameter of the noise: particles of a selection have none. Says what went.
+Findings leave_out_noise(Model const& model, Prediction& prediction);
+
 /// One finding per quantity that has no value somewhere along some trajectories that did not fail: its band leaves them out.
 /// failed: how many did, of what is measured and of other quantities (which in a selection are of one model alone). several: the
 /// experiment is named.

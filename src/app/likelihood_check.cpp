@@ -29,26 +29,42 @@ std::vector<int> rows_of(ModelTarget const& target, SelectedModel const& model) 
   return rows;
 }
 
+/// A model without parameters: its likelihood is its evidence.
+std::vector<Mode> only_point(ModelTarget const& target, Ledger& ledger) {
+  double value = 0;
+  target.log_likelihood(LaneArray(0, 1), {&value, 1}, ledger);
+  if (!std::isfinite(value)) return {};
+  Mode mode;
+  mode.log_density = mode.log_mass = value;
+  mode.share = mode.hits = 1;
+  return {mode};
+}
+
 }  // namespace
 
 std::vector<Mode> modes_near(ModelTarget const& target, SelectedModel const& model, std::uint64_t seed, Ledger& ledger) {
-  if (model.distance.empty()) return {};
+  if (target.dimension() == 0) return only_point(target, ledger);
   std::vector<int> order(model.distance.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return model.distance[static_cast<std::size_t>(a)] < model.distance[static_cast<std::size_t>(b)];
   });
   std::vector<int> const rows = rows_of(target, model);
-  int const count = std::min<int>(starts, static_cast<int>(order.size()));
+  int const count = order.empty() ? starts : std::min<int>(starts, static_cast<int>(order.size()));
   LaneArray prior(target.dimension(), count);
   target.sample_prior({seed, Purpose::start, 0, 3}, prior);
   std::vector<Mode> from;
   for (int s = 0; s < count; ++s) {
-    // The nearest first, the others evenly over the nearer half.
-    int const particle = order[static_cast<std::size_t>(s) * (order.size() / 2) / static_cast<std::size_t>(count)];
     Mode start;
-    for (std::size_t p = 0; p < rows.size(); ++p)
-      start.theta.push_back(rows[p] < 0 ? prior(static_cast<int>(p), s) : model.theta(rows[p], particle));
+    for (std::size_t p = 0; p < rows.size(); ++p) {
+      if (rows[p] < 0 || order.empty()) {
+        start.theta.push_back(prior(static_cast<int>(p), s));
+        continue;
+      }
+      // The nearest first, the others evenly over the nearer half.
+      int const particle = order[static_cast<std::size_t>(s) * (order.size() / 2) / static_cast<std::size_t>(count)];
+      start.theta.push_back(model.theta(rows[p], particle));
+    }
     from.push_back(std::move(start));
   }
   std::vector<Mode> found = refit(target, Aim::posterior, from, seed, ledger);
@@ -80,22 +96,24 @@ double log_evidence(std::vector<Mode> const& modes) {
   return highest + elementary::log(sum);
 }
 
-Findings compare_probabilities(SelectionResult const& result, std::vector<double> const& by_likelihood) {
+Findings compare_probabilities(SelectionResult const& result, std::vector<std::optional<double>> const& by_likelihood) {
   std::size_t worst = 0;
   double most = 0;
   for (std::size_t m = 0; m < by_likelihood.size(); ++m) {
-    double const difference = std::abs(result.models[m].probability - by_likelihood[m]);
+    if (!by_likelihood[m]) continue;
+    double const tolerable = result.models[m].died_in > 0 ? tolerable_loss : tolerable_difference;
+    double const difference = std::abs(result.models[m].probability - *by_likelihood[m]) / tolerable;
     if (difference > most) most = difference, worst = m;
   }
-  if (most <= tolerable_difference) return {};
+  if (most <= 1) return {};
   SelectedModel const& model = result.models[worst];
   return {
       {Severity::warning, "probabilities_disagree",
        fmt::format("`{}` has probability {:.2f} by the particles and {:.2f} by the likelihood{}", model.name, model.probability,
-                   by_likelihood[worst],
+                   *by_likelihood[worst],
                    model.died_in > 0 ? fmt::format("; it died in population {}", model.died_in) : std::string()),
-       "the threshold is what the data may differ by: stop at a smaller change, or believe the likelihood where its noise is the "
-       "right one"}};
+       "the threshold is what the data may differ by: stop at a smaller change, take more `particles`, or believe the likelihood "
+       "where its noise is the right one"}};
 }
 
 }  // namespace sysid

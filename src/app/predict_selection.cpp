@@ -120,7 +120,7 @@ class PredictSelection {
         leading = std::move(trajectory);
         report.data.push_back(describe_data(session_.file, data[e], compiled->model));
       } else {
-        append(quantities, *trajectory, result, all);
+        append(quantities, *leading_model, *trajectory, compiled->model, result, all);
       }
     }
     for (std::size_t k = 0; k < counts.size(); ++k)
@@ -133,6 +133,8 @@ class PredictSelection {
                                "the bands are of the response alone: a selection by distance says nothing about the noise", ""});
     all.noisy.resize(leading_model->channels.size());  // none
     report.predictions.push_back(bands_along(*leading, all, experiment, *leading_model));
+    Findings const left_out = leave_out_noise(*leading_model, report.predictions.back());
+    if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
     report.ledger.merge(all.ledger);
     bool const several = what_.candidate_experiments[lead].size() > 1;
     Severity const severity = failure_severity(all.ledger.failed(), all.ledger.solves());
@@ -145,14 +147,22 @@ class PredictSelection {
       report.findings.push_back(std::move(finding));
   }
 
-  /// Channels of another model join by name; what it does not have stays as it is.
-  static void append(std::vector<TrajectoryQuantity> const& quantities, Trajectory const& other, Trajectory::Result const& result,
-                     Trajectory::Result& all) {
+  /// Channels of another model join by name, in the leading model's unit; what it does not have stays as it is.
+  static void append(std::vector<TrajectoryQuantity> const& quantities, Model const& leading, Trajectory const& other,
+                     Model const& other_model, Trajectory::Result const& result, Trajectory::Result& all) {
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       if (quantities[q].channel < 0) continue;
-      for (std::size_t o = 0; o < other.quantities().size(); ++o)
-        if (other.quantities()[o].channel >= 0 && other.quantities()[o].name == quantities[q].name)
-          all.values[q].insert(all.values[q].end(), result.values[o].begin(), result.values[o].end());
+      Channel const& to = leading.channels[static_cast<std::size_t>(quantities[q].channel)];
+      for (std::size_t o = 0; o < other.quantities().size(); ++o) {
+        if (other.quantities()[o].channel < 0 || other.quantities()[o].name != quantities[q].name) continue;
+        Channel const& from = other_model.channels[static_cast<std::size_t>(other.quantities()[o].channel)];
+        bool const same = from.from_si(1) == to.from_si(1) && from.from_si(0) == to.from_si(0);
+        for (std::vector<double> values : result.values[o]) {
+          if (!same)
+            for (double& value : values) value = to.from_si(from.to_si(value));
+          all.values[q].push_back(std::move(values));
+        }
+      }
     }
   }
 

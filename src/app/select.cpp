@@ -103,6 +103,7 @@ class Select {
     measure.kind = rule.kind == DistanceRule::Kind::nmse   ? DistanceKind::nmse
                    : rule.kind == DistanceRule::Kind::rmse ? DistanceKind::rmse
                                                            : DistanceKind::mean;
+    measure.unit = rule.unit;
     for (Channel const& channel : model.channels) {
       auto const found = std::find(rule.channels.begin(), rule.channels.end(), channel.name);
       auto const c = static_cast<std::size_t>(found - rule.channels.begin());
@@ -114,9 +115,33 @@ class Select {
     return measure;
   }
 
+  /// A weight that no sample would carry is refused: the distance would be that of the other channels alone.
+  void refuse_idle_weights() const {
+    Candidate const& first = candidates_.front();
+    for (std::string const& name : what_.distance.weighted) {
+      auto const& channels = first.compiled->model.channels;
+      auto const channel = std::find_if(channels.begin(), channels.end(), [&](Channel const& each) { return each.name == name; });
+      auto const c = static_cast<std::size_t>(channel - channels.begin());
+      bool const sampled = std::any_of(first.data.begin(), first.data.end(), [&](ExperimentData const& each) {
+        std::vector<double> const& measured = each.experiment.measured[c];
+        for (std::size_t i = 0; i < measured.size(); ++i)
+          if (each.experiment.scored[i] != 0 && std::isfinite(measured[i])) return true;
+        return false;
+      });
+      if (!sampled)
+        throw UserError({Severity::error,
+                         "E6517",
+                         fmt::format("channel `{}` has a weight, but no sample in the scored rows", name),
+                         std::nullopt,
+                         {},
+                         "leave its weight out, or score rows in which it is measured"});
+    }
+  }
+
   /// UserError, placed at the task, where the data do not allow the distance.
   ModelSelectionTarget make_target(bool finer) const {
     try {
+      refuse_idle_weights();
       return ModelSelectionTarget(describe_candidates(finer));
     } catch (UserError const& error) {
       Diagnostic placed = error.diagnostic();
@@ -160,10 +185,22 @@ class Select {
   // --- the end
   // --------------------------------------------------------------------------------------------------------------------
 
+  /// Rows of the models that a shared name stands for: itself, or one for each experiment.
+  std::vector<std::string> shared_rows() const {
+    std::vector<std::string> names;
+    for (std::string const& name : set_.shared)
+      for (Candidate const& each : candidates_)
+        for (ParameterInfo const& info : each.simulated->infos())
+          if ((info.name == name || info.name.starts_with(name + "[")) &&
+              std::find(names.begin(), names.end(), info.name) == names.end())
+            names.push_back(info.name);
+    return names;
+  }
+
   /// Parameters that mean the same in all models, over the particles of all of them.
   std::vector<WeightedSummary> shared(SelectionResult const& result) const {
     std::vector<WeightedSummary> summaries;
-    for (std::string const& name : set_.shared) {
+    for (std::string const& name : shared_rows()) {
       std::vector<double> values, weights;
       std::string unit;
       double total = 0;
@@ -200,6 +237,8 @@ class Select {
       if (candidate.space->dimension() != candidate.simulated->dimension())
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
       report.predictions.push_back(bands_along(trajectory, result, experiment, candidate.compiled->model));
+      Findings left_out = leave_out_noise(candidate.compiled->model, report.predictions.back());
+      if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
         report.findings.push_back(std::move(finding));
     }
@@ -231,13 +270,11 @@ class Select {
     std::vector<std::vector<Mode>> modes;
     if (checked || polished) modes = find_modes(selection.result);
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
-    if (checked) add(add_likelihoods(modes, selection));
+    if (checked) add_likelihoods(candidates_, modes, selection, report.findings);
     if (!interrupted) {
-      auto const lead = static_cast<std::size_t>(selection.leader());
-      add(add_noise_floor(session_, leading, target.distance(static_cast<int>(lead)),
-                          modes.empty() ? std::vector<Mode>{} : modes[lead], selection));
-      if (leading.compiled->model.integrated())
-        add(check_distances(make_target(true), static_cast<int>(lead), selection.result, leading.fit->solver));
+      add(add_noise_floor(session_, candidates_, target, modes, selection));
+      if (leading.compiled->model.integrated() && std::isfinite(selection.result.threshold))
+        add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver));
     }
     if (polished) {
       Polish polish = polish_candidates(session_, candidates_, modes, what_.settings.integer("polish_samples"), seed_, selection);
@@ -247,6 +284,8 @@ class Select {
     if (interrupted)
       report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: this is what it had by then",
                                  "go on with --resume; it ends with the bytes of an unbroken run"});
+    else if (!selection.result.ran_out)
+      report.findings.push_back({Severity::note, "selection_ended", selection.result.stopped_by, ""});
     report.findings.push_back({Severity::note, "width_of_threshold",
                                "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
                                "after an early stop, smaller after a late one",
@@ -283,8 +322,10 @@ class Select {
   static std::string headline(SelectionReport const& selection, Findings const& findings) {
     SelectedModel const& best = selection.result.models[static_cast<std::size_t>(selection.leader())];
     std::string const floor = selection.floor ? fmt::format(", noise floor {}", significant(*selection.floor, 4)) : "";
-    return fmt::format("`{}` has probability {:.3f} at threshold {}{}; {}", best.name, best.probability,
-                       significant(selection.result.threshold, 4), floor,
+    std::string const at = std::isfinite(selection.result.threshold)
+                               ? fmt::format("threshold {}{}", significant(selection.result.threshold, 4), floor)
+                               : "no threshold: these are draws of the priors";
+    return fmt::format("`{}` has probability {:.3f} at {}; {}", best.name, best.probability, at,
                        judge(findings).text.substr(0, judge(findings).text.find('\n')));
   }
 

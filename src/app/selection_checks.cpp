@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "app/fit_target.hpp"
 #include "app/likelihood_check.hpp"
@@ -22,73 +23,124 @@ constexpr double far_above_floor = 1.15;
 /// A finer solver may move the median distance by this part of the threshold.
 constexpr double tolerable_shift = 0.05;
 
-}  // namespace
-
-Findings add_likelihoods(std::vector<std::vector<Mode>> const& modes, SelectionReport& selection) {
-  std::vector<double> logs, probabilities;
-  double highest = -std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < modes.size(); ++k) {
-    logs.push_back(log_evidence(modes[k]));
-    highest = std::max(highest, logs[k] + elementary::log(selection.result.models[k].prior));
+/// What a density of one candidate's declared units gains in those of the first candidate: the logarithm of the ratio of units, for
+/// every sample.
+double unit_term(Candidate const& candidate, Candidate const& first) {
+  double term = 0;
+  for (Channel const& channel : candidate.compiled->model.channels) {
+    auto const& others = first.compiled->model.channels;
+    auto const same = std::find_if(others.begin(), others.end(), [&](Channel const& each) { return each.name == channel.name; });
+    if (same == others.end() || !channel.unit || !same->unit || channel.unit->scale == same->unit->scale) continue;
+    auto const c = static_cast<std::size_t>(&channel - candidate.compiled->model.channels.data());
+    double samples = 0;
+    for (ExperimentData const& each : candidate.data)
+      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
+        samples += each.experiment.scored[i] != 0 && std::isfinite(each.experiment.measured[c][i]) ? 1 : 0;
+    term += samples * elementary::log(same->unit->scale / channel.unit->scale);
   }
-  if (!std::isfinite(highest)) return {};
-  double total = 0;
-  for (std::size_t k = 0; k < logs.size(); ++k) {
-    probabilities.push_back(elementary::exp(logs[k] + elementary::log(selection.result.models[k].prior) - highest));
-    total += probabilities.back();
-  }
-  for (std::size_t k = 0; k < logs.size(); ++k) {
-    probabilities[k] /= total;
-    selection.likelihoods[k] = LikelihoodCheck{logs[k], probabilities[k]};
-  }
-  return compare_probabilities(selection.result, probabilities);
+  return term;
 }
 
-Findings add_noise_floor(Session const& session, Candidate const& leading, Distance const& distance, std::vector<Mode> const& modes,
-                         SelectionReport& selection) {
-  Model const& model = leading.compiled->model;
-  bool const stated = leading.space->dimension() == leading.simulated->dimension();
-  LaneArray declared(leading.space->dimension(), 1);
-  if (stated) {
-    SelectedModel const& best = selection.result.models[static_cast<std::size_t>(selection.leader())];
-    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = best.summaries[static_cast<std::size_t>(d)].mean;
-  } else {
-    if (modes.empty()) return {};
-    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = modes.front().declared[static_cast<std::size_t>(d)];
-  }
-  std::vector<double> variance(model.channels.size());
-  std::string words;
+/// What noise leaves of a candidate's distance at one of its parameter vectors (declared); nothing but for normal noise.
+struct Floor {
+  double distance;
+  std::string noise;  // "sd 1.2e-6 [m] in displacement"
+};
+
+std::optional<Floor> floor_at(Session const& session, Candidate const& candidate, Distance const& distance, ConstLanes declared) {
+  Model const& model = candidate.compiled->model;
+  Floor floor;
+  std::vector<double> sd(model.channels.size());
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
-    if (leading.measure.weights[c] == 0) continue;
-    if (model.channels[c].noise.row->name != "normal") return {};
+    Channel const& channel = model.channels[c];
+    if (candidate.measure.weights[c] == 0) continue;
+    if (channel.noise.row->name != "normal") return std::nullopt;
     double sum = 0, count = 0;
-    for (std::size_t e = 0; e < leading.data.size(); ++e) {
-      Experiment const& experiment = leading.data[e].experiment;
+    for (std::size_t e = 0; e < candidate.data.size(); ++e) {
+      Experiment const& experiment = candidate.data[e].experiment;
       LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
-      leading.space->select(leading.space->values_of_declared(declared), static_cast<int>(e), parameters);
-      Trajectory const trajectory(leading.compiled, experiment, leading.fit->solver, start_rows(leading.fit->start),
+      candidate.space->select(candidate.space->values_of_declared(declared), static_cast<int>(e), parameters);
+      Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
                                   session.options.execution);
       auto const arguments = trajectory.noise_arguments(parameters, static_cast<int>(c));
       for (std::size_t i = 0; i < arguments.size(); ++i)
         if (experiment.scored[i] != 0 && !experiment.measured[c].empty() && std::isfinite(experiment.measured[c][i]))
           sum += arguments[i][1] * arguments[i][1], count += 1;
     }
-    variance[c] = count > 0 ? sum / count : 0;
-    words +=
-        fmt::format("{}sd {}{} in {}", words.empty() ? "" : ", ", significant(model.channels[c].from_si(std::sqrt(variance[c])), 3),
-                    model.channels[c].unit ? " [" + model.channels[c].unit_text() + "]" : "", model.channels[c].name);
+    sd[c] = count > 0 ? std::sqrt(sum / count) : 0;
+    floor.noise += fmt::format("{}sd {}{} in {}", floor.noise.empty() ? "" : ", ", significant(channel.from_si(sd[c]), 3),
+                               channel.unit ? " [" + channel.unit_text() + "]" : "", channel.name);
   }
-  std::vector<double> sd;
-  for (double const v : variance) sd.push_back(std::sqrt(v));
-  double const floor = distance.floor(sd);
-  if (!std::isfinite(floor)) return {};
-  selection.floor = floor;
-  selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", words);
-  if (selection.result.threshold <= far_above_floor * floor) return {};
+  floor.distance = distance.floor(sd);
+  return std::isfinite(floor.distance) ? std::optional(floor) : std::nullopt;
+}
+
+/// A death that the likelihood confirms was none of chance.
+void confirm_deaths(SelectionReport& selection, Findings& findings) {
+  for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
+    SelectedModel& model = selection.result.models[m];
+    auto const& by_likelihood = selection.likelihoods[m];
+    if (!model.by_chance || !by_likelihood || by_likelihood->probability > tolerable_loss) continue;
+    model.by_chance = false;
+    std::erase_if(findings, [&](Finding const& each) {
+      return each.code == "model_lost_by_chance" && each.message.starts_with("`" + model.name + "`");
+    });
+  }
+}
+
+}  // namespace
+
+void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<std::vector<Mode>> const& modes,
+                     SelectionReport& selection, Findings& findings) {
+  std::vector<double> logs;
+  double highest = -std::numeric_limits<double>::infinity(), total = 0;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    logs.push_back(log_evidence(modes[k]) + unit_term(candidates[k], candidates.front()));
+    highest = std::max(highest, logs[k] + elementary::log(selection.result.models[k].prior));
+  }
+  if (!std::isfinite(highest)) return;
+  std::vector<std::optional<double>> probabilities(logs.size());
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    if (!std::isfinite(logs[k])) continue;  // nothing was found, which says nothing
+    probabilities[k] = elementary::exp(logs[k] + elementary::log(selection.result.models[k].prior) - highest);
+    total += *probabilities[k];
+  }
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    if (!probabilities[k]) continue;
+    *probabilities[k] /= total;
+    selection.likelihoods[k] = LikelihoodCheck{logs[k], *probabilities[k]};
+  }
+  confirm_deaths(selection, findings);
+  for (Finding& finding : compare_probabilities(selection.result, probabilities)) findings.push_back(std::move(finding));
+}
+
+Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
+                         std::vector<std::vector<Mode>> const& modes, SelectionReport& selection) {
+  auto const lead = static_cast<std::size_t>(selection.leader());
+  bool const stated = candidates[lead].space->dimension() == candidates[lead].simulated->dimension();
+  std::optional<Floor> lowest;
+  if (stated) {
+    SelectedModel const& best = selection.result.models[lead];
+    LaneArray declared(candidates[lead].space->dimension(), 1);
+    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = best.summaries[static_cast<std::size_t>(d)].mean;
+    lowest = floor_at(session, candidates[lead], target.distance(static_cast<int>(lead)), declared);
+  }
+  // A model that cannot follow the data takes its misfit for noise: the one that needs the least is nearest to the truth.
+  for (std::size_t k = 0; !stated && k < modes.size(); ++k) {
+    if (modes[k].empty()) continue;
+    LaneArray declared(candidates[k].space->dimension(), 1);
+    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = modes[k].front().declared[static_cast<std::size_t>(d)];
+    auto const floor = floor_at(session, candidates[k], target.distance(static_cast<int>(k)), declared);
+    if (floor && (!lowest || floor->distance < lowest->distance)) lowest = floor;
+  }
+  if (!lowest) return {};
+  selection.floor = lowest->distance;
+  selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", lowest->noise);
+  double const threshold = selection.result.threshold;
+  if (!std::isfinite(threshold) || threshold <= far_above_floor * lowest->distance) return {};
   return {{Severity::warning, "threshold_above_noise",
-           fmt::format("the final threshold {} is {:.1f} times what {} leaves of the distance, {}",
-                       significant(selection.result.threshold, 4), selection.result.threshold / floor, selection.floor_words,
-                       significant(floor, 4)),
+           fmt::format("the final threshold {} is {} times what {} leaves of the distance, {}", significant(threshold, 4),
+                       significant(threshold / lowest->distance, 2), selection.floor_words, significant(lowest->distance, 4)),
            "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or "
            "none of the models is the right one"}};
 }

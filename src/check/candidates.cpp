@@ -56,7 +56,9 @@ bool same_prior(Use const& one, Use const& other) {
 }
 
 bool same_unit(Parameter const& a, Parameter const& b) {
-  return a.unit.has_value() == b.unit.has_value() && (!a.unit || a.unit->dimension == b.unit->dimension);
+  return a.unit.has_value() == b.unit.has_value() &&
+         (!a.unit ||
+          (a.unit->dimension == b.unit->dimension && a.unit->scale == b.unit->scale && a.unit->offset == b.unit->offset));
 }
 
 class CandidatesChecker {

@@ -141,8 +141,10 @@ struct DistanceRule {
   Kind kind = Kind::nmse;
   std::vector<std::string> channels;             // that the data measure, in the order of the first candidate's declarations
   std::vector<double> weights;                   // per channel, not negative, not all 0
+  double unit = 1;                               // rmse: its unit in SI, that of the first candidate's first channel with a weight
   std::vector<std::vector<NodeId>> expressions;  // [candidate][channel] in the graph of the candidate's model, SI; else empty
   std::string text;                              // as written
+  std::vector<std::string> weighted;             // channels whose weight is stated
 };
 
 /// The selection of a model among candidates.

@@ -72,7 +72,10 @@ class DistanceChecker {
         diagnostics_.add(errors::stated_twice(argument.span, place->second, "`" + argument.name->text + "`"));
         continue;
       }
-      if (auto const value = reader_.number(argument.value, argument.name->text, Unit{}, 0, 1e300)) rule_.weights[k] = *value;
+      if (auto const value = reader_.number(argument.value, argument.name->text, Unit{}, 0, 1e300)) {
+        rule_.weights[k] = *value;
+        if (*value > 0) rule_.weighted.push_back(rule_.channels[k]);
+      }
     }
     if (std::all_of(rule_.weights.begin(), rule_.weights.end(), [](double weight) { return weight == 0; }))
       diagnostics_.add(errors::no_weight(options_.weights->span));
@@ -110,7 +113,10 @@ class DistanceChecker {
     Channel const* first = nullptr;
     for (std::size_t k = 0; k < rule_.channels.size(); ++k) {
       if (rule_.weights[k] == 0 || !channel(k).unit) continue;
-      if (first == nullptr) first = &channel(k);
+      if (first == nullptr) {
+        first = &channel(k);
+        rule_.unit = first->unit->scale;
+      }
       if (channel(k).unit->dimension != first->unit->dimension) {
         diagnostics_.add(
             errors::distances_of_two_kinds(options_.distance->span, first->name, *first->unit, channel(k).name, *channel(k).unit));

@@ -17,7 +17,7 @@ struct Failure {
   FailureClass kind = FailureClass::non_finite;
   std::string where;  // the sub-expression in the user's words, e.g. "k3*y^3 at duffing.sysid:12"
   std::uint64_t count = 0;
-  double time = 0;              // of the first example [s]
+  double time = 0;              // of the first example [s]; NaN: not looked into
   std::vector<double> example;  // its parameters, declared units, in the order of Target::names
 };
 

@@ -18,7 +18,7 @@ struct PopulationRecord {
   int accepted = 0;
   double ess = 0;  // 1 / sum w^2
   struct OfModel {
-    std::uint64_t proposed = 0;
+    std::uint64_t proposed = 0, failed = 0;
     int particles = 0;
     double probability = 0;  // sum of weights
     double nearest = 0;      // smallest distance; infinite without particles
@@ -52,6 +52,7 @@ struct SelectionResult {
   double threshold = 0;       // that all particles satisfy
   double next_threshold = 0;  // that another population would have had
   std::string stopped_by;     // in words
+  bool ran_out = false;       // a budget ended it, not its own rule
   Settings settings;
   Findings findings;
   bool interrupted = false;

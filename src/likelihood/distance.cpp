@@ -69,12 +69,11 @@ Distance::Distance(Model const& model, DistanceMeasure const& measure, std::span
                        std::nullopt,
                        {},
                        "score rows in which it moves, or take `distance = rmse`"});
-    double const unit = model.channels[c].unit ? model.channels[c].unit->scale : 1;
     weight_.push_back(weight);
     count_.push_back(count);
     scale_.push_back(weight == 0                   ? 0
                      : kind_ == DistanceKind::nmse ? 100 / spread
-                     : kind_ == DistanceKind::rmse ? 1 / (count * unit * unit)
+                     : kind_ == DistanceKind::rmse ? 1 / (count * measure.unit * measure.unit)
                                                    : 1.0 / count);
     total += weight;
   }

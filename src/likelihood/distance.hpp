@@ -12,7 +12,7 @@ namespace sysid {
 /// Per channel over the scored, present samples of all experiments, y* the simulation without noise:
 ///
 ///   nmse: 100 / (N var y) sum (y - y*)^2                                                            the tutorial's (8.18)
-///   rmse: sqrt(sum (y - y*)^2 / N), in the channel's declared unit
+///   rmse: sqrt(sum (y - y*)^2 / N), in one unit for all channels of all models
 ///   mean: sum e / N of an expression e >= 0 of the sample and its simulation
 ///
 /// var y is the population variance of the measured samples of an experiment (mean removed); over several experiments the channel's
@@ -22,6 +22,7 @@ enum class DistanceKind { nmse, rmse, mean };
 struct DistanceMeasure {
   DistanceKind kind = DistanceKind::nmse;
   std::vector<double> weights;                     // per channel of the model, >= 0, not all 0
+  double unit = 1;                                 // rmse: its unit in SI
   std::vector<std::optional<NodeId>> expressions;  // `mean`: per channel with a weight, of the model's graph, SI; else empty
 };
 

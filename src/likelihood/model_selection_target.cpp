@@ -2,6 +2,7 @@
 #include "likelihood/model_selection_target.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "likelihood/start_state.hpp"
@@ -121,8 +122,10 @@ void ModelSelectionTarget::distances(std::span<Batch const> batches, double boun
     for (int const lane : running[b].lanes) {
       std::vector<double> sums;
       for (int c = 0; c < running[b].sums.rows(); ++c) sums.push_back(running[b].sums(c, lane));
-      batches[b].distance[static_cast<std::size_t>(lane)] = distance(sums);
-      batches[b].ending[static_cast<std::size_t>(lane)] = Simulated::within;
+      double const far = distance(sums);
+      // Sums may be finite and what is made of them not.
+      batches[b].distance[static_cast<std::size_t>(lane)] = std::isfinite(far) ? far : infinity;
+      batches[b].ending[static_cast<std::size_t>(lane)] = std::isfinite(far) ? Simulated::within : Simulated::failed;
     }
   }
 }

@@ -5,15 +5,10 @@
 
 namespace sysid {
 
-std::vector<bool> simulated_parameters(Model const& model) {
-  Graph graph = model.graph;
-  std::vector<NodeId> roots;
-  for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
-  roots.insert(roots.end(), model.memories.begin(), model.memories.end());
-  roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());
-  for (Unknown const& unknown : model.unknowns) roots.push_back(unknown.guess);
-  for (Channel const& channel : model.channels) roots.push_back(channel.noise.row->centre(graph, channel.noise.arguments));
+namespace {
 
+/// Parameters below the roots, and those below the values and priors of parameters that are.
+std::vector<bool> parameters_below(Model const& model, Graph const& graph, std::vector<NodeId> const& roots) {
   std::vector<bool> read(model.parameters.size());
   std::vector<int> fresh;
   auto const look = [&](std::vector<NodeId> const& below) {
@@ -39,6 +34,33 @@ std::vector<bool> simulated_parameters(Model const& model) {
     look(below);
   }
   return read;
+}
+
+}  // namespace
+
+std::vector<bool> simulated_parameters(Model const& model) {
+  Graph graph = model.graph;
+  std::vector<NodeId> roots;
+  for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
+  roots.insert(roots.end(), model.memories.begin(), model.memories.end());
+  roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());
+  for (Unknown const& unknown : model.unknowns) roots.push_back(unknown.guess);
+  for (Channel const& channel : model.channels) roots.push_back(channel.noise.row->centre(graph, channel.noise.arguments));
+  return parameters_below(model, graph, roots);
+}
+
+std::vector<std::string> derived_from_noise(Model const& model) {
+  std::vector<bool> const simulated = simulated_parameters(model);
+  std::vector<std::string> names;
+  for (Derived const& derived : model.derived) {
+    std::vector<bool> const read = parameters_below(model, model.graph, {derived.value});
+    for (std::size_t p = 0; p < read.size(); ++p)
+      if (read[p] && !simulated[p] && model.parameters[p].prior) {
+        names.push_back(derived.name);
+        break;
+      }
+  }
+  return names;
 }
 
 Model without_noise_parameters(Model model) {

@@ -1,5 +1,6 @@
 // Which parameters a simulation without noise reads: the others are those of the noise.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "model/model.hpp"
@@ -8,6 +9,9 @@ namespace sysid {
 
 /// Per parameter: whether states, their starts or the centre of a channel depend on it, or the prior of one that they depend on.
 std::vector<bool> simulated_parameters(Model const& model);
+
+/// Derived quantities that depend on a parameter that a simulation without noise does not read: it cannot say them.
+std::vector<std::string> derived_from_noise(Model const& model);
 
 /// The model with a value (1, which nothing reads) in place of the prior of every other parameter: its priors are those of a
 /// simulation without noise.

@@ -153,7 +153,7 @@ std::vector<Figure> figures(Report const& report) {
         out.push_back(fit_figure(prediction, quantity));
   if (report.selection) {
     Report const leading = leading_model(report);
-    if (leading.draws.total() > 1) out.push_back(posterior_figure(leading));
+    if (leading.draws.total() > 1 && !leading.draws.names.empty()) out.push_back(posterior_figure(leading));
     if (leading.draws.total() > 1 && leading.draws.names.size() > 1) out.push_back(pair_figure(leading.draws));
   }
   bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "report/figures.hpp"
 #include "report/selection.hpp"
@@ -26,12 +27,16 @@ Figure population_figure(SelectionReport const& selection) {
   Axis x = axis(1, std::max<double>(2, static_cast<double>(populations.size())), 10);
   std::erase_if(x.ticks, [](auto const& tick) { return tick.first != std::floor(tick.first); });
   std::vector<std::vector<double>> rows, thresholds;
-  double low = selection.floor.value_or(selection.result.threshold), high = low;
+  // What has a place on a logarithmic scale: not the first population without a threshold, nor a distance of nothing.
+  auto const shown = [](double distance) { return std::isfinite(distance) && distance > 0; };
+  bool const floor = selection.floor && shown(*selection.floor);
+  double low = floor ? *selection.floor : std::numeric_limits<double>::infinity(), high = floor ? low : 0;
   for (PopulationRecord const& each : populations) {
-    if (!std::isfinite(each.threshold)) continue;
+    if (!shown(each.threshold)) continue;
     low = std::min(low, each.threshold);
     high = std::max(high, each.threshold);
   }
+  if (high == 0) low = high = 1;
   // Decades in the scale of the exponent itself: the axis needs no logarithms.
   Axis y = axis(std::log10(low), std::log10(std::max(high, 1.01 * low)), 4, 0.06);
   y.ticks.clear();
@@ -44,7 +49,7 @@ Figure population_figure(SelectionReport const& selection) {
   for (std::size_t t = 0; t < populations.size(); ++t) {
     rows.push_back({x.scaled(static_cast<double>(t + 1))});
     for (auto const& model : populations[t].models) rows.back().push_back(model.particles == 0 ? std::nan("") : model.probability);
-    if (std::isfinite(populations[t].threshold))
+    if (shown(populations[t].threshold))
       thresholds.push_back({x.scaled(static_cast<double>(t + 1)), std::log10(populations[t].threshold)});
   }
   out.script += data_block("probability", rows);
@@ -69,10 +74,10 @@ Figure population_figure(SelectionReport const& selection) {
   below.y_label = "threshold";
   out.script += panel(below, width, height);
   out.script += "plot ";
-  if (selection.floor) out.script += fmt::format("{} with lines lw 1.2 dt 2 lc rgb '{}', ", std::log10(*selection.floor), contrast);
+  if (floor) out.script += fmt::format("{} with lines lw 1.2 dt 2 lc rgb '{}', ", std::log10(*selection.floor), contrast);
   out.script += fmt::format("$threshold using 1:2 with linespoints lw 1.6 pt 7 ps 0.4 lc rgb '{}'\n", model);
   out.script += "unset multiplot\n";
-  if (selection.floor) out.caption += " Dashed: the noise floor.";
+  if (floor) out.caption += " Dashed: the noise floor.";
   return out;
 }
 

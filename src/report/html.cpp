@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "report/gnuplot.hpp"
 #include "report/html_style.hpp"
@@ -196,8 +197,8 @@ std::string ledger_section(Ledger const& ledger) {
   if (ledger.failures().empty()) return out;
   std::vector<std::vector<std::string>> rows;
   for (Failure const& failure : ledger.failures())
-    rows.push_back(
-        {escape(name(failure.kind)), escape(failure.where), std::to_string(failure.count), significant(failure.time, 4)});
+    rows.push_back({escape(name(failure.kind)), escape(failure.where), std::to_string(failure.count),
+                    std::isnan(failure.time) ? "" : significant(failure.time, 4)});
   return out + table({"class", "where", "count", "first at t [s]"}, rows, 2);
 }
 

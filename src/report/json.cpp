@@ -1,6 +1,7 @@
 // JSON by nlohmann's ordered objects: order of insertion, round-trip decimals.
 #include "report/json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace sysid {
@@ -50,7 +51,7 @@ Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
     failures.push_back({{"class", name(failure.kind)},
                         {"where", failure.where},
                         {"count", failure.count},
-                        {"time", failure.time},
+                        {"time", std::isnan(failure.time) ? Json(nullptr) : Json(failure.time)},
                         {"example", named_values(failure.example, names)}});
   return {{"solves", ledger.solves()}, {"failed", ledger.failed()}, {"failures", failures}};
 }

@@ -17,7 +17,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string probability_text(double p) { return p == 0 || p == 1 ? fmt::format("{}", p) : fmt::format("{:.3f}", p); }
+/// Three decimals; more where they would read as certain.
+std::string probability_text(double p) {
+  if (p == 0 || p == 1) return fmt::format("{}", p);
+  if (p < 0.0005) return fmt::format("{:.1g}", p);
+  return p > 0.9995 ? "> 0.999" : fmt::format("{:.3f}", p);
+}
 
 /// For the digits of a table: chance is what resampling the particles would move the mean by.
 Summary as_summary(WeightedSummary const& s, double ess) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "inference/verdict.hpp"
 #include "report/number.hpp"
@@ -54,8 +55,9 @@ std::string ledger_text(Report const& report) {
   if (ledger.solves() == 0 && ledger.failed() == 0) return "";
   std::string out = fmt::format("{} simulations, {} failed\n", ledger.solves(), ledger.failed());
   for (Failure const& failure : ledger.failures())
-    out += fmt::format("  {} x {}: {} (first at t = {} {})\n", failure.count, name(failure.kind), failure.where,
-                       significant(failure.time / scale, 4), unit);
+    out += fmt::format(
+        "  {} x {}: {}{}\n", failure.count, name(failure.kind), failure.where,
+        std::isnan(failure.time) ? "" : fmt::format(" (first at t = {} {})", significant(failure.time / scale, 4), unit));
   return out;
 }
 

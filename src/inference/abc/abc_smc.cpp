@@ -20,6 +20,7 @@ using json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Proposals of one batch: enough to fill lanes and threads, few enough that the last batch of a population wastes little.
 constexpr int least_batch = 256, most_batch = 8192;
@@ -33,8 +34,14 @@ constexpr int width_draws = 1000;
 /// Accepted particles expected of a model above which none at all is no chance: e^-3 is 5 %.
 constexpr double surprising = 3;
 
-/// A population that finds nothing in so many simulations will not find enough.
+/// A model that had fewer particles than these was proposed from places that need not be its best.
+constexpr int few_particles = 10;
+
+/// A population that finds nothing in so many proposals will not find enough.
 constexpr std::uint64_t patience = 1'000'000;
+
+/// Proposals outside of the prior's support cost no simulation, and yet must end.
+constexpr double proposals_per_simulation = 100;
 
 json identity(SelectionTarget const& candidates, Settings const& settings, std::uint64_t seed) {
   json values = json::object(), models = json::array();
@@ -72,7 +79,7 @@ class Run {
   bool populate() {
     Proposals const proposals(candidates_, plan_, context_.seed, last_);
     context_.progress.begin(fmt::format("population {}", next_.number), static_cast<std::uint64_t>(plan_.particles));
-    bool full = false;
+    bool full = record_.accepted >= plan_.particles;
     while (!full) {
       if (context_.stop_requested()) {
         result_.interrupted = true;
@@ -80,15 +87,13 @@ class Run {
       }
       if (out_of_budget()) break;
       propose(proposals);
-      full = next_.accepted() >= plan_.particles;
+      full = record_.accepted >= plan_.particles;
       context_.progress.advance(static_cast<std::uint64_t>(next_.accepted()),
                                 fmt::format("threshold {:.4g}, acceptance {:.2g}", next_.threshold, acceptance()));
       save_sometimes();
     }
     context_.progress.end();
-    if (!full) return false;
-    weigh(proposals);
-    return true;
+    return full && weigh(proposals);
   }
 
   /// How many proposals to make at once: what the rest of the population is expected to need.
@@ -138,6 +143,7 @@ class Run {
       context_.ledger.add_solves(1);
       if (ending[m][lane] == Simulated::failed) {
         ++record_.failed;
+        ++record_.models[m].failed;
         note_failure(static_cast<int>(m), theta[m].view().columns(static_cast<int>(lane), 1));
       }
       if (ending[m][lane] != Simulated::within) continue;
@@ -156,21 +162,24 @@ class Run {
       context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", where, candidates_.name(model)), time,
                                   std::move(example));
     } else {
-      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`, not looked into", candidates_.name(model)), 0,
-                                  std::move(example));
+      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`, not looked into", candidates_.name(model)),
+                                  not_a_number, std::move(example));
     }
   }
 
-  void weigh(Proposals const& proposals) {
+  /// False when the run is interrupted before all weights are known: N particles cost N^2.
+  bool weigh(Proposals const& proposals) {
     std::vector<std::vector<double>> logs;
     double highest = -infinity;
+    auto const stop = [&] { return result_.interrupted = result_.interrupted || context_.stop_requested(); };
     for (std::size_t m = 0; m < next_.models.size(); ++m) {
       Particles const& particles = next_.models[m];
       LaneArray const x = particles.lanes(candidates_.dimension(static_cast<int>(m)));
       // Drawn from the prior, all weigh the same.
       logs.push_back(last_.number == 0 || particles.count() == 0
                          ? std::vector<double>(particles.distance.size(), 0.0)
-                         : proposals.log_weights(static_cast<int>(m), x, particles.log_prior));
+                         : proposals.log_weights(static_cast<int>(m), x, particles.log_prior, stop));
+      if (result_.interrupted) return false;
       for (double const log : logs.back()) highest = std::max(highest, log);
     }
     double total = 0;
@@ -178,13 +187,17 @@ class Run {
       for (std::size_t j = 0; j < logs[m].size(); ++j) total += next_.models[m].weight[j] = elementary::exp(logs[m][j] - highest);
     for (Particles& particles : next_.models)
       for (double& w : particles.weight) w /= total;
+    return true;
   }
 
-  /// Whether a model without particles may yet be as near as the others: some of its last particles are within the new threshold, or
-  /// it had so few proposals that at the others' acceptance rate none would be no surprise.
+  /// Whether a model without particles may yet be as near as the others: it had so few proposals that at the others' acceptance
+  /// rate none would be no surprise, or its last particles were too few to move it, or some of them are within the new threshold.
   bool may_be_chance(std::size_t m) const {
-    std::vector<double> const& before = last_.models[m].distance;
-    if (*std::min_element(before.begin(), before.end()) <= next_.threshold) return true;
+    if (last_.number > 0) {
+      std::vector<double> const& before = last_.models[m].distance;
+      if (static_cast<int>(before.size()) < few_particles) return true;
+      if (*std::min_element(before.begin(), before.end()) <= next_.threshold) return true;
+    }
     std::uint64_t const own = record_.models[m].proposed, others = record_.proposed - own;
     return static_cast<double>(own) * record_.accepted < surprising * static_cast<double>(others);
   }
@@ -197,16 +210,17 @@ class Run {
       Particles const& particles = next_.models[m];
       auto& record = record_.models[m];
       record.particles = particles.count();
-      record.probability = particles.weight_sum();
+      double const sum = particles.weight_sum();
+      record.probability = std::abs(sum - 1) < 1e-12 ? 1 : sum;  // all of it, but for rounding
       record.nearest = particles.count() == 0 ? infinity : *std::min_element(particles.distance.begin(), particles.distance.end());
       std::vector<double> within = particles.weight;
-      for (double& w : within) w /= record.probability;
+      for (double& w : within) w /= sum;
       next_.widths[m] = width_of(particles.lanes(candidates_.dimension(static_cast<int>(m))), within, last_.widths[m]);
       SelectedModel& model = result_.models[m];
       bool const lived = last_.number == 0 || last_.models[m].count() > 0;
       if (lived && particles.count() == 0) {
         model.died_in = next_.number;
-        model.by_chance = last_.number > 0 && may_be_chance(m);
+        model.by_chance = may_be_chance(m);
         if (last_.number > 0) departed_[m] = last_.models[m];
       }
     }
@@ -259,7 +273,7 @@ class Run {
     }
     if (last_acceptance_ < plan_.acceptance)
       return stop(fmt::format("{:.2g} of the proposals were accepted, less than {}", last_acceptance_, plan_.acceptance));
-    if (last_.number >= plan_.populations) return stop(fmt::format("{} populations were allowed", plan_.populations));
+    if (last_.number >= plan_.populations) return stop(fmt::format("`populations = {}` is reached", plan_.populations));
     return false;
   }
 
@@ -270,13 +284,26 @@ class Run {
 
   /// Whether a budget ends the run within a population.
   bool out_of_budget() {
+    auto const proposed = static_cast<double>(record_.proposed);
     if (simulations_ + record_.simulated >= plan_.simulations)
-      return stop(fmt::format("{} simulations were allowed", plan_.simulations));
+      return spent(fmt::format("`simulations = {}` are spent", plan_.simulations));
+    if (proposed >= proposals_per_simulation * static_cast<double>(plan_.simulations))
+      return spent(fmt::format("{} proposals, most of them outside of the priors, had not filled population {}", record_.proposed,
+                               next_.number));
     if (plan_.wall_time > 0 && std::chrono::duration<double>(Clock::now() - began_).count() > plan_.wall_time)
-      return stop(fmt::format("{} s were allowed", plan_.wall_time));
+      return spent(fmt::format("`wall_time = {}` is over", plan_.wall_time));
     if (record_.accepted == 0 && record_.proposed >= patience)
-      return stop(fmt::format("population {} accepted none of {} proposals", next_.number, record_.proposed));
+      return spent(fmt::format("population {} accepted none of {} proposals", next_.number, record_.proposed));
+    // So many proposals fill a population at that rate, and this one is not full.
+    if (plan_.acceptance * proposed >= plan_.particles)
+      return stop(fmt::format("fewer than {} of the proposals of population {} were accepted", plan_.acceptance, next_.number));
     return false;
+  }
+
+  /// What ends here was not finished.
+  bool spent(std::string why) {
+    result_.ran_out = true;
+    return stop(std::move(why));
   }
 
   void finish() {

@@ -20,12 +20,29 @@ void add_deaths(SelectionResult const& result, Findings& findings) {
     if (!model.by_chance) continue;
     auto const t = static_cast<std::size_t>(model.died_in - 1);
     auto const m = static_cast<std::size_t>(&model - result.models.data());
-    findings.push_back({Severity::warning, "model_lost_by_chance",
-                        fmt::format("`{}` died in population {} where chance may have killed it: none of {} proposals was accepted, "
-                                    "after {} particles in the population before",
-                                    model.name, model.died_in, result.populations[t].models[m].proposed,
-                                    result.populations[t - 1].models[m].particles),
-                        "take more `particles`, or repeat with other seeds: its probability is small but not known to be none"});
+    std::string const before =
+        t == 0 ? std::string()
+               : fmt::format(", after {} particles in the population before", result.populations[t - 1].models[m].particles);
+    findings.push_back(
+        {Severity::warning, "model_lost_by_chance",
+         fmt::format("`{}` died in population {} where chance may have killed it: none of {} proposals was accepted{}", model.name,
+                     model.died_in, result.populations[t].models[m].proposed, before),
+         "take more `particles`, or repeat with other seeds: its probability is not known to be none"});
+  }
+}
+
+/// Draws of a model's priors that do not stay finite: its prior ends there.
+void add_failures(SelectionResult const& result, Findings& findings) {
+  PopulationRecord const& first = result.populations.front();
+  for (std::size_t m = 0; m < result.models.size(); ++m) {
+    auto const& record = first.models[m];
+    double const lost = static_cast<double>(record.failed) / static_cast<double>(std::max<std::uint64_t>(1, record.proposed));
+    if (lost <= many_failures) continue;
+    findings.push_back({Severity::warning, "failed_solves",
+                        fmt::format("{} of the {} draws of the priors of `{}` did not stay finite, so its priors end there",
+                                    record.failed == record.proposed ? "all" : fmt::format("{}", record.failed), record.proposed,
+                                    result.models[m].name),
+                        "narrow the priors, or take a finer solver where the integration is what fails"});
   }
 }
 
@@ -47,7 +64,7 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
   Findings findings;
   add_deaths(result, findings);
   PopulationRecord const& last = result.populations.back();
-  if (last.ess < std::min(small_ess, 0.5 * plan.particles))
+  if (last.ess < small_ess)
     findings.push_back(
         {Severity::warning, "few_effective_particles",
          fmt::format("the last population's weights are worth {:.0f} equal particles of {}", last.ess, last.accepted),
@@ -59,12 +76,12 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
         {Severity::warning, "distances_equal",
          fmt::format("the threshold cannot fall below {:.6g}: so many particles have this very distance", result.threshold),
          "look whether the simulation reads the parameters at all"});
-  PopulationRecord const& first = result.populations.front();
-  double const lost = static_cast<double>(first.failed) / static_cast<double>(first.simulated);
-  if (lost > many_failures)
-    findings.push_back({Severity::warning, "failed_solves",
-                        fmt::format("{:.0f} % of the draws of the priors did not stay finite, so the priors end there", 100 * lost),
-                        "narrow the priors, or take a finer solver where the integration is what fails"});
+  add_failures(result, findings);
+  if (result.ran_out || !std::isfinite(result.threshold))
+    findings.push_back({Severity::warning, "budget_spent",
+                        fmt::format("the run did not come to its end: {}{}", result.stopped_by,
+                                    std::isfinite(result.threshold) ? "" : "; its one population is of draws of the priors"),
+                        "allow more, take fewer `particles`, or stop at a larger `target` or `relative_change`"});
   return findings;
 }
 

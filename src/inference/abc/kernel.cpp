@@ -68,7 +68,7 @@ class Gaussian : public Kernel {
     LaneArray white(x.rows(), x.width());
     for (int d = 0; d < x.rows(); ++d)
       for (int w = 0; w < x.width(); ++w) {
-        double value = x(d, w);
+        double value = x(d, w) - at_(d, 0);  // from among the centres: digits stay
         for (int e = 0; e < d; ++e) value -= factor_(d, e) * white(e, w);
         white(d, w) = value / factor_(d, d);
       }
@@ -142,7 +142,9 @@ class NearestNeighbours : public Kernel {
         covariance += weight[static_cast<std::size_t>(i)] * difference * difference.transpose();
         total += weight[static_cast<std::size_t>(i)];
       }
-      covariance = scale * (covariance / total + 1e-6 * width.covariance);  // few neighbours span no volume
+      // Few neighbours span no volume.
+      covariance =
+          scale * (count < at.rows() + 1 ? width.covariance : Eigen::MatrixXd(covariance / total + 1e-6 * width.covariance));
       Eigen::LLT<Eigen::MatrixXd> const factorised(covariance);
       factors_.push_back(factorised.info() == Eigen::Success ? Eigen::MatrixXd(factorised.matrixL())
                                                              : Eigen::MatrixXd(width.covariance.llt().matrixL()));

@@ -17,7 +17,7 @@ struct Plan {
   KernelKind kernel = KernelKind::gaussian;
   double scale = 2;  // of the kernel: of a covariance, or a width in ranges
   int neighbours = 50;
-  bool declared = true;           // the kernel moves declared values; else the sampler's coordinates
+  bool declared = false;          // the kernel moves declared values; else the sampler's coordinates
   bool from_previous = false;     // models are drawn from the last population and moved by a kernel; else from the prior
   double stay = 0.7;              // of that kernel
   double threshold_change = 0;    // stop at such a fall of the threshold, absolute

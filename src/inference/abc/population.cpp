@@ -49,7 +49,7 @@ double Population::quantile(double part) const {
   std::vector<double> all;
   for (Particles const& each : models) all.insert(all.end(), each.distance.begin(), each.distance.end());
   std::sort(all.begin(), all.end());
-  auto const rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(all.size())));
+  auto const rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(all.size()) * (1 - 1e-12)));  // 0.07 x 100 is 7
   return all[std::clamp<std::size_t>(rank, 1, all.size()) - 1];
 }
 
@@ -88,7 +88,8 @@ Population restore_population(nlohmann::json const& stored, std::vector<int> con
 
 nlohmann::json store(PopulationRecord const& record) {
   nlohmann::json models = nlohmann::json::array();
-  for (auto const& each : record.models) models.push_back({each.proposed, each.particles, block({each.probability, each.nearest})});
+  for (auto const& each : record.models)
+    models.push_back({each.proposed, each.failed, each.particles, block({each.probability, each.nearest})});
   return {{"numbers", block({record.threshold, record.ess})},
           {"counts", {record.proposed, record.simulated, record.failed, record.accepted}},
           {"models", std::move(models)}};
@@ -105,8 +106,9 @@ PopulationRecord restore_record(nlohmann::json const& stored) {
   record.failed = counts.at(2).get<std::uint64_t>();
   record.accepted = counts.at(3).get<int>();
   for (auto const& model : stored.at("models")) {
-    std::vector<double> const two = checkpoint::decode(model.at(2));
-    record.models.push_back({model.at(0).get<std::uint64_t>(), model.at(1).get<int>(), two.at(0), two.at(1)});
+    std::vector<double> const two = checkpoint::decode(model.at(3));
+    record.models.push_back(
+        {model.at(0).get<std::uint64_t>(), model.at(1).get<std::uint64_t>(), model.at(2).get<int>(), two.at(0), two.at(1)});
   }
   return record;
 }

@@ -13,6 +13,9 @@ namespace {
 /// Items of one task for a thread.
 constexpr int chunk = 256;
 
+/// Particles that are weighed between two looks at whether to stop.
+constexpr int piece = 2048;
+
 int index_of(std::vector<double> const& cumulative, double uniform) {
   auto const found = std::upper_bound(cumulative.begin(), cumulative.end(), uniform * cumulative.back());
   return static_cast<int>(std::min(found, cumulative.end() - 1) - cumulative.begin());
@@ -159,14 +162,18 @@ void Proposals::rate(Proposed& proposed) const {
   }
 }
 
-std::vector<double> Proposals::log_weights(int model, ConstLanes x, std::span<double const> log_prior) const {
+std::vector<double> Proposals::log_weights(int model, ConstLanes x, std::span<double const> log_prior,
+                                           std::function<bool()> const& stop) const {
   auto const m = static_cast<std::size_t>(model);
   std::vector<double> result(log_prior.size());
-  candidates_.parallel((x.width() + 63) / 64, [&](int task) {
-    int const first = task * 64, count = std::min(64, x.width() - first);
-    kernels_[m]->log_density(x.columns(first, count),
-                             std::span(result).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
-  });
+  for (int begin = 0; begin < x.width() && !(begin > 0 && stop && stop()); begin += piece) {
+    int const end = std::min(x.width(), begin + piece);
+    candidates_.parallel((end - begin + 63) / 64, [&](int task) {
+      int const first = begin + task * 64, count = std::min(64, end - first);
+      kernels_[m]->log_density(x.columns(first, count),
+                               std::span(result).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
+    });
+  }
   double const factor = elementary::log(candidates_.prior_probability(model) / probability_[m]);
   for (std::size_t w = 0; w < result.size(); ++w) result[w] = factor + log_prior[w] - result[w];
   return result;

@@ -1,6 +1,7 @@
 // Proposals of a population, by number: each depends on its number and the last population alone, never on who asks or how many at
 // once.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -33,7 +34,9 @@ class Proposals {
   ///
   /// The sum runs over particles of the same model, its weights normalised within the model. In print (Algorithm 1, line 18) it
   /// runs over all particles, and the factor p(m)/q(m) is left out.
-  std::vector<double> log_weights(int model, ConstLanes x, std::span<double const> log_prior) const;
+  /// stop is asked now and then; once it says yes the rest is left as it is.
+  std::vector<double> log_weights(int model, ConstLanes x, std::span<double const> log_prior,
+                                  std::function<bool()> const& stop = {}) const;
 
  private:
   void draw_from_prior(std::uint64_t first, Proposed& proposed) const;

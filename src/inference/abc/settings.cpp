@@ -23,8 +23,9 @@ constexpr SettingRow rows[] = {
     {"kernel_scale", SettingKind::real, "0", 0, infinity, "",
      "factor on that covariance, or on the range; 0: 2 for the population's covariance, else 1"},
     {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "that shape the kernel `nearest_neighbours`"},
-    {"coordinates", SettingKind::word, "declared", 0, 0, "declared unconstrained",
-     "the kernel moves declared values, or the sampler's coordinates, which never leave the prior's support"},
+    {"coordinates", SettingKind::word, "unconstrained", 0, 0, "unconstrained declared",
+     "the kernel moves the sampler's coordinates, which are logarithms where the prior is and never leave its support, or declared "
+     "values"},
     {"model_kernel", SettingKind::word, "prior", 0, 0, "prior previous",
      "models are drawn from their prior, or from the last population and moved"},
     {"stay", SettingKind::real, "0.7", 0, 1, "", "probability that such a move stays with the model"},
@@ -52,6 +53,20 @@ std::string refuse(Settings const& settings) {
       return fmt::format("the schedule must fall, but {} follows {}", schedule[t], schedule[t - 1]);
   if (!schedule.empty() && settings.real("first_threshold") > 0)
     return "the schedule holds the first threshold: leave `first_threshold` out";
+  // Each of these would be read by nobody.
+  auto const given = [&](char const* name) { return settings.all().at(name) != Settings(rows).all().at(name); };
+  auto const idle = [&](bool used, std::initializer_list<char const*> names, char const* why) -> std::string {
+    for (char const* name : names)
+      if (!used && given(name)) return fmt::format("`{}` has no say {}", name, why);
+    return {};
+  };
+  for (std::string const& why :
+       {idle(schedule.empty(), {"quantile", "target", "threshold_change", "relative_change"},
+             "where a `schedule` gives the thresholds"),
+        idle(settings.word("kernel") == "nearest_neighbours", {"neighbours"}, "but with `kernel = nearest_neighbours`"),
+        idle(settings.word("model_kernel") == "previous", {"stay"}, "but with `model_kernel = previous`"),
+        idle(settings.flag("polish"), {"polish_samples"}, "without `polish = yes`")})
+    if (!why.empty()) return why;
   return {};
 }
 
