@@ -47,6 +47,9 @@ PearsonResiduals pearson(DistributionRow const& noise, std::vector<double> const
   return result;
 }
 
+/// nmse [%] from which a fit is no model of its record: the error is larger than what there was to explain.
+constexpr double useless = 200;
+
 // Whether the fit predicts a channel worse than the mean of what was measured would, by more than chance: of n samples of noise
 // about the right prediction the sums of squares about the two differ by less than sigma^2 chi-squared(2), of 99.9 % quantile 13.8.
 // Multiplicative noise is compared by logarithms, where its size is one. Nothing is said of a channel that did not change.
@@ -129,7 +132,7 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
     DistributionRow const& noise = *model.channels[channel].noise.row;
     if (explains_nothing(noise, observed, location))
       check.findings.push_back(
-          {Severity::warning, "worse_than_the_mean",
+          {nmse(observed, location) > useless ? Severity::error : Severity::warning, "worse_than_the_mean",
            fmt::format("{}{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
                        model.channels[channel].name, on(target, e), nmse(observed, location)),
            "the fit explains nothing of this channel: look at units, signs and columns, at the initial values, then at the model"});
