@@ -6,6 +6,7 @@
 #include "app/experiments.hpp"
 #include "app/session.hpp"
 #include "likelihood/distance.hpp"
+#include "likelihood/model_selection_target.hpp"
 #include "likelihood/model_target.hpp"
 
 namespace sysid {
@@ -18,6 +19,13 @@ struct Candidate {
   std::shared_ptr<ParameterSpace const> space, simulated;  // of all parameters; of those that a simulation without noise reads
   DistanceMeasure measure;
 };
+
+/// All of a set, compiled and with their data; `what` and `set` must outlive them.
+std::vector<Candidate> prepare_candidates(Session& session, SelectTask const& what, CandidateSet const& set);
+
+/// Their distances from the data, simulated as stated or with the next finer solver. UserError E6517 where a channel has none.
+ModelSelectionTarget selection_target(Session const& session, SelectTask const& what, std::vector<Candidate> const& candidates,
+                                      bool finer);
 
 /// The candidate as a fit would see it.
 std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate);

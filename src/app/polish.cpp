@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "app/fit_target.hpp"
 #include "inference/mh.hpp"
 
 namespace sysid {
@@ -23,11 +22,6 @@ Settings settings_for(std::int64_t samples) {
 }
 
 }  // namespace
-
-std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate) {
-  return make_fit_target(session, *candidate.fit, candidate.compiled, candidate.space, experiments_of(candidate.data),
-                         candidate.fit->solver);
-}
 
 Polish polish_candidates(Session& session, std::vector<Candidate> const& candidates, std::vector<std::vector<Mode>> const& modes,
                          std::int64_t samples, std::uint64_t seed, SelectionReport& selection) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/bands.hpp"
-#include "app/experiments.hpp"
+#include "app/candidate.hpp"
 #include "app/fit_target.hpp"
 #include "app/likelihood_check.hpp"
 #include "app/polish.hpp"
@@ -21,7 +21,6 @@
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
 #include "inference/verdict.hpp"
-#include "likelihood/model_selection_target.hpp"
 #include "likelihood/simulated_parameters.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/number.hpp"
@@ -44,7 +43,7 @@ class Select {
         checkpoint_(session, task, what.seed),
         seed_(checkpoint_.seed()),
         began_(std::chrono::steady_clock::now()) {
-    for (std::size_t k = 0; k < set_.models.size(); ++k) candidates_.push_back(prepare(k));
+    candidates_ = prepare_candidates(session, what, set_);
     checkpoint_.of_data(candidates_.front().data);
   }
 
@@ -81,89 +80,15 @@ class Select {
   }
 
  private:
-  Candidate prepare(std::size_t k) {
-    FitTask const& fit = what_.fits[k];
-    Candidate candidate;
-    candidate.what = &set_.models[k];
-    candidate.fit = &fit;
-    candidate.compiled =
-        session_.compiled(fit.model, fit.start.kind == StartRule::Kind::estimated, fit.solver.method, fit.prediction);
-    candidate.data = load_experiments(session_, fit.experiments, fit.model, fit.start, fit.prediction);
-    Model const& model = candidate.compiled->model;
-    candidate.space = parameter_space(model, fit.experiments);
-    candidate.simulated = parameter_space(without_noise_parameters(model), fit.experiments);
-    candidate.measure = measure(k, model);
-    return candidate;
-  }
-
-  /// The distance rule in terms of one model's channels.
-  DistanceMeasure measure(std::size_t k, Model const& model) const {
-    DistanceRule const& rule = what_.distance;
-    DistanceMeasure measure;
-    measure.kind = rule.kind == DistanceRule::Kind::nmse   ? DistanceKind::nmse
-                   : rule.kind == DistanceRule::Kind::rmse ? DistanceKind::rmse
-                                                           : DistanceKind::mean;
-    measure.unit = rule.unit;
-    for (Channel const& channel : model.channels) {
-      auto const found = std::find(rule.channels.begin(), rule.channels.end(), channel.name);
-      auto const c = static_cast<std::size_t>(found - rule.channels.begin());
-      bool const known = found != rule.channels.end();
-      measure.weights.push_back(known ? rule.weights[c] : 0);
-      if (measure.kind == DistanceKind::mean)
-        measure.expressions.push_back(known ? std::optional(rule.expressions[k][c]) : std::nullopt);
-    }
-    return measure;
-  }
-
-  /// A weight that no sample would carry is refused: the distance would be that of the other channels alone.
-  void refuse_idle_weights() const {
-    Candidate const& first = candidates_.front();
-    for (std::string const& name : what_.distance.weighted) {
-      auto const& channels = first.compiled->model.channels;
-      auto const channel = std::find_if(channels.begin(), channels.end(), [&](Channel const& each) { return each.name == name; });
-      auto const c = static_cast<std::size_t>(channel - channels.begin());
-      bool const sampled = std::any_of(first.data.begin(), first.data.end(), [&](ExperimentData const& each) {
-        std::vector<double> const& measured = each.experiment.measured[c];
-        for (std::size_t i = 0; i < measured.size(); ++i)
-          if (each.experiment.scored[i] != 0 && std::isfinite(measured[i])) return true;
-        return false;
-      });
-      if (!sampled)
-        throw UserError({Severity::error,
-                         "E6517",
-                         fmt::format("channel `{}` has a weight, but no sample in the scored rows", name),
-                         std::nullopt,
-                         {},
-                         "leave its weight out, or score rows in which it is measured"});
-    }
-  }
-
   /// UserError, placed at the task, where the data do not allow the distance.
   ModelSelectionTarget make_target(bool finer) const {
     try {
-      refuse_idle_weights();
-      return ModelSelectionTarget(describe_candidates(finer));
+      return selection_target(session_, what_, candidates_, finer);
     } catch (UserError const& error) {
       Diagnostic placed = error.diagnostic();
       if (!placed.primary) placed.primary = Label{task_.span, {}};
       throw UserError(std::move(placed));
     }
-  }
-
-  std::vector<SelectionCandidate> describe_candidates(bool finer) const {
-    std::vector<SelectionCandidate> all;
-    for (Candidate const& each : candidates_) {
-      TargetOptions options;
-      options.solver = finer ? each.fit->solver.finer() : each.fit->solver;
-      options.start_rows = start_rows(each.fit->start);
-      options.execution = session_.options.execution;
-      options.describe = [this, model = each.fit->model](NodeId node, Graph const& graph) {
-        return session_.describe(model, graph, node);
-      };
-      all.push_back({each.what->name, each.what->probability, each.compiled, each.simulated, experiments_of(each.data),
-                     each.measure, std::move(options)});
-    }
-    return all;
   }
 
   // --- what the likelihood says

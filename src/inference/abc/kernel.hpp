@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "core/lanes.hpp"
 #include "core/random.hpp"
@@ -35,6 +36,15 @@ class Kernel {
 ///   uniform              a box of widths scale * range, the centre in its middle                    the tutorial, Sec. 8.5
 ///   nearest_neighbours   normal, covariance scale * that of the centre's nearest neighbours about it   Filippi et al. 2013,
 ///   Sec. 3.2
-std::unique_ptr<Kernel> make_kernel(Plan const& plan, ConstLanes at, std::span<double const> weight, Width const& width);
+struct KernelRow {
+  std::string_view name;
+  /// Unless `kernel_scale` is given. Twice the weighted covariance is the optimum of Filippi et al. 2013 for a population that
+  /// changes slowly.
+  double scale;
+  std::unique_ptr<Kernel> (*make)(Plan const&, ConstLanes at, std::span<double const> weight, Width const&);
+};
+
+std::span<KernelRow const> kernels();
+KernelRow const* find_kernel(std::string_view name);
 
 }  // namespace sysid::abc

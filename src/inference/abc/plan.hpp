@@ -7,14 +7,14 @@
 
 namespace sysid::abc {
 
-enum class KernelKind { gaussian, component_gaussian, uniform, nearest_neighbours };
+struct KernelRow;
 
 struct Plan {
   int particles = 1000;
   double quantile = 0.2;
   std::vector<double> schedule;  // of thresholds; empty: by quantile
   double first_threshold = 0;    // infinite: every simulation that ends is accepted
-  KernelKind kernel = KernelKind::gaussian;
+  KernelRow const* kernel = nullptr;
   double scale = 2;  // of the kernel: of a covariance, or a width in ranges
   int neighbours = 50;
   bool declared = false;          // the kernel moves declared values; else the sampler's coordinates

@@ -66,7 +66,7 @@ Proposals::Proposals(SelectionTarget const& candidates, Plan const& plan, std::u
       within_[m].push_back(w / sum);
       cumulative_[m].push_back(below += w / sum);
     }
-    kernels_[m] = make_kernel(plan, centres_[m], within_[m], last.widths[m]);
+    kernels_[m] = plan.kernel->make(plan, centres_[m], within_[m], last.widths[m]);
   }
 }
 

@@ -1,0 +1,31 @@
+// Exponentials in lanes, sums in the centres' order.
+#include "inference/abc/kernel_numerics.hpp"
+
+#include <numbers>
+
+#include "core/elementary.hpp"
+
+namespace sysid::abc {
+
+double weighted_exponentials(std::span<double> square, std::span<double const> weight) {
+  for (double& value : square) value *= -0.5;
+  elementary::exp_lanes(square.data(), square.data(), static_cast<int>(square.size()));
+  double part[4] = {0, 0, 0, 0};
+  for (std::size_t j = 0; j < square.size(); ++j) part[j % 4] += weight[j] * square[j];
+  return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+double log_normaliser(Eigen::MatrixXd const& factor) {
+  double log = -0.5 * static_cast<double>(factor.rows()) * elementary::log(2 * std::numbers::pi);
+  for (Eigen::Index d = 0; d < factor.rows(); ++d) log -= elementary::log(factor(d, d));
+  return log;
+}
+
+void add_normals(Eigen::MatrixXd const& factor, Stream& stream, std::span<double> out) {
+  Eigen::VectorXd normal(factor.rows());
+  for (double& value : normal) value = stream.normal();
+  for (Eigen::Index d = 0; d < factor.rows(); ++d)
+    for (Eigen::Index e = 0; e <= d; ++e) out[static_cast<std::size_t>(d)] += factor(d, e) * normal[e];
+}
+
+}  // namespace sysid::abc

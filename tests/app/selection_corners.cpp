@@ -1,0 +1,213 @@
+// Selections whose answer is known beforehand, or that have no good one: two units of one model, priors over decades, models
+// without parameters, budgets, channels without samples.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/running.hpp"
+#include "core/random.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+/// A straight line, exact or with noise of sd 0.1, in 40 rows.
+constexpr double slope = 2;
+
+struct Answer {
+  int exit = 0;
+  json summary;
+  std::string out;
+  bool has(std::string const& code) const {
+    for (json const& finding : summary.at("findings"))
+      if (finding.at("code") == code) return true;
+    return false;
+  }
+  json const& model(std::string const& name) const { return summary.at("models").at(name); }
+};
+
+class Line {
+ public:
+  explicit Line(double noise, double offset = 0) {
+    std::ofstream file(folder_.path() / "line.csv");
+    file << "t,y,none\n";
+    Stream stream({.seed = 11, .purpose = Purpose::test, .index = 0, .step = 0});
+    for (int i = 0; i < 40; ++i) file << 0.1 * i << "," << offset + slope * 0.1 * i + noise * stream.normal() << ",NA\n";
+  }
+
+  /// Runs the task `answer` of models, candidates and task; the data block is `line` with channel d.
+  Answer run(std::string const& text, std::string const& unit = "", std::vector<std::string> const& verbs = {"select"}) const {
+    RunOptions options;
+    options.output = folder_.path() / "results";
+    options.force = true;
+    RunResult const result = run_text(folder_.path() / "m.sysid",
+                                      text + "\ndata line { file \"line.csv\"; time t [s]; input u = t " +
+                                          (unit.empty() ? "[-]" : "[s]") + " hold linear; measure d = y " + unit + " }\n",
+                                      options, verbs);
+    return {result.exit, json::parse(read_file(options.output / "answer/summary.json")), result.out};
+  }
+  std::filesystem::path results() const { return folder_.path() / "results"; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+std::string const metres =
+    "model a { input u [s]; parameter k [m/s] ~ uniform(0, 10); parameter c [m] ~ uniform(-5, 5)\n"
+    "observe d [m] ~ normal(k*u + c, sd = 0.1) }\n";
+std::string const millimetres =
+    "model b { input u [s]; parameter k [mm/s] ~ uniform(0, 10000); parameter c [mm] ~ uniform(-5000, 5000)\n"
+    "observe d [mm] ~ normal(k*u + c, sd = 0.1 [m]) }\n";
+
+}  // namespace
+
+TEST_CASE("a model in metres and the same one in millimetres are equally probable, and predict one band") {
+  Line const line(0.1, 0.5);
+  for (std::string const distance : {"", ", distance = rmse", ", distance = abs(residual(d))"}) {
+    CAPTURE(distance);
+    Answer const answer =
+        line.run(metres + millimetres + "candidates both { a; b }\nanswer = select both to line with abc_smc(particles = 500)" +
+                     distance + ", seed = 1\nforecast = predict answer on line with draws(100), seed = 1",
+                 "[m]", {"select", "predict"});
+    // Of two equal models a population holds each with its share of 500 draws: four standard errors.
+    CHECK(std::abs(answer.model("a").at("probability").get<double>() - 0.5) < 4 * 0.5 / std::sqrt(500.0));
+    CHECK(answer.model("a").at("laplace").at("probability").get<double>() == doctest::Approx(0.5).epsilon(1e-3));
+    CHECK_FALSE(answer.has("probabilities_disagree"));
+    // The unit of the most probable model; the line ends at 0.5 + 2 * 3.9 m.
+    std::istringstream rows(read_file(line.results() / "forecast/predict.csv"));
+    std::string row, last;
+    while (std::getline(rows, row))
+      if (!row.empty()) last = row;
+    double const unit = answer.model("a").at("probability") > answer.model("b").at("probability") ? 1 : 1000;
+    int columns = 0;
+    std::istringstream cells(last);
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      double const value = std::atof(cell.c_str());
+      if (value > 5 * unit && value < 12 * unit) ++columns;
+    }
+    CHECK(columns >= 4);  // mean, two bounds and the sample
+  }
+}
+
+TEST_CASE("channels of two units make one root mean square") {
+  Line const line(0.1, 0.0);
+  Answer const answer = line.run(
+      "model a { input u [s]; parameter k [m/s] ~ uniform(0, 10); parameter g [m/s] ~ uniform(0, 10)\n"
+      "observe d [m] ~ normal(k*u, sd = 0.1)\n observe e [mm] ~ normal(g*u, sd = 0.1 [m]) }\n"
+      "data two { file \"line.csv\"; time t [s]; input u = t [s] hold linear; measure d = y [m]; measure e = y [m] }\n"
+      "answer = select a to two with abc_smc(particles = 300), distance = rmse, seed = 1",
+      "[m]");
+  // Both are the same line, so both slopes are known alike; the floor of the mean of two root mean squares is 0.1 m.
+  json const& parameters = answer.model("a").at("parameters");
+  for (char const* name : {"k", "g"}) CHECK(parameters.at(name).at("mean").get<double>() == doctest::Approx(slope).epsilon(0.05));
+  CHECK(answer.summary.at("populations").at("noise_floor").get<double>() == doctest::Approx(0.1));
+}
+
+TEST_CASE("a prior over six decades does not kill its model") {
+  // d = k u, exact data: p(M | D) goes as the prior density at k = 2. normal(0, 1) above 0: 2 phi(2) = 0.10798; half_normal(1) the
+  // same; log_uniform(1e-3, 1e3): 1/(2 log 1e6) = 0.03619. The third has 0.03619 / (2 * 0.10798 + 0.03619) = 0.1435.
+  Line const line(0, 0);
+  std::string text;
+  for (auto const& [name, prior] :
+       {std::pair{"a", "normal(0, sd = 1, lower = 0)"}, {"b", "half_normal(1)"}, {"c", "log_uniform(0.001, 1000)"}})
+    text += std::string("model ") + name + " { input u; parameter k ~ " + prior + "\nobserve d ~ normal(k*u, sd = 0.1) }\n";
+  text += "candidates all { a; b; c }\n";
+  double mean = 0;
+  int const seeds = 5;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    Answer const answer = line.run(
+        text + "answer = select all to line with abc_smc(particles = 1000, populations = 6), seed = " + std::to_string(seed));
+    CHECK(answer.model("c").at("died_in_population").is_null());
+    CHECK(answer.model("c").at("laplace").at("probability").get<double>() == doctest::Approx(0.1435).epsilon(0.02));
+    mean += answer.model("c").at("probability").get<double>() / seeds;
+  }
+  // A third of 1000 particles is proposed to each model: standard error of a weight sum about 0.1435 sqrt(2/333) a run.
+  CHECK(std::abs(mean - 0.1435) < 4 * 0.1435 * std::sqrt(2.0 / 333 / seeds));
+}
+
+TEST_CASE("a model that chance never proposed is not told dead by distance") {
+  Line const line(0.1, 0.5);
+  Answer const answer = line.run(
+      "model a { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
+      "model b { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(0, 1); observe d ~ normal(k*u + c, sd = 0.1) }\n"
+      "candidates both { a probability 0.9999; b probability 0.0001 }\n"
+      "answer = select both to line with abc_smc(particles = 100), seed = 1");
+  REQUIRE(answer.model("b").at("died_in_population") == 1);
+  CHECK(answer.model("b").at("died_by_chance") == true);
+  CHECK(answer.has("model_lost_by_chance"));
+  CHECK(answer.model("b").at("laplace").at("probability").get<double>() > 0.9);
+  CHECK(answer.has("probabilities_disagree"));
+}
+
+TEST_CASE("a model whose draws all diverge is named, and is not said to have a likelihood") {
+  Line const line(0.1, 0.0);
+  Answer const answer = line.run(
+      "model lin { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
+      "model boom { input u; state q; initial q = 1; parameter k ~ uniform(1e6, 1e7); q' = k*q^2\n"
+      "observe d ~ normal(q, sd = 0.1) }\ncandidates s { lin; boom }\n"
+      "answer = select s to line with abc_smc(particles = 200), seed = 1");
+  CHECK(answer.model("boom").at("died_by_chance") == false);
+  CHECK_FALSE(answer.model("boom").contains("laplace"));
+  CHECK(answer.out.find("of the priors of `boom` did not stay finite") != std::string::npos);
+}
+
+TEST_CASE("a derived quantity that reads the noise is left out, and said") {
+  Line const line(0.1, 0.5);
+  Answer const answer = line.run(
+      "model a { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(0, 1); parameter sigma ~ log_uniform(0.01, 0.5)\n"
+      "observe d ~ normal(k*u + c, sd = sigma); derive e = k*u/sigma; derive g = 2*k*u }\n"
+      "answer = select a to line with abc_smc(particles = 200), seed = 1");
+  CHECK(answer.has("reads_noise"));
+  std::string const bands = read_file(line.results() / "answer/fit_line.csv");
+  CHECK(bands.find("g_mean") != std::string::npos);
+  CHECK(bands.find("e_mean") == std::string::npos);
+}
+
+TEST_CASE("a candidate without free parameters takes part from end to end") {
+  Line const line(0.1, 0.0);
+  Answer const answer = line.run(
+      "model a { input u; parameter k = 2; observe d ~ normal(k*u, sd = 0.1) }\n"
+      "model b { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
+      "candidates both { a; b }\nanswer = select both to line with abc_smc(particles = 200), seed = 1");
+  CHECK(answer.model("a").at("probability").get<double>() > 0.9);
+  CHECK(answer.model("a").at("laplace").at("probability").get<double>() > 0.9);
+}
+
+TEST_CASE("proposals outside of the priors and rates that cannot be reached end a run") {
+  Line const line(0.1, 0.0);
+  std::string const model =
+      "model a { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(-1, 1); observe d ~ normal(k*u + c, sd = 0.1) }\n";
+  Answer const wide =
+      line.run(model +
+               "answer = select a to line with abc_smc(particles = 200, kernel_scale = 1e9, coordinates = declared, "
+               "simulations = 2000), seed = 1");
+  CHECK(wide.has("budget_spent"));
+  Answer const rate = line.run(model + "answer = select a to line with abc_smc(particles = 200, acceptance = 0.3), seed = 1");
+  CHECK_FALSE(rate.has("budget_spent"));
+  CHECK(rate.summary.at("populations").at("stopped_by").get<std::string>().find("0.3") != std::string::npos);
+}
+
+TEST_CASE("what no setting reads, and a weight that no sample carries, are refused") {
+  Line const line(0.1, 0.0);
+  std::string const model =
+      "model a { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1)\n"
+      "observe w ~ normal(k*u, sd = 0.1) }\n";
+  auto const code = [&](std::string const& task) {
+    try {
+      line.run(model +
+               "data two { file \"line.csv\"; time t [s]; input u = t [-] hold linear; measure d = y; measure w = none }\n" + task);
+    } catch (UserError const& error) {
+      return error.diagnostic().code;
+    }
+    return std::string("none");
+  };
+  CHECK(code("answer = select a to line with abc_smc(schedule = (10, 1), target = 5), seed = 1") == "E6203");
+  CHECK(code("answer = select a to line with abc_smc(neighbours = 7), seed = 1") == "E6203");
+  CHECK(code("answer = select a to line with abc_smc(stay = 0.1), seed = 1") == "E6203");
+  CHECK(code("answer = select a to two with abc_smc(particles = 50), weights(w = 3, d = 1), seed = 1") == "E6517");
+}
