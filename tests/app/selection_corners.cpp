@@ -163,7 +163,7 @@ TEST_CASE("a derived quantity that reads the noise is left out, and said") {
       "observe d ~ normal(k*u + c, sd = sigma); derive e = k*u/sigma; derive g = 2*k*u }\n"
       "answer = select a to line with abc_smc(particles = 200), seed = 1");
   CHECK(answer.has("reads_noise"));
-  std::string const bands = read_file(line.results() / "answer/fit_line.csv");
+  std::string const bands = read_file(line.results() / "answer/predict.csv");
   CHECK(bands.find("g_mean") != std::string::npos);
   CHECK(bands.find("e_mean") == std::string::npos);
 }

@@ -214,7 +214,7 @@ TEST_CASE("a run ends at a target, at its number of populations or simulations, 
   SelectionResult const populations = run(toy, with({{"populations", std::int64_t{3}}, {"relative_change", 0.0}}));
   CHECK(populations.populations.size() == 3);
   SelectionResult const simulations = run(toy, with({{"simulations", 5000.0}, {"relative_change", 0.0}}));
-  CHECK(simulations.stopped_by.find("5000 simulations") != std::string::npos);
+  CHECK(simulations.stopped_by.find("simulations = 5000") != std::string::npos);
   CHECK(simulations.populations.back().accepted == 1000);  // the last whole one
   // Normal proposals into a uniform square of a threshold five times smaller: about one in ten is accepted.
   SelectionResult const acceptance = run(toy, with({{"acceptance", 0.5}, {"relative_change", 0.0}}));
