@@ -159,7 +159,7 @@ TEST_CASE(
                     return std::max(std::fabs(p[0]), std::fabs(p[1]));
                   }}});
   for (std::string const kernel : {"gaussian", "component_gaussian", "uniform", "nearest_neighbours"})
-    for (std::string const coordinates : {"declared", "unconstrained"}) {
+    for (std::string const coordinates : {"natural", "declared", "unconstrained"}) {
       CAPTURE(kernel);
       CAPTURE(coordinates);
       SelectionResult const result = run(toy, with({{"particles", std::int64_t{2000}},
@@ -181,7 +181,7 @@ TEST_CASE(
 TEST_CASE("a log-uniform prior keeps its density: the posterior of a threshold on the value itself") {
   // p ~ log_uniform(1e-3, 1), distance p: p within (1e-3, eps) log-uniform: median sqrt(1e-3 eps).
   Toy const toy({{"decade", 1, {{Prior::log_uniform, 1e-3, 1}}, [](std::span<double const> p) { return p[0]; }}});
-  for (std::string const coordinates : {"declared", "unconstrained"}) {
+  for (std::string const coordinates : {"natural", "declared", "unconstrained"}) {
     SelectionResult const result = run(
         toy,
         with({{"particles", std::int64_t{2000}}, {"coordinates", coordinates}, {"schedule", std::vector<double>{0.5, 0.2, 0.1}}}));

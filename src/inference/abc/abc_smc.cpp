@@ -59,6 +59,7 @@ class Run {
   Run(SelectionTarget const& candidates, Settings const& settings, RunContext& context)
       : candidates_(candidates),
         plan_(plan_of(settings)),
+        walk_(candidates, plan_),
         context_(context),
         identity_(identity(candidates, settings, context.seed)) {
     result_.settings = settings;
@@ -77,7 +78,7 @@ class Run {
 
   /// Fills `next_` up; false when the run is stopped before it is full.
   bool populate() {
-    Proposals const proposals(candidates_, plan_, context_.seed, last_);
+    Proposals const proposals(candidates_, plan_, walk_, context_.seed, last_);
     context_.progress.begin(fmt::format("population {}", next_.number), static_cast<std::uint64_t>(plan_.particles));
     bool full = record_.accepted >= plan_.particles;
     while (!full) {
@@ -327,10 +328,8 @@ class Run {
         model.died_in > 0 ? departed_[static_cast<std::size_t>(m)] : last_.models[static_cast<std::size_t>(m)];
     LaneArray const x = particles.lanes(candidates_.dimension(m));
     model.theta = model.declared = x;
-    if (plan_.declared)
-      candidates_.unconstrain(m, x, model.theta);
-    else
-      candidates_.constrain(m, x, model.declared);
+    walk_.to_theta(m, x, model.theta);
+    walk_.to_declared(m, x, model.declared);
     double const sum = particles.weight_sum();
     for (double const w : particles.weight) model.weight.push_back(w / sum);
     model.distance = particles.distance;
@@ -374,12 +373,11 @@ class Run {
 
   Width prior_width(int m) const {
     int const dimension = candidates_.dimension(m);
-    LaneArray draws(dimension, width_draws), declared = draws;
+    LaneArray draws(dimension, width_draws), x = draws;
     candidates_.sample_prior(m, {context_.seed, Purpose::start, 0, 0}, draws);
-    candidates_.constrain(m, draws, declared);
+    walk_.from_theta(m, draws, x);
     std::vector<double> const equal(width_draws, 1.0 / width_draws);
-    return width_of(plan_.declared ? declared : draws, equal,
-                    {Eigen::MatrixXd::Identity(dimension, dimension), Eigen::VectorXd::Ones(dimension)});
+    return width_of(x, equal, {Eigen::MatrixXd::Identity(dimension, dimension), Eigen::VectorXd::Ones(dimension)});
   }
 
   void save_sometimes() {
@@ -425,6 +423,7 @@ class Run {
 
   SelectionTarget const& candidates_;
   Plan const plan_;
+  Walk const walk_;
   RunContext& context_;
   json const identity_;
   SelectionResult result_;

@@ -17,7 +17,10 @@ Plan plan_of(Settings const& s) {
   if (plan.kernel == nullptr) throw InternalError("there is no kernel `" + s.word("kernel") + "`");
   plan.scale = s.real("kernel_scale") > 0 ? s.real("kernel_scale") : plan.kernel->scale;
   plan.neighbours = static_cast<int>(s.integer("neighbours"));
-  plan.declared = s.word("coordinates") == "declared";
+  std::string const& coordinates = s.word("coordinates");
+  plan.coordinates = coordinates == "declared"        ? Coordinates::declared
+                     : coordinates == "unconstrained" ? Coordinates::unconstrained
+                                                      : Coordinates::natural;
   plan.from_previous = s.word("model_kernel") == "previous";
   plan.stay = s.real("stay");
   plan.threshold_change = s.real("threshold_change");

@@ -9,6 +9,9 @@ namespace sysid::abc {
 
 struct KernelRow;
 
+/// Walk says what they are.
+enum class Coordinates { natural, declared, unconstrained };
+
 struct Plan {
   int particles = 1000;
   double quantile = 0.2;
@@ -17,7 +20,7 @@ struct Plan {
   KernelRow const* kernel = nullptr;
   double scale = 2;  // of the kernel: of a covariance, or a width in ranges
   int neighbours = 50;
-  bool declared = false;          // the kernel moves declared values; else the sampler's coordinates
+  Coordinates coordinates = Coordinates::natural;
   bool from_previous = false;     // models are drawn from the last population and moved by a kernel; else from the prior
   double stay = 0.7;              // of that kernel
   double threshold_change = 0;    // stop at such a fall of the threshold, absolute

@@ -45,9 +45,10 @@ std::vector<double> model_proposal(SelectionTarget const& candidates, Plan const
   return q;
 }
 
-Proposals::Proposals(SelectionTarget const& candidates, Plan const& plan, std::uint64_t seed, Population const& last)
+Proposals::Proposals(SelectionTarget const& candidates, Plan const& plan, Walk const& walk, std::uint64_t seed,
+                     Population const& last)
     : candidates_(candidates),
-      plan_(plan),
+      walk_(walk),
       seed_(seed),
       last_(last),
       probability_(model_proposal(candidates, plan, last)),
@@ -116,11 +117,7 @@ void Proposals::draw_from_prior(std::uint64_t first, Proposed& proposed) const {
         proposed.theta[static_cast<std::size_t>(m)](d, proposed.column[static_cast<std::size_t>(i)]) = draws(d, i);
     }
     LaneArray const& theta = proposed.theta[static_cast<std::size_t>(m)];
-    LaneArray& x = proposed.x[static_cast<std::size_t>(m)];
-    if (plan_.declared)
-      candidates_.constrain(m, theta, x);
-    else
-      x = theta;
+    walk_.from_theta(m, theta, proposed.x[static_cast<std::size_t>(m)]);
   }
 }
 
@@ -140,12 +137,7 @@ void Proposals::move_particles(std::uint64_t first, Proposed& proposed) const {
         proposed.x[m](static_cast<int>(d), proposed.column[static_cast<std::size_t>(i)]) = place[d];
     }
   });
-  for (std::size_t m = 0; m < centres_.size(); ++m) {
-    if (plan_.declared)
-      candidates_.unconstrain(static_cast<int>(m), proposed.x[m], proposed.theta[m]);
-    else
-      proposed.theta[m] = proposed.x[m];
-  }
+  for (std::size_t m = 0; m < centres_.size(); ++m) walk_.to_theta(static_cast<int>(m), proposed.x[m], proposed.theta[m]);
 }
 
 void Proposals::rate(Proposed& proposed) const {
@@ -153,7 +145,7 @@ void Proposals::rate(Proposed& proposed) const {
     std::vector<double>& log_prior = proposed.log_prior[static_cast<std::size_t>(m)];
     if (log_prior.empty()) continue;
     LaneArray const& theta = proposed.theta[static_cast<std::size_t>(m)];
-    candidates_.log_prior(m, theta, log_prior, !plan_.declared);
+    walk_.log_prior(m, proposed.x[static_cast<std::size_t>(m)], theta, log_prior);
     for (std::size_t w = 0; w < log_prior.size(); ++w) {
       bool inside = std::isfinite(log_prior[w]);
       for (int d = 0; d < theta.rows() && inside; ++d) inside = std::isfinite(theta(d, static_cast<int>(w)));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "inference/abc/population.hpp"
+#include "inference/abc/walk.hpp"
 #include "likelihood/selection_target.hpp"
 
 namespace sysid::abc {
@@ -21,7 +22,7 @@ struct Proposed {
 class Proposals {
  public:
   /// last: number 0 stands for the prior. Its particles must outlive this.
-  Proposals(SelectionTarget const& candidates, Plan const& plan, std::uint64_t seed, Population const& last);
+  Proposals(SelectionTarget const& candidates, Plan const& plan, Walk const& walk, std::uint64_t seed, Population const& last);
 
   /// Proposals first, first + 1, ..., `count` of them, for population last.number + 1.
   Proposed make(std::uint64_t first, int count) const;
@@ -45,7 +46,7 @@ class Proposals {
   void rate(Proposed& proposed) const;
 
   SelectionTarget const& candidates_;
-  Plan const& plan_;
+  Walk const& walk_;
   std::uint64_t seed_;
   Population const& last_;
   std::vector<double> probability_;              // of each model to be proposed

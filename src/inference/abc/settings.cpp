@@ -23,9 +23,9 @@ constexpr SettingRow rows[] = {
     {"kernel_scale", SettingKind::real, "0", 0, infinity, "",
      "factor on that covariance, or on the range; 0: 2 for the population's covariance, else 1"},
     {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "that shape the kernel `nearest_neighbours`"},
-    {"coordinates", SettingKind::word, "unconstrained", 0, 0, "unconstrained declared",
-     "the kernel moves the sampler's coordinates, which are logarithms where the prior is and never leave its support, or declared "
-     "values"},
+    {"coordinates", SettingKind::word, "natural", 0, 0, "natural declared unconstrained",
+     "the kernel moves logarithms of parameters whose prior spans decades and declared values of the others, declared values, or "
+     "the sampler's coordinates, which never leave the prior's support"},
     {"model_kernel", SettingKind::word, "prior", 0, 0, "prior previous",
      "models are drawn from their prior, or from the last population and moved"},
     {"stay", SettingKind::real, "0.7", 0, 1, "", "probability that such a move stays with the model"},
