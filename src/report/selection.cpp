@@ -20,6 +20,7 @@ using Json = nlohmann::ordered_json;
 /// Three decimals; more where they would read as certain.
 std::string probability_text(double p) {
   if (p == 0 || p == 1) return fmt::format("{}", p);
+  if (p < 1e-6) return "< 1e-6";
   if (p < 0.0005) return fmt::format("{:.1g}", p);
   return p > 0.9995 ? "> 0.999" : fmt::format("{:.3f}", p);
 }
