@@ -155,11 +155,14 @@ class Failure {
     if (begins_with("observe") && wanted_ == wanted::tilde) return errors::tilde_missing(span(), "observe");
     if (begins_with("parameter") && wanted_ == wanted::end_of_statement && is_word(found()) && value_before)
       return errors::tilde_missing(span(), "parameter");
-    if (found().is("~") && value_before && (wanted_ == wanted::equals || wanted_ == wanted::end_of_statement))
+    if (found().is("~") && value_before && !begins_with("parameter") &&
+        (wanted_ == wanted::equals || wanted_ == wanted::end_of_statement))
       return errors::tilde_without_keyword(found().span);
     if ((found().is("+") || found().is("-")) && wanted_ == wanted::model_statement) return errors::begins_with_sign(found());
     if (!is_word(found())) return std::nullopt;
     if (wanted_ == wanted::data_statement) return errors::unknown_statement(found(), "a data block", words::data_statements);
+    if (wanted_ == wanted::dictionary_statement)
+      return errors::unknown_statement(found(), "a dictionary", words::dictionary_statements);
     if (wanted_ == wanted::item && words::contains(words::items, found().text) && next() != nullptr)
       return errors::expected(next()->span, wanted::name, fmt::format("`{}`", next()->text), hint(name_missing()));
     if (wanted_ == wanted::item) return errors::unknown_item(found());

@@ -26,7 +26,8 @@ inline constexpr char const* with_or_end = "`with` or the end of the statement";
 inline constexpr char const* model_statement = "a statement of a model";
 inline constexpr char const* data_statement = "a statement of a data block";
 inline constexpr char const* candidate_statement = "a candidate model";
-inline constexpr char const* item = "a model, a data block, candidates, a function or a task";
+inline constexpr char const* dictionary_statement = "a statement of a dictionary";
+inline constexpr char const* item = "a model, a data block, candidates, a dictionary, a function or a task";
 inline constexpr char const* verb = "a task";
 inline constexpr char const* shallower_nesting = "shallower nesting";
 }  // namespace wanted

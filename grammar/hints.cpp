@@ -31,7 +31,9 @@ bool begins_with_verb(Gap const& gap) {
   return gap.statement.size() > verb && words::contains(words::verbs, gap.statement[verb].text);
 }
 
-constexpr std::array<Situation, 28> situations{{
+constexpr std::array<Situation, 29> situations{{
+    {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
+     "in a dictionary a parameter is looked for, or has a value: `parameter m [kg]`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
      "a prior is written `parameter name ~ uniform(lower, upper)`"},
     {[](Gap const& g) { return g.wanted.starts_with("a distribution"); },

@@ -7,6 +7,7 @@
 #include "grammar/actions.hpp"
 #include "grammar/candidates.hpp"
 #include "grammar/data.hpp"
+#include "grammar/dictionary.hpp"
 #include "grammar/errors.hpp"
 #include "grammar/model.hpp"
 #include "grammar/task.hpp"
@@ -36,7 +37,8 @@ constexpr x3::rule<lone_expression_tag, ast::Expression> lone_expression = wante
 auto const file_def = *(file_line[append(&ast::File::items)] | '\n' | ';');
 auto const file_line_def = (!(x3::lit('\n') | ';' | x3::eoi)) > item[take] > end_of_statement;
 auto const use_def = located[keyword("use") > name[to(&ast::Use::module)]];
-auto const item_def = use[take] | model[take] | data[take] | candidates[take] | function_definition[take] | task[take];
+auto const item_def =
+    use[take] | model[take] | data[take] | candidates[take] | dictionary[take] | function_definition[take] | task[take];
 auto const lone_expression_def = x3::eps > *x3::lit('\n') > expression[take] > end_of_statement > *x3::lit('\n') > x3::eoi;
 
 BOOST_SPIRIT_DEFINE(file, file_line, use, item, lone_expression)
@@ -103,6 +105,7 @@ ReadableFile parse_readable(Source const& source, Diagnostics& diagnostics) {
   for (ast::Item& item : reading.tree.items) {
     if (auto* model = std::get_if<ast::Model>(&item)) grammar::erase_unread(model->statements, reading.left_out);
     if (auto* set = std::get_if<ast::Candidates>(&item)) grammar::erase_unread(set->statements, reading.left_out);
+    if (auto* dictionary = std::get_if<ast::Dictionary>(&item)) grammar::erase_unread(dictionary->statements, reading.left_out);
     if (auto* data = std::get_if<ast::Data>(&item)) grammar::erase_unread(data->statements, reading.left_out);
   }
   return {std::move(reading.tree), std::move(reading.left_out)};

@@ -324,6 +324,52 @@ struct Candidates : Located {
   friend bool operator==(Candidates const&, Candidates const&) = default;
 };
 
+// --- dictionaries
+// --------------------------------------------------------------------------------------------------------------
+
+/// `y [m] = displacement`, `y'' = acceleration`: a state or a derivative of it, and the channel that measures it.
+struct DictionaryState : Located {
+  Name name;
+  int primes = 0;
+  std::optional<UnitExpression> unit;
+  std::optional<Name> channel;
+  friend bool operator==(DictionaryState const&, DictionaryState const&) = default;
+};
+/// `state y [m] = displacement, y'' = acceleration`.
+struct DictionaryStates : Located {
+  std::vector<DictionaryState> states;
+  friend bool operator==(DictionaryStates const&, DictionaryStates const&) = default;
+};
+/// `parameter m [kg]`: a coefficient that is looked for; `parameter m [kg] = 1`: known.
+struct DictionaryParameter : Located {
+  Declared name;
+  std::optional<Expression> value;
+  friend bool operator==(DictionaryParameter const&, DictionaryParameter const&) = default;
+};
+/// `target = m*y'' - x`, `terms = polynomial(y, degree = 3), 1`, `exclude = y^2`.
+enum class DictionaryListKind { target, terms, exclude };
+struct DictionaryList : Located {
+  DictionaryListKind kind = DictionaryListKind::terms;
+  std::vector<Expression> items;
+  friend bool operator==(DictionaryList const&, DictionaryList const&) = default;
+};
+/// `coefficients = [N/m], [N s/m]`: the units that coefficients may have.
+struct CoefficientUnits : Located {
+  std::vector<UnitExpression> units;
+  friend bool operator==(CoefficientUnits const&, CoefficientUnits const&) = default;
+};
+
+using DictionaryStatement = std::variant<TimeDeclaration, InputDeclaration, DictionaryStates, DictionaryParameter, Definition,
+                                         FunctionDefinition, DictionaryList, CoefficientUnits>;
+
+/// `dictionary restoring "which restoring force?" { ... }`.
+struct Dictionary : Located {
+  Name name;
+  std::optional<Text> title;
+  std::vector<DictionaryStatement> statements;
+  friend bool operator==(Dictionary const&, Dictionary const&) = default;
+};
+
 // --- tasks
 // ------------------------------------------------------------------------------------------------------------------------
 
@@ -345,10 +391,10 @@ struct Option : Located {
 /// `posterior = fit duffing to bench.train with mh(samples = 25000), start = rest`; `fit bouc_wen(n = 2) to spring, summer`.
 struct Task : Located {
   std::optional<Name> name;
-  Name verb;                        // simulate, fit, select, predict
-  Name subject;                     // a model (simulate, fit), candidates (select) or a task (predict)
+  Name verb;                        // simulate, fit, select, discover, predict
+  Name subject;                     // a model (simulate, fit), candidates (select), a dictionary (discover) or a task (predict)
   std::vector<Argument> arguments;  // of the model
-  std::optional<Name> preposition;  // to, on
+  std::optional<Name> preposition;  // to, on, from
   std::vector<DataReference> data;  // one experiment each
   std::vector<Option> options;
   friend bool operator==(Task const&, Task const&) = default;
@@ -360,7 +406,7 @@ struct Use : Located {
   friend bool operator==(Use const&, Use const&) = default;
 };
 
-using Item = std::variant<Use, Model, Data, Candidates, FunctionDefinition, Task>;
+using Item = std::variant<Use, Model, Data, Candidates, Dictionary, FunctionDefinition, Task>;
 
 struct File {
   std::vector<Item> items;

@@ -197,6 +197,11 @@ std::string text_of(ast::DataReference const& reference) {
   return reference.data.text + (reference.part ? "." + reference.part->text : "");
 }
 
+std::string text_of(ast::DictionaryState const& state) {
+  return state.name.text + std::string(static_cast<std::size_t>(state.primes), '\'') + bracketed(state.unit) +
+         (state.channel ? " = " + state.channel->text : "");
+}
+
 template <class Items>
 std::string comma_list(Items const& items) {
   return joined(items, ", ", [](auto const& item) { return text_of(item); });
@@ -273,6 +278,23 @@ struct CandidateStatementText {
   std::string operator()(ast::SharedParameters const& s) const { return "shared " + comma_list(s.names); }
 };
 
+struct DictionaryStatementText : ModelStatementText {
+  using ModelStatementText::operator();
+  std::string operator()(ast::DictionaryStates const& s) const { return "state " + comma_list(s.states); }
+  std::string operator()(ast::DictionaryParameter const& s) const {
+    return "parameter " + text_of(s.name) + (s.value ? " = " + unparse(*s.value) : "");
+  }
+  std::string operator()(ast::DictionaryList const& s) const {
+    std::string_view const word = s.kind == ast::DictionaryListKind::target  ? "target"
+                                  : s.kind == ast::DictionaryListKind::terms ? "terms"
+                                                                             : "exclude";
+    return fmt::format("{} = {}", word, joined(s.items, ", ", [](auto const& item) { return unparse(item); }));
+  }
+  std::string operator()(ast::CoefficientUnits const& s) const {
+    return "coefficients = " + joined(s.units, ", ", [](auto const& unit) { return fmt::format("[{}]", unparse(unit)); });
+  }
+};
+
 template <class Statements, class Text>
 std::string block(std::string const& head, Statements const& statements, Text text) {
   std::string out = head + " {\n";
@@ -293,6 +315,10 @@ struct ItemText {
   std::string operator()(ast::Candidates const& set) const {
     std::string const title = set.title ? " " + quoted(set.title->value) : "";
     return block("candidates " + set.name.text + title, set.statements, CandidateStatementText{});
+  }
+  std::string operator()(ast::Dictionary const& dictionary) const {
+    std::string const title = dictionary.title ? " " + quoted(dictionary.title->value) : "";
+    return block("dictionary " + dictionary.name.text + title, dictionary.statements, DictionaryStatementText{});
   }
   std::string operator()(ast::FunctionDefinition const& function) const { return text_of(function); }
   std::string operator()(ast::Task const& task) const {
@@ -327,7 +353,7 @@ std::string unparse(ast::File const& file) {
   for (ast::Item const& item : file.items) {
     // Blocks stand apart; neighbouring tasks and functions do not.
     bool const is_block = std::holds_alternative<ast::Model>(item) || std::holds_alternative<ast::Data>(item) ||
-                          std::holds_alternative<ast::Candidates>(item);
+                          std::holds_alternative<ast::Candidates>(item) || std::holds_alternative<ast::Dictionary>(item);
     if (!out.empty() && (is_block || out.ends_with("}\n"))) out += "\n";
     out += std::visit(ItemText{}, item) + "\n";
   }

@@ -14,10 +14,10 @@ namespace sysid::words {
 inline constexpr std::array<std::string_view, 6> reserved{"if", "then", "else", "and", "or", "not"};
 
 /// First words of what stands in a file; a task begins with its verb, or with its name and `=`.
-inline constexpr std::array<std::string_view, 5> items{"use", "model", "data", "candidates", "function"};
+inline constexpr std::array<std::string_view, 6> items{"use", "model", "data", "candidates", "dictionary", "function"};
 /// Those with braces.
-inline constexpr std::array<std::string_view, 3> blocks{"model", "data", "candidates"};
-inline constexpr std::array<std::string_view, 4> verbs{"simulate", "fit", "select", "predict"};
+inline constexpr std::array<std::string_view, 4> blocks{"model", "data", "candidates", "dictionary"};
+inline constexpr std::array<std::string_view, 5> verbs{"simulate", "fit", "select", "discover", "predict"};
 inline constexpr std::array<std::string_view, 3> prepositions{"to", "on", "from"};
 /// Inside a task.
 inline constexpr std::array<std::string_view, 2> task_words{"with", "input"};
@@ -33,6 +33,9 @@ inline constexpr std::array<std::string_view, 8> data_statements{"file",  "time"
 inline constexpr std::array<std::string_view, 2> data_words{"hold", "rows"};
 /// Of a set of candidate models: what begins a statement that is no candidate, and what follows a candidate.
 inline constexpr std::array<std::string_view, 2> candidate_words{"shared", "probability"};
+/// First words of the statements of a dictionary.
+inline constexpr std::array<std::string_view, 11> dictionary_statements{
+    "time", "input", "state", "parameter", "constant", "let", "function", "target", "terms", "exclude", "coefficients"};
 
 constexpr bool contains(std::span<std::string_view const> table, std::string_view word) {
   return std::find(table.begin(), table.end(), word) != table.end();

@@ -237,6 +237,7 @@ TEST_CASE("the parser accepts every statement of the reference grammar") {
   for (int i = 0; i < 1000; ++i) {
     test::parsed("model m {" + reference().sentence("statement", 6 + i % 10, random) + "}");
     test::parsed("data d {" + reference().sentence("data_statement", 6 + i % 10, random) + "}");
+    test::parsed("dictionary d {" + reference().sentence("dictionary_statement", 6 + i % 10, random) + "}");
     test::parsed("candidates c {" + reference().sentence("candidate_statement", 6 + i % 10, random) + "}");
     test::parsed(reference().sentence("task", 6 + i % 10, random));
     test::parsed_expression(reference().sentence("expression", 6 + i % 10, random));
@@ -256,6 +257,7 @@ TEST_CASE("the reference grammar and the tables hold the same words") {
   add(words::data_statements);
   add(words::data_words);
   add(words::candidate_words);
+  add(words::dictionary_statements);
   std::set<std::string> written;
   for (std::string const& literal : reference().literals())
     if (is_word(literal)) written.insert(literal);

@@ -98,7 +98,7 @@ TEST_CASE("one mistake gives one message") {
            "model m {\n  candidates a {\n    b; c = 3\n    d\n  }\n  state y\n}\n",
            "model m \"open {\n  y' = 1\n  state y\n}\nfit m to d\n",
            "model m {\n  y' = $ + $ (\n  state y\n}\n",
-           "dictionary d {\n  input x\n  terms = a, b\n}\nfit m to d\n",
+           "dictionary d {\n  input x\n  terms = a b\n}\nfit m to d\n",
            "model m {\n  y' = 3 +\n}\nfit m\n",
            "data d {\n  file 'a.csv'\n  time t [s]\n}\n",
            "p = fit m to d with mh(samples = 3\nq = fit m to d\n",

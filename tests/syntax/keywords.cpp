@@ -126,6 +126,26 @@ TEST_CASE("candidates are models with arguments and a probability, and what they
   CHECK(only_task("candidates = fit candidates to d").name->text == "candidates");
 }
 
+TEST_CASE("a dictionary binds states to channels and lists targets, terms and units") {
+  auto const dictionary = std::get<ast::Dictionary>(
+      parsed("dictionary d \"which?\" {\ninput x [N], u\nstate y [m] = q[1], y'' [m/s^2] = a\nparameter m [kg]; parameter k = 2\n"
+             "target = m*y'' - x\nterms = polynomial(y, y', degree = 3),\n  1\nexclude = y^2\ncoefficients = [N/m], [-]\n}")
+          .items.at(0));
+  CHECK(dictionary.title->value == "which?");
+  REQUIRE(dictionary.statements.size() == 8);
+  auto const& states = std::get<ast::DictionaryStates>(dictionary.statements[1]).states;
+  CHECK(states.at(0).channel->text == "q[1]");
+  CHECK(states.at(1).primes == 2);
+  CHECK(states.at(1).unit.has_value());
+  CHECK_FALSE(std::get<ast::DictionaryParameter>(dictionary.statements[2]).value.has_value());
+  CHECK(std::get<ast::DictionaryParameter>(dictionary.statements[3]).value.has_value());
+  CHECK(std::get<ast::DictionaryList>(dictionary.statements[4]).kind == ast::DictionaryListKind::target);
+  CHECK(std::get<ast::DictionaryList>(dictionary.statements[5]).items.size() == 2);
+  CHECK(std::get<ast::DictionaryList>(dictionary.statements[6]).kind == ast::DictionaryListKind::exclude);
+  CHECK(std::get<ast::CoefficientUnits>(dictionary.statements[7]).units.size() == 2);
+  CHECK(only_task("dictionary = discover discover from target").name->text == "dictionary");
+}
+
 TEST_CASE("tasks have an optional name, a place and options") {
   ast::Task const simulate =
       only_task("truth = simulate duffing with values(m = 1), input x = gaussian(sd = 10), noise = 1 [percent], seed = 1");

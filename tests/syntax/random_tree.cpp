@@ -158,6 +158,34 @@ ast::CandidateStatement RandomTree::candidate_statement() {
   return ast::Candidate{{}, name(), call(2).arguments, perhaps([&] { return expression(2); })};
 }
 
+ast::DictionaryStatement RandomTree::dictionary_statement() {
+  constexpr std::array kinds{ast::DictionaryListKind::target, ast::DictionaryListKind::terms, ast::DictionaryListKind::exclude};
+  auto const quantity = [&] { return ast::Declared{{}, name(), {}, false, perhaps([&] { return unit(1); })}; };
+  switch (random_.below(8)) {
+    case 0:
+      return ast::TimeDeclaration{{}, quantity()};
+    case 1:
+      return ast::InputDeclaration{{}, several(1, quantity)};
+    case 2:
+      return ast::DictionaryStates{
+          {}, several(1, [&] {
+            return ast::DictionaryState{
+                {}, name(), static_cast<int>(random_.below(3)), perhaps([&] { return unit(1); }), perhaps([&] { return name(); })};
+          })};
+    case 3:
+      return ast::DictionaryParameter{{}, quantity(), perhaps([&] { return expression(2); })};
+    case 4:
+      return ast::Definition{
+          {}, random_.chance(2) ? ast::DefinitionKind::constant : ast::DefinitionKind::local, quantity(), expression(3)};
+    case 5:
+      return function();
+    case 6:
+      return ast::CoefficientUnits{{}, several(1, [&] { return unit(1); })};
+    default:
+      return ast::DictionaryList{{}, random_.pick(kinds), several(1, [&] { return expression(3); })};
+  }
+}
+
 ast::Task RandomTree::task() {
   ast::Task out{{}, perhaps([&] { return name(); }), {{}, std::string(random_.pick(words::verbs))}, name(), {}, {}, {}, {}};
   if (random_.chance(3))
@@ -177,7 +205,9 @@ ast::Task RandomTree::task() {
 ast::File RandomTree::file() {
   ast::File out;
   out.items = several(0, [&]() -> ast::Item {
-    switch (random_.below(6)) {
+    switch (random_.below(7)) {
+      case 5:
+        return ast::Dictionary{{}, name(), perhaps([&] { return text(); }), several(0, [&] { return dictionary_statement(); })};
       case 4:
         return ast::Candidates{{}, name(), perhaps([&] { return text(); }), several(0, [&] { return candidate_statement(); })};
       case 3:

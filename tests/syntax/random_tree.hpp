@@ -45,6 +45,7 @@ class RandomTree {
   ast::ModelStatement model_statement();
   ast::DataStatement data_statement();
   ast::CandidateStatement candidate_statement();
+  ast::DictionaryStatement dictionary_statement();
   ast::Task task();
   template <class Make>
   auto several(std::size_t least, Make make) {
