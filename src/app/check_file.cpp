@@ -30,8 +30,8 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
     coverage.made_by = made->name;
     page.coverage.push_back(std::move(coverage));
   }
-  Model const& model = session.file.models[static_cast<std::size_t>(task.model)];
-  std::vector<ExperimentData> data = load_experiments(session, there, task.model, task.start, task.prediction);
+  Model const& model = *task.model;
+  std::vector<ExperimentData> data = load_experiments(session, there, model, task.start, task.prediction);
   for (ExperimentData const& each : data)
     page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
   if (!complete) return std::nullopt;
@@ -54,7 +54,8 @@ void check_bands(TaskPage& page) {
 void look_ahead_at_candidates(Session& session, Task const& task, SelectTask const& selection, TaskPage& page) {
   std::vector<std::vector<ExperimentData>> data;
   for (FitTask const& fit : selection.fits)
-    data.push_back(load_experiments(session, fit.experiments, fit.model, fit.start, fit.prediction));
+    data.push_back(load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
+                                    fit.prediction));
   if (refusal(task, selection, session.file.models, data)) return;
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
   for (std::size_t k = 0; k < selection.fits.size(); ++k) {
@@ -86,6 +87,12 @@ TaskPage check_task(Session& session, Task const& task) {
     auto const experiments = cover(session, data.front(), page);
     check_bands(page);
     if (experiments) look_ahead_at_candidates(session, task, *selection, page);
+  } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
+    page.what = fmt::format("discover {} from {} with {}, derivatives = {}",
+                            file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].name,
+                            data_names(file, discovery->experiments), discovery->selector, discovery->form);
+    cover(session, data.front(), page);
+    check_bands(page);
   } else {
     auto const& prediction = std::get<PredictTask>(task.what);
     page.what = fmt::format("predict {} on {}", file.tasks[static_cast<std::size_t>(prediction.fit)].name,
@@ -105,6 +112,8 @@ CheckResult check_file(Session& session) {
   if (auto const written = parse(session.source, known_to_parse))
     for (Model const& model : session.file.models)
       result.page.models.push_back(describe_structure(*written, session.file.tree, model));
+  for (CheckedDictionary const& dictionary : session.file.dictionaries)
+    result.page.dictionaries.push_back(describe_dictionary(dictionary));
   Readiness const readiness = check_readiness(session, [&](Task const& task) {
     // Data that a simulate task makes anew are checked when they are there.
     auto const* made = std::get_if<SimulateTask>(&task.what);

@@ -7,9 +7,9 @@
 
 namespace sysid {
 
-/// Structure of all models, the data of all tasks, and for each fit what prior draws predict, which step they need and what the
-/// data can tell about the parameters. What is wrong with data or settings is added to `diagnostics`; tasks without usable data are
-/// left at that. `unreadable` is set when the only errors are files that cannot be read.
+/// Structure of all models and dictionaries, the data of all tasks, and for each fit what prior draws predict, which step they need
+/// and what the data can tell about the parameters. What is wrong with data or settings is added to `diagnostics`; tasks without
+/// usable data are left at that. `unreadable` is set when the only errors are files that cannot be read.
 struct CheckResult {
   CheckPage page;
   Diagnostics diagnostics;
@@ -20,6 +20,9 @@ CheckResult check_file(Session& session);
 /// Equations, unknowns and everything declared, in the user's words where the text has them. flat: the models with their parts
 /// written out (CheckedFile::tree), for what stands in modules.
 ModelPage describe_structure(ast::File const& written, ast::File const& flat, Model const& model);
+
+/// States and their channels, the terms of each equation with the units of their coefficients, what was left out and why.
+DictionaryPage describe_dictionary(CheckedDictionary const& dictionary);
 
 /// Rows, gaps, rates and the band of each input.
 CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model);

@@ -185,9 +185,9 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
   return experiment;
 }
 
-std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start,
-                                             PredictionRule prediction) {
-  auto const as_predicted = with_prediction(session.file.models[static_cast<std::size_t>(model)], prediction);
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
+                                             StartRule start, PredictionRule prediction) {
+  auto const as_predicted = with_prediction(model, prediction);
   std::vector<ExperimentData> all;
   for (ExperimentUse const& use : uses) {
     Record const& record = session.record(use.data, model);

@@ -48,9 +48,9 @@ struct ExperimentData {
   Record record;
   Experiment experiment;  // cut and started as the task says; its name is that of the data, "bench.train"
 };
-/// Reads them in order; UserError, UnusableData, UnreadableData as above.
-std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, int model, StartRule start,
-                                             PredictionRule prediction);
+/// Reads them in order, for a model of the file; UserError, UnusableData, UnreadableData as above.
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
+                                             StartRule start, PredictionRule prediction);
 std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data);
 
 /// The parameters of a model over the experiments of a fit.

@@ -81,7 +81,8 @@ class Fit {
         compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
         model_(compiled_->model),
         space_(parameter_space(model_, what.experiments)),
-        data_(load_experiments(session, what.experiments, what.model, what.start, what.prediction)),
+        data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
+                               what.prediction)),
         began_(std::chrono::steady_clock::now()) {
     checkpoint_.of_data(data_);
   }

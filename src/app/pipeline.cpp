@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/check_file.hpp"
 #include "app/modules.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
@@ -17,29 +18,34 @@
 #include "inference/selector.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "model/dump.hpp"
+#include "regression/columns.hpp"
+#include "regression/selector.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
 namespace {
 
-std::vector<BackendSettings> backend_settings() {
+template <class Rows>
+std::vector<BackendSettings> settings_of(Rows const& all) {
   std::vector<BackendSettings> rows;
-  for (BackendRow const& row : backends()) rows.push_back({row.name, row.settings});
-  return rows;
-}
-
-std::vector<BackendSettings> selector_settings() {
-  std::vector<BackendSettings> rows;
-  for (SelectorRow const& row : selectors()) rows.push_back({row.name, row.settings});
+  for (auto const& row : all) rows.push_back({row.name, row.settings});
   return rows;
 }
 
 std::string verb_of(Task const& task) {
-  return std::holds_alternative<SimulateTask>(task.what) ? "simulate"
-         : std::holds_alternative<FitTask>(task.what)    ? "fit"
-         : std::holds_alternative<SelectTask>(task.what) ? "select"
-                                                         : "predict";
+  return std::holds_alternative<SimulateTask>(task.what)   ? "simulate"
+         : std::holds_alternative<FitTask>(task.what)      ? "fit"
+         : std::holds_alternative<SelectTask>(task.what)   ? "select"
+         : std::holds_alternative<DiscoverTask>(task.what) ? "discover"
+                                                           : "predict";
+}
+
+// The one that is fitted, or the first that is selected among.
+int model_of(CheckedFile const& file, PredictTask const& prediction) {
+  Task const& subject = file.tasks[static_cast<std::size_t>(prediction.fit)];
+  if (auto const* selection = std::get_if<SelectTask>(&subject.what)) return selection->fits.front().model;
+  return std::get<FitTask>(subject.what).model;
 }
 
 std::string dump(CandidateSet const& set) {
@@ -60,6 +66,9 @@ std::string nothing_to_do(Source const& source, CheckedFile const& file, std::ve
   else if (verbs.front() == "select")
     text += fmt::format("help: add one, for example `selection = select {} to {} with abc_smc`\n",
                         file.candidates.empty() ? model : file.candidates.front().name, data);
+  else if (verbs.front() == "discover")
+    text += fmt::format("help: add one, for example `found = discover {} from {}`\n",
+                        file.dictionaries.empty() ? "DICTIONARY" : file.dictionaries.front().name, data);
   else if (verbs.front() == "predict")
     text += fmt::format("help: add one, for example `forecast = predict posterior on {}`\n", data);
   else
@@ -75,9 +84,11 @@ std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics) {
   bool const complete = !diagnostics.has_errors();
   Diagnostics found;  // behind the syntax
   auto const modules = load_modules(*read.tree, source, found);
-  auto const fitting = backend_settings(), selecting = selector_settings();
+  auto const fitting = settings_of(backends()), selecting = settings_of(selectors());
+  auto const discovering = settings_of(regression::selectors()), derivatives = settings_of(regression::forms());
   std::optional<CheckedFile> file;
-  if (!found.has_errors()) file = check(elaborate(*read.tree, modules, found), {fitting, selecting}, found);
+  if (!found.has_errors())
+    file = check(elaborate(*read.tree, modules, found), {fitting, selecting, discovering, derivatives}, found);
   if (!complete) keep_independent(*read.tree, read.left_out, source, found);
   for (Diagnostic const& each : found.all()) diagnostics.add(each);
   return complete ? std::move(file) : std::nullopt;
@@ -94,8 +105,10 @@ std::string dump_stage(Source& source, std::string const& stage, Diagnostics& di
   std::string text;
   for (Model const& model : file->models)
     text += stage == "model" ? dump(model) : dump_program(*compile(model, false, model.implicit ? "ida" : SolverSettings{}.method));
-  if (stage == "model")
+  if (stage == "model") {
     for (CandidateSet const& set : file->candidates) text += dump(set);
+    for (CheckedDictionary const& dictionary : file->dictionaries) text += dictionary_text(describe_dictionary(dictionary));
+  }
   return text;
 }
 
@@ -110,13 +123,14 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
     auto const* made = std::get_if<SimulateTask>(&task.what);
     if (made != nullptr) return std::filesystem::exists(session.result_folder(task) / made->file);
     if (!complete(session.result_folder(task))) return false;
+    if (std::holds_alternative<DiscoverTask>(task.what)) return false;  // it takes seconds: done anew
     int model = 0;
     std::optional<std::uint64_t> seed = options.seed;
     if (auto const* fit = std::get_if<FitTask>(&task.what)) {
       model = fit->model;
       if (!seed) seed = fit->seed;
     } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
-      model = data_of(file, task).front().model;
+      model = model_of(file, *prediction);
       if (!seed) seed = prediction->seed;
     } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
       model = selection->fits.front().model;
@@ -157,6 +171,8 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
             return run_simulate(session, task, what);
           else if constexpr (std::is_same_v<What, FitTask>)
             return run_fit(session, static_cast<int>(i), task, what);
+          else if constexpr (std::is_same_v<What, DiscoverTask>)
+            return run_discover(session, task, what);
           else if constexpr (std::is_same_v<What, SelectTask>)
             return run_select(session, static_cast<int>(i), task, what);
           else if (std::holds_alternative<SelectTask>(file.tasks[static_cast<std::size_t>(what.fit)].what))

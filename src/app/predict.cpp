@@ -60,7 +60,8 @@ class Predict {
         compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method, what.prediction)),
         model_(compiled_->model),
         space_(parameter_space(model_, fit_.experiments)),
-        data_(load_experiments(session, what.experiments, fit_.model, what.start, what.prediction)),
+        data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(fit_.model)], what.start,
+                               what.prediction)),
         seed_(session.seed(task, what.seed)),
         wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {}
 

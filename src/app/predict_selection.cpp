@@ -96,7 +96,8 @@ class PredictSelection {
       bool const free_start = what_.start.kind == StartRule::Kind::estimated;
       auto const compiled = session_.compiled(fit.model, free_start, fit.solver.method, what_.prediction);
       std::vector<ExperimentData> const data =
-          load_experiments(session_, what_.candidate_experiments[k], fit.model, what_.start, what_.prediction);
+          load_experiments(session_, what_.candidate_experiments[k], session_.file.models[static_cast<std::size_t>(fit.model)],
+                           what_.start, what_.prediction);
       auto const space = parameter_space(without_noise_parameters(compiled->model), fit.experiments);
       LaneArray const declared = spread(candidates_[k].draws, counts[k]);
       LaneArray parameters(static_cast<int>(compiled->model.parameters.size()), declared.width());

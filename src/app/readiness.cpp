@@ -13,20 +13,28 @@
 #include "inference/selector.hpp"
 #include "likelihood/simulated_parameters.hpp"
 #include "model/past.hpp"
+#include "regression/columns.hpp"
+#include "regression/selector.hpp"
 
 namespace sysid {
 
 std::vector<TaskData> data_of(CheckedFile const& file, Task const& task) {
-  auto const of_fit = [](FitTask const& fit) { return TaskData{fit.model, &fit.experiments, fit.start, fit.prediction}; };
+  auto const model = [&](int index) { return &file.models[static_cast<std::size_t>(index)]; };
+  auto const of_fit = [&](FitTask const& fit) { return TaskData{model(fit.model), &fit.experiments, fit.start, fit.prediction}; };
   std::vector<TaskData> all;
   if (auto const* fit = std::get_if<FitTask>(&task.what)) {
     all.push_back(of_fit(*fit));
   } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
     for (FitTask const& fit : selection->fits) all.push_back(of_fit(fit));
+  } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
+    all.push_back({&file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].measured,
+                   &discovery->experiments,
+                   {StartRule::Kind::rest, 0},
+                   PredictionRule::as_written});
   } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
     Task const& subject = file.tasks[static_cast<std::size_t>(prediction->fit)];
-    auto const add = [&](int model, std::vector<ExperimentUse> const& experiments) {
-      all.push_back({model, &experiments, prediction->start, prediction->prediction});
+    auto const add = [&](int index, std::vector<ExperimentUse> const& experiments) {
+      all.push_back({model(index), &experiments, prediction->start, prediction->prediction});
     };
     if (auto const* selection = std::get_if<SelectTask>(&subject.what))
       for (std::size_t c = 0; c < selection->fits.size(); ++c) add(selection->fits[c].model, prediction->candidate_experiments[c]);
@@ -101,6 +109,14 @@ std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std:
   return std::nullopt;
 }
 
+std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what) {
+  if (std::string const why = regression::find_form(what.form)->refuse(what.form_settings); !why.empty())
+    return refused_settings(task, what.form, why);
+  if (std::string const why = regression::find_selector(what.selector)->refuse(what.selector_settings); !why.empty())
+    return refused_settings(task, what.selector, why);
+  return std::nullopt;
+}
+
 void Readiness::require() const {
   if (diagnostics.all().empty()) return;
   if (unreadable) throw UnreadableData(diagnostics);
@@ -120,7 +136,7 @@ Task const* maker(Session const& session, DataBlock const& block) {
 Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted) {
   Readiness result;
   bool only_unreadable = true;
-  std::set<std::pair<int, int>> left_out;  // data that a message has been said about
+  std::set<std::pair<int, Model const*>> left_out;  // data that a message has been said about
   std::set<std::string> said;
   auto const add = [&](Diagnostics const& more, bool unreadable) {
     for (Diagnostic const& each : more.all()) {
@@ -138,7 +154,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
   for (Task const& task : session.file.tasks) {
     bool complete = true;
     for (TaskData const& data : wanted(task) ? data_of(session.file, task) : std::vector<TaskData>()) {
-      auto const as_predicted = with_prediction(session.file.models[static_cast<std::size_t>(data.model)], data.prediction);
+      auto const as_predicted = with_prediction(*data.model, data.prediction);
       for (ExperimentUse const& use : *data.experiments) {
         DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
         Task const* made = maker(session, block);
@@ -147,7 +163,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
           continue;
         }
         try {
-          cut(session.record(use.data, data.model), block, *as_predicted, use.part, data.start);
+          cut(session.record(use.data, *data.model), block, *as_predicted, use.part, data.start);
           continue;
         } catch (UnusableData const& error) {
           left_out.insert({use.data, data.model});
@@ -163,7 +179,8 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
     }
     if (!wanted(task) || !complete) continue;
     auto const loaded = [&](FitTask const& fit) {
-      return load_experiments(session, fit.experiments, fit.model, fit.start, fit.prediction);
+      return load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
+                              fit.prediction);
     };
     if (auto const* fit = std::get_if<FitTask>(&task.what)) {
       if (auto const why = refusal(task, *fit, session.file.models[static_cast<std::size_t>(fit->model)], loaded(*fit)))
@@ -172,6 +189,8 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
       std::vector<std::vector<ExperimentData>> data;
       for (FitTask const& fit : selection->fits) data.push_back(loaded(fit));
       if (auto const why = refusal(task, *selection, session.file.models, data)) add_one(*why);
+    } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
+      if (auto const why = refusal(task, *discovery)) add_one(*why);
     }
   }
   result.unreadable = only_unreadable;

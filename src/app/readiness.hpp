@@ -18,6 +18,9 @@ std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model c
 std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std::vector<Model> const& models,
                                   std::vector<std::vector<ExperimentData>> const& data);
 
+/// Settings of a discovery that do not go together.
+std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what);
+
 struct Readiness {
   Diagnostics diagnostics;
   bool unreadable = false;  // all of them are files that cannot be read
@@ -25,13 +28,14 @@ struct Readiness {
   void require() const;
 };
 
-/// Reads the data of the wanted fit, select and predict tasks and asks `refusal`; each mistake once. Data that a wanted simulate
+/// Reads the data of the wanted tasks and asks `refusal`; each mistake once. Data that a wanted simulate
 /// task of the file makes are left for later.
 Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted);
 
-/// The data of a fit, select or predict task, once for each model that reads them; empty for others.
+/// The data of a task, once for each model that reads them, those of a discovery for what its dictionary is bound to; empty for a
+/// simulate task.
 struct TaskData {
-  int model = 0;
+  Model const* model = nullptr;
   std::vector<ExperimentUse> const* experiments = nullptr;
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;

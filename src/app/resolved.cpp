@@ -75,4 +75,19 @@ std::string resolved_select(Session const& session, Task const& task, SelectTask
       simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first, first.solver), seed);
 }
 
+std::string resolved_discover(Session const& session, Task const& task, DiscoverTask const& what, std::uint64_t seed) {
+  std::string selector = settings_text(what.selector, what.selector_settings);
+  std::string const derivatives = "derivatives = " + settings_text(what.form, what.form_settings);
+  if (selector.ends_with(')'))
+    selector.insert(selector.size() - 1, ", " + derivatives);
+  else
+    selector += "(" + derivatives + ")";
+  return fmt::format(
+      "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = discover {} from {} with "
+      "{}, "
+      "top = {}, candidates = {}, seed = {}\n",
+      task.name, without_tasks(session), task.name, session.file.dictionaries[static_cast<std::size_t>(what.dictionary)].name,
+      data_names(session.file, what.experiments), selector, what.top, what.candidates ? "yes" : "no", seed);
+}
+
 }  // namespace sysid

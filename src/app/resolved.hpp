@@ -9,6 +9,8 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
 
 std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed);
 
+std::string resolved_discover(Session const& session, Task const& task, DiscoverTask const& what, std::uint64_t seed);
+
 /// "mh(samples = 25000, ...)", every setting in the order of the table.
 std::string settings_text(std::string const& backend, Settings const& settings);
 

@@ -24,11 +24,11 @@ std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_star
   return place;
 }
 
-Record const& Session::record(int data, int model) {
-  auto const found = records_.find({data, model});
+Record const& Session::record(int data, Model const& model) {
+  auto const found = records_.find({data, &model});
   if (found != records_.end()) return found->second;
-  Record read = load_record(file.data[static_cast<std::size_t>(data)], file.models[static_cast<std::size_t>(model)], folder());
-  return records_.emplace(std::pair(data, model), std::move(read)).first->second;
+  Record read = load_record(file.data[static_cast<std::size_t>(data)], model, folder());
+  return records_.emplace(std::pair(data, &model), std::move(read)).first->second;
 }
 
 std::uint64_t Session::seed(Task const& task, std::optional<std::uint64_t> const& stated) {

@@ -49,8 +49,8 @@ class Session {
   std::filesystem::path result_folder(Task const& task) const { return options.output / task.name; }
   /// Compiled on first use.
   std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method, PredictionRule prediction);
-  /// The record of a data block as a model reads it, read on first use. Throws as `load_record`.
-  Record const& record(int data, int model);
+  /// The record of a data block as a model of the file reads it, read on first use. Throws as `load_record`.
+  Record const& record(int data, Model const& model);
   /// The seed of a task: the command line's, the file's, or one drawn from the system and printed.
   std::uint64_t seed(Task const& task, std::optional<std::uint64_t> const& stated);
   /// A sub-expression in the user's words, for the ledger.
@@ -62,7 +62,7 @@ class Session {
 
  private:
   std::map<std::tuple<int, bool, std::string, PredictionRule>, std::shared_ptr<CompiledModel const>> compiled_;
-  std::map<std::pair<int, int>, Record> records_;
+  std::map<std::pair<int, Model const*>, Record> records_;
   std::optional<std::uint64_t> drawn_seed_;
   std::uint64_t polls_ = 0;
 };
@@ -70,6 +70,7 @@ class Session {
 ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what);
 ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what);
 ExitCode run_select(Session& session, int index, Task const& task, SelectTask const& what);
+ExitCode run_discover(Session& session, Task const& task, DiscoverTask const& what);
 ExitCode run_predict(Session& session, Task const& task, PredictTask const& what);
 /// Of a selection: each candidate's particles as often as it is probable, the tutorial's (8.8).
 ExitCode run_predict_selection(Session& session, Task const& task, PredictTask const& what);

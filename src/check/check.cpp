@@ -10,6 +10,7 @@
 #include "check/consequences.hpp"
 #include "check/culprit.hpp"
 #include "check/data.hpp"
+#include "check/dictionary.hpp"
 #include "check/errors.hpp"
 #include "check/model.hpp"
 #include "check/tasks.hpp"
@@ -64,7 +65,8 @@ std::optional<CheckedFile> check(Elaborated const& elaborated, Backends const& b
   std::vector<ast::FunctionDefinition const*> functions;
   std::vector<ast::Task const*> tasks;
   Unique unique_model("model", diagnostics), unique_data("data block", diagnostics), unique_task("task", diagnostics),
-      unique_function("function", diagnostics), unique_candidates("candidate set", diagnostics);
+      unique_function("function", diagnostics), unique_candidates("candidate set", diagnostics),
+      unique_dictionary("dictionary", diagnostics);
   for (ast::Item const& item : tree.items) {
     if (auto const* function = std::get_if<ast::FunctionDefinition>(&item))
       if (unique_function(function->name, function->name.text)) functions.push_back(function);
@@ -90,6 +92,12 @@ std::optional<CheckedFile> check(Elaborated const& elaborated, Backends const& b
       auto checked = check_data(*data, diagnostics);
       names.data[data->name.text] = checked ? std::optional(static_cast<int>(file.data.size())) : std::nullopt;
       if (checked) file.data.push_back(std::move(*checked));
+    } else if (auto const* dictionary = std::get_if<ast::Dictionary>(&item)) {
+      if (!unique_dictionary(dictionary->name, dictionary->name.text)) continue;
+      auto checked = check_dictionary(*dictionary, functions, diagnostics);
+      names.dictionaries[dictionary->name.text] =
+          checked ? std::optional(static_cast<int>(file.dictionaries.size())) : std::nullopt;
+      if (checked) file.dictionaries.push_back(std::move(*checked));
     }
   }
   for (ast::Item const& item : tree.items) {

@@ -20,6 +20,8 @@ struct BackendSettings {
 struct Backends {
   std::span<BackendSettings const> fitting;
   std::span<BackendSettings const> selecting;
+  std::span<BackendSettings const> discovering;  // selectors of terms, the first is the default
+  std::span<BackendSettings const> derivatives;  // forms of derivatives for discovery, likewise
 };
 
 /// The checked file, or nothing when an error was reported. Warnings do not prevent a result.

@@ -11,6 +11,7 @@
 #include "core/solver.hpp"
 #include "data/experiment.hpp"
 #include "model/past.hpp"
+#include "regression/dictionary.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid {
@@ -171,10 +172,63 @@ struct PredictTask {
   std::optional<std::uint64_t> seed;
 };
 
+/// A term of one equation of a dictionary, as the numbers beside it know it by its index.
+struct DictionaryTerm {
+  std::string text;          // "abs(y')*y'"; of a free coefficient of the target what it stands before there
+  ast::Expression tree;      // the same; of a free coefficient of the target: the parameter
+  std::string coefficient;   // the parameter before it; empty: none was named
+  bool in_target = false;    // it stands there, with its coefficient
+  std::optional<Unit> unit;  // of the coefficient; absent: unchecked
+  Span span;
+};
+
+struct DictionaryEquation {
+  std::string text;      // "m*y'' - x"
+  ast::Expression tree;  // the target as written
+  std::optional<Unit> unit;
+  std::vector<DictionaryTerm> terms;  // parallel to regression::Equation::terms
+};
+
+/// A term that the dictionary could hold and does not.
+struct LeftOutTerm {
+  enum class Why { same, excluded, unit };
+  Why why = Why::same;
+  std::string text;
+  std::string detail;  // same: the term it is the same as; unit: the unit that its coefficient would have
+  int equation = -1;   // -1: every one
+};
+
+struct CheckedDictionary {
+  std::string name, title;
+  Span span;
+  ast::Dictionary tree;
+  std::vector<ast::FunctionDefinition> functions;  // of the file, that its expressions may call
+  regression::Dictionary numbers;
+  std::vector<DictionaryEquation> equations;
+  std::vector<LeftOutTerm> left_out;
+  std::vector<Quantity> states;
+  std::vector<Span> channel_spans;  // where each channel is bound
+  /// What data blocks are bound to: inputs and channels, no states and no noise.
+  Model measured;
+};
+
+/// Equations from records.
+struct DiscoverTask {
+  int dictionary = 0;  // index into CheckedFile::dictionaries
+  std::vector<ExperimentUse> experiments;
+  std::string form;  // of derivatives
+  Settings form_settings;
+  std::string selector;
+  Settings selector_settings;
+  int top = 5;              // supports that are shown, and written as candidates
+  bool candidates = false;  // whether they are
+  std::optional<std::uint64_t> seed;
+};
+
 struct Task {
   std::string name;
   Span span;
-  std::variant<SimulateTask, FitTask, SelectTask, PredictTask> what;
+  std::variant<SimulateTask, FitTask, SelectTask, DiscoverTask, PredictTask> what;
 };
 
 struct CheckedFile {
@@ -182,6 +236,7 @@ struct CheckedFile {
   std::vector<Model> models;
   std::vector<DataBlock> data;
   std::vector<CandidateSet> candidates;
+  std::vector<CheckedDictionary> dictionaries;
   std::vector<Task> tasks;
 };
 

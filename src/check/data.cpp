@@ -165,9 +165,24 @@ void add_once(Diagnostics& diagnostics, Diagnostic diagnostic) {
 
 }  // namespace
 
+namespace {
+
+void add_declared(ast::Dictionary const& dictionary, DeclaredNames& names) {
+  for (ast::DictionaryStatement const& statement : dictionary.statements) {
+    if (auto const* input = std::get_if<ast::InputDeclaration>(&statement))
+      for (ast::Declared const& each : input->names) names.inputs.insert(each.name.text);
+    if (auto const* states = std::get_if<ast::DictionaryStates>(&statement))
+      for (ast::DictionaryState const& each : states->states)
+        if (each.channel) names.channels.insert(each.channel->text);
+  }
+}
+
+}  // namespace
+
 DeclaredNames declared_names(ast::File const& file) {
   DeclaredNames names;
   for (ast::Item const& item : file.items) {
+    if (auto const* dictionary = std::get_if<ast::Dictionary>(&item)) add_declared(*dictionary, names);
     auto const* model = std::get_if<ast::Model>(&item);
     if (model == nullptr) continue;
     for (ast::ModelStatement const& statement : model->statements) {

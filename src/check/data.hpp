@@ -12,7 +12,8 @@
 
 namespace sysid {
 
-/// What the models of a file declare, whether they passed their own check or not: a block may serve several models.
+/// What the models and dictionaries of a file declare, whether they passed their own check or not: a block may serve several
+/// models.
 struct DeclaredNames {
   std::set<std::string> inputs, channels, parameters;
   bool all = true;  // otherwise a model could not be written out in numbers, and may have any name

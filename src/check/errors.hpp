@@ -72,7 +72,7 @@ Diagnostic channel_twice(ast::Name const& name, Span first);
 Diagnostic nothing_observed(ast::Name const& model);
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first);
 /// Warnings.
-Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior);
+Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where = "model");
 Diagnostic unused_input(Span declaration, std::string const& input);
 Diagnostic time_twice(Span second, Span first);
 
@@ -155,9 +155,31 @@ Diagnostic distances_of_two_kinds(Span span, std::string const& one, Unit const&
                                   Unit const& other_unit);
 Diagnostic expressions_of_two_units(Span second, Unit const& unit, Span first, Unit const& first_unit);
 Diagnostic no_weight(Span span);
-Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, Names const& known);
+/// own: the verb that it is for.
+Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, std::string const& own, Names const& known);
 Diagnostic arguments_of_candidates(Span span, std::string const& set);
 Diagnostic model_and_candidates(ast::Name const& name, Span model);
+
+// dictionaries and discovery (E66)
+Diagnostic no_target(ast::Name const& dictionary);
+Diagnostic target_twice(Span second, Span first, std::string const& text);
+Diagnostic no_terms(ast::Name const& dictionary);
+Diagnostic nothing_left_of_terms(Span target, std::string const& equation);
+Diagnostic unknown_generator(ast::Name const& name);
+Diagnostic generator_arguments(ast::Name const& generator, std::string const& missing, std::string const& example);
+Diagnostic generator_number(Span span, std::string const& option, int most, std::string const& example);
+Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters);
+Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter);
+Diagnostic coefficient_inside(Span term, std::string const& text);
+Diagnostic state_without_channel(Span state, std::string const& name);
+Diagnostic derivative_of_nothing(ast::Name const& state, int primes);
+Diagnostic derivative_without_channel(ast::Name const& state, int primes);
+Diagnostic channel_bound_twice(ast::Name const& channel, Span first);
+Diagnostic excludes_nothing(Span span, std::string const& text, Names const& known);
+Diagnostic unit_of_no_term(Span span, std::string const& unit, Names const& possible);
+Diagnostic too_many_terms(Span span, std::size_t most);
+Diagnostic index_in_dictionary(ast::Reference const& reference);
+Diagnostic channel_not_measured(Span data, std::string const& block, Span state, std::string const& channel, Names const& measured);
 
 // several experiments (E63)
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known);

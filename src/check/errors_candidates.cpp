@@ -115,13 +115,17 @@ Diagnostic no_weight(Span span) {
   return error("E6514", span, "every channel has weight 0: nothing would be compared", "give one of them a positive weight");
 }
 
-Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, Names const& known) {
-  return error("E6515", name.span,
-               verb == "select" ? fmt::format("`{}` fits one model, it does not select among several", name.text)
-                                : fmt::format("`{}` selects among models, it is not for `{}`", name.text, verb),
-               verb == "select"
-                   ? fmt::format("select with {}, or `fit` one model with `{}`", quoted(known, "or"), name.text)
-                   : fmt::format("write `select MODEL to DATA with {}`, or fit with {}", name.text, quoted(known, "or")));
+Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, std::string const& own, Names const& known) {
+  if (verb == "select" && own == "fit")
+    return error("E6515", name.span, fmt::format("`{}` fits one model, it does not select among several", name.text),
+                 fmt::format("select with {}, or `fit` one model with `{}`", quoted(known, "or"), name.text));
+  if (own == "select")
+    return error("E6515", name.span, fmt::format("`{}` selects among models, it is not for `{}`", name.text, verb),
+                 fmt::format("write `select MODEL to DATA with {}`, or {} with {}", name.text, verb, quoted(known, "or")));
+  return error(
+      "E6515", name.span,
+      fmt::format("`{}` {}, it is not for `{}`", name.text, own == "fit" ? "fits a model" : "finds terms of a dictionary", verb),
+      fmt::format("{} with {}", verb, quoted(known, "or")));
 }
 
 Diagnostic arguments_of_candidates(Span span, std::string const& set) {

@@ -81,10 +81,11 @@ Diagnostic unused(Span declaration, std::string message, std::string help) {
 
 }  // namespace
 
-Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior) {
-  return unused(declaration, fmt::format("nothing in this model reads the parameter `{}`", parameter),
-                has_prior ? "use it in an equation, an observation or another prior; as it is, its posterior is its prior"
-                          : "use it in an equation, an observation or a prior, or delete it");
+Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where) {
+  return unused(declaration, fmt::format("nothing in this {} reads the parameter `{}`", where, parameter),
+                where == "dictionary" ? "put it before a term or into the target, or delete it"
+                : has_prior ? "use it in an equation, an observation or another prior; as it is, its posterior is its prior"
+                            : "use it in an equation, an observation or a prior, or delete it");
 }
 Diagnostic unused_input(Span declaration, std::string const& input) {
   return unused(declaration, fmt::format("nothing in this model reads the input `{}`", input),

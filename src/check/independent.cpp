@@ -114,6 +114,7 @@ class Damage {
              return candidate != nullptr && names_.contains(candidate->model.text);
            });
   }
+  bool made_of_damaged(ast::Dictionary const& dictionary) const { return names_.contains(dictionary.name.text); }
   bool made_of_damaged(ast::Data const& data) const { return names_.contains(data.name.text); }
   bool made_of_damaged(ast::FunctionDefinition const&) const { return false; }
   bool made_of_damaged(ast::Use const&) const { return false; }
@@ -122,6 +123,7 @@ class Damage {
   bool spread(ast::Model const& model) { return names_.insert(model.name.text).second; }
   bool spread(ast::Data const& data) { return names_.insert(data.name.text).second; }
   bool spread(ast::Candidates const& set) { return names_.insert(set.name.text).second; }
+  bool spread(ast::Dictionary const& dictionary) { return names_.insert(dictionary.name.text).second; }
   bool spread(ast::Task const& task) {
     return names_.insert(task.name ? task.name->text : task.verb.text + "_" + task.subject.text).second;
   }

@@ -52,14 +52,9 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
     case SettingKind::real:
       if (auto const value = number(argument.value, name, Unit{}, row.minimum, row.maximum)) values.set(name, *value);
       break;
-    case SettingKind::flag: {
-      auto const word = as_word(argument.value);
-      if (word == "yes" || word == "no")
-        values.set(name, word == "yes");
-      else
-        diagnostics_.add(errors::option_choice(argument.value.span, name, word.value_or(""), {"yes", "no"}));
+    case SettingKind::flag:
+      if (auto const value = yes_or_no(argument.value, name)) values.set(name, *value);
       break;
-    }
     case SettingKind::numbers: {
       auto const* list = std::get_if<ast::Box<ast::List>>(&argument.value.node);
       std::vector<double> all;
@@ -106,6 +101,17 @@ std::optional<double> OptionReader::number(ast::Expression const& tree, std::str
     return std::nullopt;
   }
   return constant;
+}
+
+std::optional<bool> OptionReader::yes_or_no(ast::Expression const& tree, std::string const& name) {
+  auto const word = as_word(tree);
+  if (word == "yes" || word == "no") return word == "yes";
+  diagnostics_.add(errors::option_choice(tree.span, name, word.value_or(""), {"yes", "no"}));
+  return std::nullopt;
+}
+
+void OptionReader::flag(ast::Option const& option, std::string const& name, bool& place) {
+  if (auto const value = yes_or_no(option.value, name)) place = *value;
 }
 
 void OptionReader::whole(ast::Option const& option, std::string const& name, double least, double most, int& place) {

@@ -39,6 +39,8 @@ class OptionReader {
   std::optional<double> number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit, double least,
                                double most, bool whole = false);
   void whole(ast::Option const& option, std::string const& name, double least, double most, int& place);
+  /// yes or no.
+  void flag(ast::Option const& option, std::string const& name, bool& place);
   void seed(ast::Option const& option, std::optional<std::uint64_t>& place);
   /// record, rest or estimated(rows = 50).
   void start(ast::Option const& option, StartRule& place);
@@ -54,6 +56,7 @@ class OptionReader {
   void unknown(ast::Option const& option, std::vector<std::string> const& known);
 
  private:
+  std::optional<bool> yes_or_no(ast::Expression const& tree, std::string const& name);
   void setting(ast::Argument const& argument, SettingRow const& row, Settings& place);
 
   std::string verb_;

@@ -38,7 +38,7 @@ class TaskChecker {
   // --- task_experiments.cpp
   // One experiment of the task, without its name; nothing when a diagnostic was added.
   std::optional<ExperimentUse> experiment(ast::DataReference const& reference, Model const* model);
-  // All of the task, named. preposition: before its data, `to` or `on`; no sample is fitted twice.
+  // All of the task, named. preposition: before its data, `to`, `on` or `from`; no sample is fitted twice.
   std::vector<ExperimentUse> experiments(Model const* model, std::string const& preposition);
 
   // --- task_fit.cpp
@@ -51,6 +51,14 @@ class TaskChecker {
   std::vector<FitTask> candidate_fits(CandidateSet const& set, FitTask const& common);
   // The channels that the data measure; all candidates observe them in units of one kind.
   std::vector<std::string> common_channels(CandidateSet const& set, std::vector<ExperimentUse> const& experiments);
+
+  // --- task_discover.cpp
+  DiscoverTask discover();
+  // `spike_slab(derivatives = weak(...), ...)`.
+  void discover_method(ast::Option const& option, std::string const& key, DiscoverTask& task);
+  void derivatives(ast::Expression const& tree, DiscoverTask& task);
+  // Every channel of the dictionary is measured in every experiment.
+  void require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task);
 
   // --- task_predict.cpp
   PredictTask predict();

@@ -29,6 +29,8 @@ std::optional<Task> TaskChecker::run() {
     task.what = fit();
   } else if (tree_.verb.text == "select") {
     task.what = select();
+  } else if (tree_.verb.text == "discover") {
+    task.what = discover();
   } else {
     task.what = predict();
   }
@@ -86,11 +88,16 @@ bool TaskChecker::backend_option(ast::Option const& option, std::string const& k
   if (option.input || option.key || key.empty()) return false;
   auto const row = std::find_if(known.begin(), known.end(), [&](BackendSettings const& each) { return each.name == key; });
   if (row == known.end()) {
-    bool const other =
-        std::any_of(backends_.fitting.begin(), backends_.fitting.end(), [&](auto const& each) { return each.name == key; }) ||
-        std::any_of(backends_.selecting.begin(), backends_.selecting.end(), [&](auto const& each) { return each.name == key; });
-    diagnostics_.add(other ? errors::backend_of_other_verb({{head_span(option.value)}, key}, tree_.verb.text, names_of(known))
-                           : errors::unknown_backend({{head_span(option.value)}, key}, names_of(known)));
+    auto const among = [&](std::span<BackendSettings const> rows) {
+      return std::any_of(rows.begin(), rows.end(), [&](BackendSettings const& each) { return each.name == key; });
+    };
+    std::string const own = among(backends_.fitting)       ? "fit"
+                            : among(backends_.selecting)   ? "select"
+                            : among(backends_.discovering) ? "discover"
+                                                           : "";
+    diagnostics_.add(!own.empty()
+                         ? errors::backend_of_other_verb({{head_span(option.value)}, key}, tree_.verb.text, own, names_of(known))
+                         : errors::unknown_backend({{head_span(option.value)}, key}, names_of(known)));
     backend = key;  // said once is enough
     return true;
   }

@@ -8,11 +8,14 @@
 #include "app/module_page.hpp"
 #include "app/modules.hpp"
 #include "check/elaborate/array_functions.hpp"
+#include "check/generators.hpp"
 #include "core/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "inference/backend.hpp"
 #include "inference/selector.hpp"
+#include "regression/columns.hpp"
+#include "regression/selector.hpp"
 
 namespace sysid {
 namespace {
@@ -48,6 +51,14 @@ std::string list(std::string const& topic) {
       text += fmt::format("{:<68} {}{}\n", signature(row), row.summary, row.noise && !row.discrete ? "; also as noise" : "");
   } else if (topic == "modules") {
     for (LibraryModule const& module : library_modules()) text += fmt::format("{:<14} {}\n", module.name, module_summary(module));
+  } else if (topic == "discovery") {
+    text += "selectors of terms\n\n";
+    for (auto const& row : regression::selectors()) text += with_settings(row.name, row.summary, row.settings);
+    text += "\nforms of derivatives\n\n";
+    for (auto const& row : regression::forms()) text += with_settings(row.name, row.summary, row.settings);
+    text += "\nfamilies of terms\n\n";
+    for (GeneratorRow const& row : generators())
+      text += fmt::format("{:<14} {}\n{:<14} {}\n", row.name, row.summary, "", row.option.example);
   } else if (topic == "solvers") {
     for (SolverRow const& row : solvers()) text += with_settings(row.name, row.summary, row.settings);
   } else {

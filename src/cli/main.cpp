@@ -257,6 +257,7 @@ int main(int argument_count, char** arguments) {
   runs("simulate", "do its simulate tasks: make data", {"simulate"});
   runs("fit", "do its fit tasks", {"fit"});
   runs("select", "do its select tasks: which candidate model, with which parameters", {"select"});
+  runs("discover", "do its discover tasks: which equation, from the terms of a dictionary", {"discover"});
   runs("predict", "do its predict tasks, from stored draws", {"predict"});
   CLI::App* checking = app.add_subcommand("check", "say what is wrong with a file and what its data can tell, before any sampling");
   checking->add_option("file", line.file, "the .sysid file")->required();
@@ -267,10 +268,10 @@ int main(int argument_count, char** arguments) {
   formatting->add_option("files", line.files, "the .sysid files; - reads standard input and writes standard output")->required();
   formatting->add_flag("--check", line.only_check, "change nothing; name the files that would change and exit with 1");
   formatting->callback([&] { exit = format(line); });
-  CLI::App* listing = app.add_subcommand("list", "list functions, distributions, backends, solvers or modules");
-  listing->add_option("what", line.topic, "functions, distributions, backends, solvers or modules")
+  CLI::App* listing = app.add_subcommand("list", "list functions, distributions, backends, discovery, solvers or modules");
+  listing->add_option("what", line.topic, "functions, distributions, backends, discovery, solvers or modules")
       ->required()
-      ->check(CLI::IsMember({"functions", "distributions", "backends", "solvers", "modules"}));
+      ->check(CLI::IsMember({"functions", "distributions", "backends", "discovery", "solvers", "modules"}));
   listing->callback([&] { std::cout << list(line.topic); });
   CLI::App* explaining =
       app.add_subcommand("explain", "what the code of a message or a finding means, with an example and its mended twin");

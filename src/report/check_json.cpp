@@ -28,6 +28,18 @@ Json model_object(ModelPage const& model) {
           {"unchecked_units", model.unchecked}};
 }
 
+Json dictionary_object(DictionaryPage const& dictionary) {
+  Json equations = Json::array();
+  for (DictionaryPage::Equation const& equation : dictionary.equations)
+    equations.push_back({{"target", equation.target}, {"unit", equation.unit}, {"terms", lines(equation.terms)}});
+  return {{"name", dictionary.name},
+          {"title", dictionary.title},
+          {"states", lines(dictionary.states)},
+          {"inputs", lines(dictionary.inputs)},
+          {"equations", std::move(equations)},
+          {"left_out", dictionary.left_out}};
+}
+
 Json coverage_object(CoveragePage const& data) {
   Json inputs = Json::array(), channels = Json::array();
   for (CoveragePage::Input const& input : data.inputs)
@@ -132,12 +144,13 @@ Json task_object(TaskPage const& task) {
 }  // namespace
 
 std::string check_json(CheckPage const& page, std::string const& messages) {
-  Json models = Json::array(), tasks = Json::array(), said = Json::array();
+  Json models = Json::array(), dictionaries = Json::array(), tasks = Json::array(), said = Json::array();
   std::istringstream lines(messages);
   for (std::string line; std::getline(lines, line);) said.push_back(Json::parse(line));
   for (ModelPage const& model : page.models) models.push_back(model_object(model));
+  for (DictionaryPage const& dictionary : page.dictionaries) dictionaries.push_back(dictionary_object(dictionary));
   for (TaskPage const& task : page.tasks) tasks.push_back(task_object(task));
-  Json const all = {{"file", page.file}, {"messages", said}, {"models", models}, {"tasks", tasks}};
+  Json const all = {{"file", page.file}, {"messages", said}, {"models", models}, {"dictionaries", dictionaries}, {"tasks", tasks}};
   // The user's text may hold any bytes; what is not finite is null.
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -24,6 +24,18 @@ struct ModelPage {
   std::vector<std::string> unchecked;  // places whose units could not be compared, in the user's words
 };
 
+/// What the equations of a discovery may be made of.
+struct DictionaryPage {
+  std::string name, title;
+  std::vector<DeclaredLine> states, inputs;  // text: "measured as displacement"
+  struct Equation {
+    std::string target, unit;
+    std::vector<DeclaredLine> terms;  // unit: of the coefficient; text: "coefficient k", "known"
+  };
+  std::vector<Equation> equations;
+  std::vector<std::string> left_out;  // "y*y': excluded"
+};
+
 /// The rows of a record that a task uses.
 struct CoveragePage {
   std::string name, file, made_by;  // made_by: the simulate task that makes the file, when it is not there yet
@@ -106,6 +118,7 @@ struct TaskPage {
 struct CheckPage {
   std::string file;
   std::vector<ModelPage> models;
+  std::vector<DictionaryPage> dictionaries;
   std::vector<TaskPage> tasks;
   int data_blocks = 0;
   int errors = 0, warnings = 0;  // told beside the page, with places in the text
@@ -114,6 +127,7 @@ struct CheckPage {
 /// The worst of the tasks' findings; note when there are none.
 Severity grade(CheckPage const& page);
 
+std::string dictionary_text(DictionaryPage const& page);
 std::string check_text(CheckPage const& page);
 /// messages: of `render_json`, one object per line; they become a part of the page.
 std::string check_json(CheckPage const& page, std::string const& messages);

@@ -61,6 +61,14 @@ std::string model_text(ModelPage const& model) {
   return out;
 }
 
+// How many terms each equation has, then those that all share, or each with its own.
+std::string equation_text(DictionaryPage::Equation const& equation, bool alone) {
+  std::string const unit = equation.unit.empty() ? "" : fmt::format(" [{}]", equation.unit);
+  std::string out =
+      entry("target", {fmt::format("{}{}: {}", equation.target, unit, count(static_cast<int>(equation.terms.size()), "term"))});
+  return out + table(alone ? "terms" : "", rows_of(equation.terms), 3);
+}
+
 // Frequencies of records that count in longer units than seconds are told in those.
 bool slow(CoveragePage const& data) { return data.time_scale > 1; }
 std::string frequency_unit(CoveragePage const& data) { return slow(data) ? "1/" + data.time_unit : "Hz"; }
@@ -185,9 +193,18 @@ Severity grade(CheckPage const& page) {
   return worst;
 }
 
+std::string dictionary_text(DictionaryPage const& page) {
+  std::string out = fmt::format("dictionary {}{}\n", page.name, page.title.empty() ? "" : " \"" + page.title + "\"");
+  out += table(page.states.size() == 1 ? "state" : "states", rows_of(page.states), 3);
+  out += table(page.inputs.size() == 1 ? "input" : "inputs", rows_of(page.inputs), 3);
+  for (DictionaryPage::Equation const& equation : page.equations) out += equation_text(equation, page.equations.size() == 1);
+  return out + entry("left out", page.left_out);
+}
+
 std::string check_text(CheckPage const& page) {
   std::string out;
   for (ModelPage const& model : page.models) out += model_text(model) + "\n";
+  for (DictionaryPage const& dictionary : page.dictionaries) out += dictionary_text(dictionary) + "\n";
   for (TaskPage const& task : page.tasks) out += task_text(task) + "\n";
   int serious = 0, warnings = page.warnings;
   for (TaskPage const& task : page.tasks)

@@ -83,6 +83,7 @@ std::string summary_json(Report const& report) {
     out["models"] = models_json(*report.selection);
     out["populations"] = populations_json(*report.selection);
   }
+  if (report.discovery) out["discovery"] = discovery_json(*report.discovery);
   if (has_verdict(report)) out["verdict"] = {{"pass", grade(report) != Severity::error}, {"text", verdict_headline(report)}};
   out["findings"] = Json::array();
   for (Finding const& finding : report.findings)

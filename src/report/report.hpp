@@ -13,6 +13,7 @@
 #include "inference/convergence.hpp"
 #include "inference/draws.hpp"
 #include "inference/finding.hpp"
+#include "report/discovery.hpp"
 #include "report/prediction.hpp"
 #include "report/selection.hpp"
 
@@ -70,6 +71,7 @@ struct Report {
   std::vector<Mode> modes;              // by falling share
   std::vector<ReportTable> tables;
   std::optional<SelectionReport> selection;
+  std::optional<DiscoveryReport> discovery;
   Ledger ledger;
   std::uint64_t seed = 0;
   Facts settings, versions;

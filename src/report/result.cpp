@@ -25,8 +25,8 @@ bool is_result_file(std::string const& name) {
     return name.size() >= begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
   };
   return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "resolved.sysid" ||
-         name == "predict.csv" || name == "populations.csv" || between("draws_", ".csv") || between("predict_", ".csv") ||
-         between("particles_", ".csv") || between("polished_", ".csv");
+         name == "predict.csv" || name == "terms.csv" || name == "found.sysid" || name == "populations.csv" ||
+         between("draws_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") || between("polished_", ".csv");
 }
 
 bool is_figure_file(std::string const& name) { return name.ends_with(".svg") || name.ends_with(".gnuplot"); }
@@ -63,6 +63,8 @@ void write_result(Report const& report, fs::path const& folder, bool pictures) {
     write_file(folder / fmt::format("draws_{}.csv", c + 1), draws_csv(report, static_cast<int>(c)));
   if (report.selection)
     for (auto const& [name, content] : selection_files(report)) write_file(folder / name, content);
+  if (report.discovery)
+    for (auto const& [name, content] : discovery_files(report)) write_file(folder / name, content);
   std::set<std::string> taken;
   for (Prediction const& prediction : report.predictions) {
     std::string suffix = report.predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);

@@ -31,7 +31,7 @@ std::string oscillator(std::string const& statements) {
 }
 
 /// A static model of numbers.
-std::string regression(std::string const& statements, std::string const& value) {
+std::string regression_text(std::string const& statements, std::string const& value) {
   return "model line {\n  input u\n" + statements + "\n  observe p ~ normal(" + value + "*u, sd = 1)\n}\n";
 }
 
@@ -107,14 +107,14 @@ TEST_CASE("long and many") {
 
 TEST_CASE("numbers without bounds") {
   answered("a literal", oscillator("let a = 1e400"), "E1108");
-  answered("a size", regression("parameter q(1000000000) ~ normal(0, sd = 1)", "sum(q)"), "E2702");
-  answered("a long vector", regression("parameter q(10000) ~ normal(0, sd = 1)", "sum(q)"), "");
-  answered("a tower", regression("parameter q(9^9^9^9) ~ normal(0, sd = 1)", "sum(q)"), "E2701");
+  answered("a size", regression_text("parameter q(1000000000) ~ normal(0, sd = 1)", "sum(q)"), "E2702");
+  answered("a long vector", regression_text("parameter q(10000) ~ normal(0, sd = 1)", "sum(q)"), "");
+  answered("a tower", regression_text("parameter q(9^9^9^9) ~ normal(0, sd = 1)", "sum(q)"), "E2701");
   answered("an argument", "model m(n = 1000000000) {\n  state q(n)\n  initial q = 0\n  q' = -q\n}\n", "E2702");
-  answered("an index", regression("parameter q(3) ~ normal(0, sd = 1)", "q[99999999999999999999]"), "E2701");
+  answered("an index", regression_text("parameter q(3) ~ normal(0, sd = 1)", "q[99999999999999999999]"), "E2701");
   answered("an exponent of a unit", oscillator("let a = 1 [m^99999999999999999999]"), "E2012");
   answered("an order", "model m {\n  state y\n  initial y = 0\n  y" + std::string(198, '\'') + " = 1\n}\n", "E3007");
-  answered("matrices", regression("parameter A(100, 100) ~ normal(0, sd = 1)\nlet B = A*A\nlet C = B*B", "sum(C*C)"), "E2709");
+  answered("matrices", regression_text("parameter A(100, 100) ~ normal(0, sd = 1)\nlet B = A*A\nlet C = B*B", "sum(C*C)"), "E2709");
   answered("a mass matrix",
            "model m {\n  parameter M(200, 50) ~ normal(0, sd = 1)\n  state q(200)\n  initial q = 0, q' = 0\n"
            "  M*transpose(M)*q'' + q = 0\n}\n",

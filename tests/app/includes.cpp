@@ -22,7 +22,7 @@ std::map<std::string, Folders> const allowed = {
     {"model", {"model", "distribution", "function", "expression", "core"}},
     {"syntax", {"syntax", "core"}},
     {"grammar", {"grammar", "syntax", "core"}},
-    {"check", {"check", "syntax", "model", "data", "distribution", "function", "expression", "core"}},
+    {"check", {"check", "regression", "syntax", "model", "data", "distribution", "function", "expression", "core"}},
     {"program", {"program", "model", "distribution", "function", "expression", "core"}},
     {"simulate", {"simulate", "program", "data", "expression", "core"}},
     {"likelihood", {"likelihood", "simulate", "program", "model", "data", "distribution", "function", "expression", "core"}},

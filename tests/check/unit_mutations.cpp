@@ -247,6 +247,9 @@ TEST_CASE("wrong units planted in the shipped models are found where they are") 
     for (ast::Item const& item : tree->items)
       if (auto const* model = std::get_if<ast::Model>(&item))
         for (ast::ModelStatement const& statement : model->statements) planter.statement(statement);
+    if (std::none_of(tree->items.begin(), tree->items.end(),
+                     [](ast::Item const& item) { return std::holds_alternative<ast::Model>(item); }))
+      continue;  // of a dictionary: coefficients take up any unit
     CHECK(planter.mutants.size() > 10);
     for (Mutant const& mutant : planter.mutants) {
       Finding const finding = look(path.string(), text, mutant);

@@ -35,6 +35,8 @@ inline constexpr SettingRow settings[] = {{"samples", SettingKind::integer, "100
                                           {"start", SettingKind::flag, "yes", 0, 0, "", ""}};
 inline constexpr BackendSettings backends[] = {{"mh", settings}, {"point", {}}};
 inline constexpr BackendSettings selectors[] = {{"abc", {}}};
+inline constexpr BackendSettings term_selectors[] = {{"spike_slab", {}}};
+inline constexpr BackendSettings derivatives[] = {{"weak", {}}};
 
 /// A refusal has a code, words, something to point at within the text, and can be shown.
 inline void look_at(Diagnostics const& diagnostics, Source const& source) {
@@ -92,7 +94,7 @@ inline void text(std::string const& bytes) {
   auto const modules = load_modules(*tree, source, diagnostics);
   look_at(diagnostics, source);
   if (diagnostics.has_errors()) return;
-  auto const file = check(elaborate(*tree, modules, diagnostics), {backends, selectors}, diagnostics);
+  auto const file = check(elaborate(*tree, modules, diagnostics), {backends, selectors, term_selectors, derivatives}, diagnostics);
   if (!file && !diagnostics.has_errors()) fault("a refusal without a message");
   look_at(diagnostics, source);
   if (!file) return;

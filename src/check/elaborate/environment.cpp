@@ -27,6 +27,8 @@ void Environments::own(Environment& environment, ast::File const& tree, Diagnost
       if (!fresh) diagnostics.add(errors::duplicate_item(function->name, "function", place->second.tree->name.span));
     } else if (auto const* data = std::get_if<ast::Data>(&item); data != nullptr && !environment.module.empty()) {
       diagnostics.add(errors::not_for_a_module(data->name.span, "a data block", environment.module));
+    } else if (auto const* dictionary = std::get_if<ast::Dictionary>(&item); dictionary != nullptr && !environment.module.empty()) {
+      diagnostics.add(errors::not_for_a_module(dictionary->name.span, "a dictionary", environment.module));
     } else if (auto const* task = std::get_if<ast::Task>(&item); task != nullptr && !environment.module.empty()) {
       diagnostics.add(errors::not_for_a_module(task->verb.span, "a task", environment.module));
     }

@@ -1,0 +1,216 @@
+// `discover`: experiments to the regression, its answer in the words of the file, the source of what was found.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/discovery_findings.hpp"
+#include "app/experiments.hpp"
+#include "app/found_source.hpp"
+#include "app/pipeline.hpp"
+#include "app/readiness.hpp"
+#include "app/resolved.hpp"
+#include "app/session.hpp"
+#include "inference/verdict.hpp"
+#include "regression/discovery.hpp"
+#include "report/number.hpp"
+#include "report/result.hpp"
+#include "report/terminal.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+class Discover {
+ public:
+  Discover(Session& session, Task const& task, DiscoverTask const& what)
+      : session_(session),
+        task_(task),
+        what_(what),
+        dictionary_(session.file.dictionaries[static_cast<std::size_t>(what.dictionary)]),
+        seed_(session.seed(task, what.seed)),
+        began_(std::chrono::steady_clock::now()),
+        data_(load_experiments(session, what.experiments, dictionary_.measured, {StartRule::Kind::rest, 0},
+                               PredictionRule::as_written)) {}
+
+  ExitCode run() {
+    if (auto const why = refusal(task_, what_)) throw UserError(*why);
+    regression::Method method;
+    method.form = regression::find_form(what_.form);
+    method.form_settings = what_.form_settings;
+    method.selector = regression::find_selector(what_.selector);
+    method.selector_settings = what_.selector_settings;
+    method.seed = seed_;
+    method.interrupted = [this] { return session_.interrupted(); };
+    regression::Discovery const found = regression::discover(dictionary_.numbers, experiments_of(data_), method);
+    if (found.interrupted) {
+      session_.notices << fmt::format("{}: interrupted; it begins again\n", task_.name);
+      return ExitCode::interrupted;
+    }
+    return finish(found, *method.selector);
+  }
+
+ private:
+  ExitCode finish(regression::Discovery const& found, regression::SelectorRow const& selector) {
+    Report report;
+    report.version = SYSID_VERSION;
+    report.task = task_.name;
+    report.what = fmt::format("discover {} from {} with {}, derivatives = {}", dictionary_.name,
+                              data_names(session_.file, what_.experiments), what_.selector, what_.form);
+    report.seed = seed_;
+    report.model_name = dictionary_.name;
+    report.model_title = dictionary_.title;
+    report.model_text = std::string(session_.source.text(dictionary_.tree.span));
+    report.versions = {{"sysid", std::string(SYSID_VERSION)}, {"random_numbers", std::string("Philox4x64-10")}};
+    for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, dictionary_.measured));
+    DiscoveryReport discovery = described(found, selector);
+    for (DiscoveredEquation const& each : discovery.equations)
+      if (!each.equation.empty()) report.equations.push_back(each.equation);
+    add_findings(found, report.findings);
+    add_source(found, discovery, report.findings);
+    report.tables = discovery_tables(discovery);
+    report.settings = {{"selector", what_.selector}};
+    for (auto const& [name, value] : what_.selector_settings.all()) report.settings.emplace_back(name, value);
+    report.settings.emplace_back("derivatives", what_.form);
+    for (auto const& [name, value] : what_.form_settings.all()) report.settings.emplace_back(name, value);
+    report.resolved_text = resolved_discover(session_, task_, what_, seed_);
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
+    report.timing = {{"wall_seconds", wall.count()}};
+    report.verdict = headline(discovery, report.findings);
+    report.discovery = std::move(discovery);
+    write_result(report, session_.result_folder(task_), session_.options.figures);
+    session_.out << terminal_summary(report);
+    if (!report.discovery->source.empty())
+      session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,
+                                      (session_.result_folder(task_) / "found.sysid").string());
+    return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  static std::string headline(DiscoveryReport const& discovery, Findings const& findings) {
+    std::string terms;
+    for (DiscoveredEquation const& each : discovery.equations)
+      terms +=
+          fmt::format("{}{}", terms.empty() ? "" : "; ", each.equation.empty() ? each.target + ": nothing found" : each.equation);
+    std::string const judged = judge(findings).text;
+    return terms + "; " + judged.substr(0, judged.find('\n'));
+  }
+
+  // --- in the words of the file
+  DiscoveryReport described(regression::Discovery const& found, regression::SelectorRow const& selector) const {
+    DiscoveryReport out;
+    out.selector = what_.selector;
+    out.derivatives = what_.form;
+    out.measure = selector.measure;
+    out.windows = found.half_width > 0;
+    out.half_width = found.half_width;
+    for (std::size_t c = 0; c < found.noise_sd.size(); ++c) {
+      Channel const& channel = dictionary_.measured.channels[c];
+      out.noise.push_back({channel.name, channel.unit_text(), channel.from_si(found.noise_sd[c])});
+    }
+    for (std::size_t e = 0; e < found.equations.size(); ++e)
+      out.equations.push_back(described(found.equations[e], static_cast<int>(e)));
+    return out;
+  }
+
+  DiscoveredEquation described(regression::FoundEquation const& found, int index) const {
+    DictionaryEquation const& equation = dictionary_.equations[static_cast<std::size_t>(index)];
+    std::vector<std::string> const names = coefficient_names(dictionary_, index);
+    DiscoveredEquation out;
+    out.target = equation.text;
+    if (!found.found) return out;
+    out.explained = found.explained;
+    out.noise_ratio = found.noise_ratio;
+    out.rows = found.rows;
+    out.exact = found.exact;
+    out.converged = found.converged;
+    for (std::size_t j = 0; j < found.terms.size(); ++j) {
+      regression::FoundTerm const& from = found.terms[j];
+      DictionaryTerm const& term = equation.terms[j];
+      double const scale = term.unit ? term.unit->scale : 1;
+      DiscoveredTerm to;
+      to.text = term.in_target ? fmt::format("{}, in the target", term.text) : term.text;
+      to.name = names[j];
+      to.unit = term.unit ? term.unit->text : "";
+      to.kept = from.kept;
+      to.fate = from.left_out         ? "left out"
+                : term.in_target      ? "known"
+                : from.kept           ? "kept"
+                : from.dropped_in > 0 ? fmt::format("dropped in round {}", from.dropped_in)
+                                      : "dropped";
+      to.coefficient = from.coefficient / scale;
+      to.sd = from.sd / scale;
+      to.measure = from.measure;
+      to.mean = from.mean / scale;
+      to.mean_sd = from.mean_sd / scale;
+      to.contribution = from.contribution;
+      to.inflation = from.inflation;
+      out.terms.push_back(std::move(to));
+    }
+    out.equation = printed(out, equation);
+    for (std::size_t s = 0; s < found.supports.size() && s < static_cast<std::size_t>(what_.top); ++s) {
+      regression::Support const& support = found.supports[s];
+      DiscoveredSupport to{{}, support.probability, support.log_evidence};
+      for (int const j : support.terms)
+        if (!equation.terms[static_cast<std::size_t>(j)].in_target)
+          to.terms.push_back(equation.terms[static_cast<std::size_t>(j)].text);
+      out.supports.push_back(std::move(to));
+    }
+    return out;
+  }
+
+  // "m*y'' - x = -20*y' - 1e4*y".
+  static std::string printed(DiscoveredEquation const& out, DictionaryEquation const& equation) {
+    std::string sum;
+    for (std::size_t j = 0; j < out.terms.size(); ++j) {
+      if (!out.terms[j].kept || equation.terms[j].in_target) continue;
+      double const value = out.terms[j].coefficient;
+      std::string const size = coefficient_text(std::fabs(value), out.terms[j].sd).first;
+      std::string const sign = sum.empty() ? (value < 0 ? "-" : "") : (value < 0 ? " - " : " + ");
+      bool const one = equation.terms[j].text == "1";
+      bool const is_sum =
+          equation.terms[j].text.find(" + ") != std::string::npos || equation.terms[j].text.find(" - ") != std::string::npos;
+      sum += sign + size + (one ? "" : is_sum ? "*(" + equation.terms[j].text + ")" : "*" + equation.terms[j].text);
+    }
+    return fmt::format("{} = {}", equation.text, sum.empty() ? "0" : sum);
+  }
+
+  void add_findings(regression::Discovery const& found, Findings& findings) const {
+    for (regression::FoundEquation const& equation : found.equations)
+      for (regression::Concern const& concern : equation.concerns) {
+        Finding finding = finding_of(concern, found.equations.size() > 1 ? equation.name : "");
+        if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));
+      }
+  }
+
+  // Written only when the program takes it: a structure may be no model that can be simulated.
+  void add_source(regression::Discovery const& found, DiscoveryReport& discovery, Findings& findings) const {
+    auto const structures = best_structures(found, what_.candidates ? what_.top : 1);
+    if (structures.empty()) return;
+    FoundSource const source{session_, task_, what_, dictionary_, data_, found, seed_};
+    std::string text = source.text(structures);
+    Source read((session_.result_folder(task_) / "found.sysid").string(), text);
+    Diagnostics diagnostics;
+    if (load(read, diagnostics)) {
+      discovery.source = std::move(text);
+      return;
+    }
+    findings.push_back({Severity::warning, "equation_no_model",
+                        fmt::format("what was found is no model that can be simulated: {}", diagnostics.all().front().message),
+                        "a model needs as many equations as states, each with a derivative in it"});
+  }
+
+  Session& session_;
+  Task const& task_;
+  DiscoverTask const& what_;
+  CheckedDictionary const& dictionary_;
+  std::uint64_t seed_;
+  std::chrono::steady_clock::time_point began_;
+  std::vector<ExperimentData> data_;
+};
+
+}  // namespace
+
+ExitCode run_discover(Session& session, Task const& task, DiscoverTask const& what) { return Discover(session, task, what).run(); }
+
+}  // namespace sysid

@@ -1,0 +1,66 @@
+// What a discovery of equations adds to a report: its tables, its part of summary.json, its files.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sysid {
+
+struct Report;
+struct ReportTable;
+
+/// A term of the dictionary in one equation. Coefficients are in `unit`.
+struct DiscoveredTerm {
+  std::string text, unit;
+  std::string name;  // of its coefficient in the source of what was found
+  std::string fate;  // "known", "kept", "dropped", "dropped in round 2", "left out"
+  bool kept = false;
+  double coefficient = 0, sd = 0;  // on the chosen support
+  double measure = 0;              // DiscoveryReport::measure
+  double mean = 0, mean_sd = 0;    // as the selector has it, averaged over supports
+  double contribution = 0;         // root mean square of coefficient * term over that of what is explained
+  double inflation = 0;            // of the variance by the other terms; 0: not kept
+};
+
+/// Terms that could stand together, the best first.
+struct DiscoveredSupport {
+  std::vector<std::string> terms;
+  double probability = 0;  // 0 where the selector knows none
+  double log_evidence = 0;
+};
+
+struct DiscoveredEquation {
+  std::string target;    // "m*y'' - x"
+  std::string equation;  // "m*y'' - x = -20 y' - 1e4 y"; empty: none was found
+  std::vector<DiscoveredTerm> terms;
+  std::vector<DiscoveredSupport> supports;
+  double explained = 0;    // share of the projections, not of the motion
+  double noise_ratio = 0;  // residual over measurement noise; 0: not known
+  int rows = 0;
+  bool exact = true, converged = true;
+};
+
+struct DiscoveryReport {
+  std::string selector, derivatives;
+  std::string measure;   // "inclusion probability"
+  bool windows = false;  // rows are windows, of this half-width
+  int half_width = 0;
+  struct Noise {
+    std::string channel, unit;
+    double sd = 0;  // in `unit`
+  };
+  std::vector<Noise> noise;
+  std::vector<DiscoveredEquation> equations;
+  std::string source;  // of the model that was found; empty: none
+};
+
+/// A coefficient and its sd with the digits that the sd leaves.
+std::pair<std::string, std::string> coefficient_text(double value, double sd);
+
+std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery);
+nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery);
+/// File names and contents: terms.csv and found.sysid.
+std::vector<std::pair<std::string, std::string>> discovery_files(Report const& report);
+
+}  // namespace sysid
