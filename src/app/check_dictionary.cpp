@@ -14,6 +14,8 @@ std::string reason(LeftOutTerm const& term, CheckedDictionary const& dictionary)
   switch (term.why) {
     case LeftOutTerm::Why::same:
       return fmt::format("{}{}: the same as {}", term.text, of, term.detail);
+    case LeftOutTerm::Why::zero:
+      return fmt::format("{}: always zero", term.text);
     case LeftOutTerm::Why::excluded:
       return fmt::format("{}: excluded", term.text);
     case LeftOutTerm::Why::unit:

@@ -191,7 +191,7 @@ struct DictionaryEquation {
 
 /// A term that the dictionary could hold and does not.
 struct LeftOutTerm {
-  enum class Why { same, excluded, unit };
+  enum class Why { same, zero, excluded, unit };
   Why why = Why::same;
   std::string text;
   std::string detail;  // same: the term it is the same as; unit: the unit that its coefficient would have

@@ -296,6 +296,10 @@ class DictionaryChecker {
       for (WrittenTerm& written : writer_.write(item, free_)) {
         auto made = candidate(std::move(written));
         if (!made) return;  // the next of the same family has the same mistake
+        if (made->factors.constant == 0) {
+          out_.left_out.push_back({LeftOutTerm::Why::zero, made->written.text, {}});
+          continue;
+        }
         auto const same = std::find_if(terms_.begin(), terms_.end(), [&](Candidate const& each) { return is_same(each, *made); });
         if (same != terms_.end()) {
           out_.left_out.push_back({LeftOutTerm::Why::same, made->written.text, same->written.text});

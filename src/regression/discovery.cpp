@@ -91,10 +91,15 @@ class Finder {
   bool enough(Columns const& columns) {
     Concern concern;
     if (found_.rows <= 2 * static_cast<int>(usable_.size()) || found_.rows == 0) {
+      // Without rows nothing is known of the terms: all of them count.
+      std::size_t const terms = found_.rows == 0 ? equation_.terms.size() : usable_.size();
+      int const half = projection_.half_width();
       concern.kind = Concern::Kind::too_few_rows;
       concern.value = found_.rows;
-      concern.clause = fmt::format("{} {} for {} terms are too few; at least {} are needed", found_.rows,
-                                   projection_.half_width() > 0 ? "windows" : "samples", usable_.size(), 2 * usable_.size() + 1);
+      concern.clause = found_.rows == 0 && half > 0
+                           ? fmt::format("no window of {} samples has room in the scored rows", 2 * half + 1)
+                           : fmt::format("{} {} for {} terms are too few; at least {} are needed", found_.rows,
+                                         half > 0 ? "windows" : "samples", terms, 2 * terms + 1);
     } else if (usable_.empty()) {
       concern.kind = Concern::Kind::nothing_left;
       concern.clause = "no term is left to choose from";

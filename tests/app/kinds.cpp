@@ -14,20 +14,6 @@ using json = nlohmann::json;
 
 namespace {
 
-struct Run {
-  TemporaryFolder folder;
-  RunResult result;
-
-  Run(std::string const& text, std::vector<std::pair<std::string, std::string>> const& files) {
-    for (auto const& [name, content] : files) write_file(folder.path() / name, content);
-    RunOptions options;
-    options.output = folder.path() / "results";
-    result = run_text(folder.path() / "case.sysid", text, options);
-  }
-  std::string file(std::string const& name) const { return read_file(folder.path() / "results" / name); }
-  json summary(std::string const& task) const { return json::parse(file(task + "/summary.json")); }
-};
-
 json parameter(json const& summary, std::string const& name) {
   for (auto const& [key, value] : summary.at("parameters").items())
     if (key == name || (value.is_object() && value.contains("name") && value.at("name") == name)) return value;
@@ -63,7 +49,7 @@ TEST_CASE("the posterior of a linear regression is the closed form, whatever the
     line << T << "," << q << "," << y(i) << "\n";
     rows = line.str() + rows;  // the last first
   }
-  Run const run(R"(
+  CaseRun const run(R"(
 model line {
   input T [degC], q
   parameter a [mm] ~ normal(0, sd = 10)
@@ -74,7 +60,7 @@ model line {
 data rows { file "rows.csv"; input T = T [degC]; input q = q; measure deflection = y [mm] }
 best = fit line to rows with map, seed = 1
 )",
-                {{"rows.csv", "T,q,y\n" + rows}});
+                    {{"rows.csv", "T,q,y\n" + rows}});
   Posterior const exact = closed_form(regressors, y, 0.8, 10);
   json const summary = run.summary("best");
   char const* const names[] = {"a", "b", "c"};
@@ -106,7 +92,7 @@ TEST_CASE("the posterior of an autoregression is least squares on lagged samples
     regressors.row(i - 2) << y[static_cast<std::size_t>(i) - 1], y[static_cast<std::size_t>(i) - 2];
     now(i - 2) = y[static_cast<std::size_t>(i)];
   }
-  Run const run(R"(
+  CaseRun const run(R"(
 model ar {
   time discrete 0.5 [s]
   state y
@@ -119,7 +105,7 @@ model ar {
 data record { file "record.csv"; measure output = y }
 best = fit ar to record with map, prediction = one_step, seed = 1
 )",
-                {{"record.csv", "y\n" + rows.str()}});
+                    {{"record.csv", "y\n" + rows.str()}});
   Posterior const exact = closed_form(regressors, now, 0.5, 5);
   json const summary = run.summary("best");
   char const* const names[] = {"a1", "a2"};
@@ -151,9 +137,9 @@ model ar {
     }
     return values;
   };
-  Run const run(model + "made = simulate ar with values(a = 0.9), samples = 50, seed = 3\n" +
-                    "clean = simulate ar with values(a = 0.9), noise = 0 [percent], samples = 50, seed = 3\n",
-                {});
+  CaseRun const run(model + "made = simulate ar with values(a = 0.9), samples = 50, seed = 3\n" +
+                        "clean = simulate ar with values(a = 0.9), noise = 0 [percent], samples = 50, seed = 3\n",
+                    {});
   std::vector<double> const noisy = column(run.file("made/made.csv"), 1), centre = column(run.file("made/made.csv"), 2);
   std::vector<double> const free = column(run.file("clean/clean.csv"), 1);
   REQUIRE(noisy.size() == 50);
@@ -169,7 +155,7 @@ model ar {
 TEST_CASE("a gap in a lagged channel costs the rows that read it, in the fit and in predictions") {
   std::string rows = "y\n";
   for (int i = 0; i < 60; ++i) rows += i == 20 ? "NA\n" : std::to_string(std::sin(0.5 * i) + 0.1 * std::cos(7.0 * i)) + "\n";
-  Run const run(R"(
+  CaseRun const run(R"(
 model ar {
   time discrete 0.1 [s]
   parameter a1 ~ normal(0, sd = 5)
@@ -180,7 +166,7 @@ data record { file "record.csv"; measure output = y }
 posterior = fit ar to record with mh(samples = 600, burn_in = 300, thin = 3), seed = 1
 again = predict posterior on record with draws(50), seed = 1
 )",
-                {{"record.csv", rows}});
+                    {{"record.csv", rows}});
   CHECK(run.summary("posterior").dump().find("output: 2 rows are not scored, a past sample is missing") != std::string::npos);
   for (std::string const task : {"posterior", "again"}) {
     std::string const scores = run.summary(task).at("fit").dump();

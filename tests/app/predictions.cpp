@@ -12,19 +12,6 @@ using json = nlohmann::json;
 
 namespace {
 
-struct Run {
-  TemporaryFolder folder;
-  RunResult result;
-
-  Run(std::string const& text, std::vector<std::pair<std::string, std::string>> const& files) {
-    for (auto const& [name, content] : files) write_file(folder.path() / name, content);
-    RunOptions options;
-    options.output = folder.path() / "results";
-    result = run_text(folder.path() / "case.sysid", text, options);
-  }
-  json summary(std::string const& task) const { return json::parse(read_file(folder.path() / "results" / task / "summary.json")); }
-};
-
 json finding(json const& summary, std::string const& code) {
   for (json const& each : summary.at("findings"))
     if (each.at("code") == code) return each;
@@ -32,7 +19,7 @@ json finding(json const& summary, std::string const& code) {
 }
 
 /// The first parameter of all draws.
-std::vector<double> first_parameter(Run const& run, std::string const& task) {
+std::vector<double> first_parameter(CaseRun const& run, std::string const& task) {
   std::vector<double> values;
   for (int chain = 1; chain <= 4; ++chain) {
     std::istringstream lines(read_file(run.folder.path() / "results" / task / ("draws_" + std::to_string(chain) + ".csv")));
@@ -78,7 +65,7 @@ std::string rows_to(int last) {
 }  // namespace
 
 TEST_CASE("trajectories that fail are counted with their place, and from a fifth on the prediction fails with them") {
-  Run const run(growth + "later = predict past on long with draws(200), seed = 1\n", {early, {"long.csv", rows_to(40)}});
+  CaseRun const run(growth + "later = predict past on long with draws(200), seed = 1\n", {early, {"long.csv", rows_to(40)}});
   json const summary = run.summary("later");
   // The posterior lies about r = 0.16: with pole at 6 s, far below 40 s; a tenth of it is not left.
   int const failed = summary.at("ledger").at("failed").get<int>();
@@ -94,7 +81,7 @@ TEST_CASE("trajectories that fail are counted with their place, and from a fifth
 }
 
 TEST_CASE("trajectories that stay finite are no finding") {
-  Run const run(growth + "later = predict past on long with draws(200), seed = 1\n", {early, {"long.csv", rows_to(2)}});
+  CaseRun const run(growth + "later = predict past on long with draws(200), seed = 1\n", {early, {"long.csv", rows_to(2)}});
   json const summary = run.summary("later");
   CHECK(summary.at("ledger").at("failed") == 0);
   CHECK(finding(summary, "failed_predictions").is_null());
@@ -102,7 +89,7 @@ TEST_CASE("trajectories that stay finite are no finding") {
 }
 
 TEST_CASE("draws without a value of a derived quantity are counted, and the quantity is named") {
-  Run const run(R"(
+  CaseRun const run(R"(
 model line {
   input x
   parameter r ~ normal(0, sd = 2)
@@ -114,7 +101,7 @@ data bench { file "bench.csv"; input x = x; measure o = o }
 line_fit = fit line to bench with mh(samples = 1500, burn_in = 500, thin = 20, chains = 4), seed = 1
 again = predict line_fit on bench with draws(200), seed = 1
 )",
-                {{"bench.csv", "x,o\n1,0.7\n2,0.5\n3,1.4\n1.5,0.6\n"}});
+                    {{"bench.csv", "x,o\n1,0.7\n2,0.5\n3,1.4\n1.5,0.6\n"}});
   std::vector<double> const r = first_parameter(run, "line_fit");
   REQUIRE(r.size() == 200);  // each is predicted once
   auto const below = std::count_if(r.begin(), r.end(), [](double value) { return value < 0.42; });

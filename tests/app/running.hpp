@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/pipeline.hpp"
 #include "core/files.hpp"
@@ -49,6 +52,21 @@ inline RunResult run_text(std::filesystem::path const& name, std::string const& 
   ExitCode const code = run_tasks(source, *file, verbs, options, silent, out, notices);
   return {static_cast<int>(code), out.str(), notices.str()};
 }
+
+/// A text run in a folder of its own beside the files that it reads; results stay as long as this.
+struct CaseRun {
+  TemporaryFolder folder;
+  RunResult result;
+
+  CaseRun(std::string const& text, std::vector<std::pair<std::string, std::string>> const& files) {
+    for (auto const& [name, content] : files) write_file(folder.path() / name, content);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    result = run_text(folder.path() / "case.sysid", text, options);
+  }
+  std::string file(std::string const& name) const { return read_file(folder.path() / "results" / name); }
+  nlohmann::json summary(std::string const& task) const { return nlohmann::json::parse(file(task + "/summary.json")); }
+};
 
 /// `text` without any occurrence of `part`.
 inline std::string without(std::string text, std::string const& part) {

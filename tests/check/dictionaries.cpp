@@ -73,6 +73,14 @@ TEST_CASE("terms that differ in order or by a constant are one, and the dictiona
   CHECK(found.left_out.at(0).detail == "y*y'");
 }
 
+TEST_CASE("a term that is always zero is no constant") {
+  auto const found = dictionary("target = x\nterms = y, 0*y, 1");
+  CHECK(terms(found) == Texts{"y", "1"});
+  REQUIRE(found.left_out.size() == 1);
+  CHECK(found.left_out.at(0).text == "0*y");
+  CHECK(found.left_out.at(0).why == LeftOutTerm::Why::zero);
+}
+
 TEST_CASE("exclusions take out what they name, families too") {
   CHECK(terms(dictionary("target = x\nterms = polynomial(y, y', degree = 2)\nexclude = y'*y, y^2")) == Texts{"y", "y'", "y'^2"});
   CHECK(terms(dictionary("target = x\nterms = polynomial(y, y', degree = 2)\nexclude = polynomial(y', degree = 2)")) ==
