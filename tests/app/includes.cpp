@@ -27,6 +27,8 @@ std::map<std::string, Folders> const allowed = {
     {"simulate", {"simulate", "program", "data", "expression", "core"}},
     {"likelihood", {"likelihood", "simulate", "program", "model", "data", "distribution", "function", "expression", "core"}},
     {"regression", {"regression", "data", "expression", "core"}},
+    {"linear_algebra", {"linear_algebra", "core"}},
+    {"gaussian_process", {"gaussian_process", "linear_algebra", "core"}},
     {"inference", {"inference", "likelihood", "core"}},
     {"report", {"report", "inference", "likelihood", "core"}},
 };

@@ -1,0 +1,26 @@
+// What the files of one kernel each share: their rows, and scaled distances.
+#pragma once
+#include "gaussian_process/kernel.hpp"
+
+namespace sysid::gaussian_process {
+
+KernelRow constant_kernel();
+KernelRow linear_kernel();
+KernelRow matern12_kernel();
+KernelRow matern32_kernel();
+KernelRow matern52_kernel();
+KernelRow oscillator_kernel();
+KernelRow periodic_kernel();
+KernelRow squared_exponential_kernel();
+
+/// amplitude and one length-scale per input: what most stationary kernels have.
+constexpr HyperParameterRow amplitude_and_lengths[] = {{"amplitude", false, {.output = 1}}, {"length", true, {.input = 1}}};
+
+/// out_i = sum over d of ((left_id - right_d)/length_d)^2.
+void squared_distances(Strip const& strip, Numbers lengths, double* out);
+
+/// gradient_d += sum over i of weights_i ((left_id - right_d)/length_d)^2: the derivative of a function of the scaled distance r in
+/// the logarithms of its lengths, where weights_i holds -(dk/dr)/r of it.
+void add_length_gradient(Strip const& strip, Numbers lengths, double const* weights, double* gradient);
+
+}  // namespace sysid::gaussian_process

@@ -1,0 +1,57 @@
+// The squared exponential kernel: functions with all derivatives.
+#include <cmath>
+#include <numbers>
+
+#include "core/elementary.hpp"
+#include "gaussian_process/rows.hpp"
+
+namespace sysid::gaussian_process {
+namespace {
+
+///   k = amplitude^2 exp(-r^2/2),   r^2 = sum over d of ((x_d - x'_d)/length_d)^2          Rasmussen & Williams 2006, eq. 4.9, 5.1
+///
+/// amplitude: unit of the function; length_d: of input d.
+void values(Strip const& strip, Numbers p, double* out) {
+  squared_distances(strip, p.subspan(1), out);
+  for (int i = 0; i < strip.size; ++i) out[i] *= -0.5;
+  elementary::exp_lanes(out, out, strip.size);
+  double const variance = p[0] * p[0];
+  for (int i = 0; i < strip.size; ++i) out[i] *= variance;
+}
+
+void add_gradient(Strip const& strip, Numbers p, double const* k, double const* weights, double* gradient) {
+  double weighted[strip_size];
+  double sum = 0;
+  for (int i = 0; i < strip.size; ++i) {
+    weighted[i] = weights[i] * k[i];
+    sum += weighted[i];
+  }
+  gradient[0] += 2 * sum;
+  add_length_gradient(strip, p.subspan(1), weighted, gradient + 1);
+}
+
+///   S = amplitude^2 (2 pi)^(D/2) (product of lengths) exp(-1/2 sum of (length_d w_d)^2)      Rasmussen & Williams 2006, eq. 4.11
+double spectral_density(Numbers p, Numbers frequencies) {
+  double density = p[0] * p[0], exponent = 0;
+  for (std::size_t d = 0; d < frequencies.size(); ++d) {
+    double const length = p[1 + d], product = length * frequencies[d];
+    density *= std::sqrt(2 * std::numbers::pi) * length;
+    exponent += product * product;
+  }
+  return density * elementary::exp(-0.5 * exponent);
+}
+
+}  // namespace
+
+KernelRow squared_exponential_kernel() {
+  return {.name = "squared_exponential",
+          .hyper_parameters = amplitude_and_lengths,
+          .one_input = false,
+          .values = &values,
+          .add_gradient = &add_gradient,
+          .state_space = nullptr,
+          .spectral_density = &spectral_density,
+          .summary = "smooth functions, with all derivatives"};
+}
+
+}  // namespace sysid::gaussian_process
