@@ -2,30 +2,10 @@
 #include <fmt/format.h>
 
 #include "app/check_file.hpp"
+#include "app/left_out.hpp"
 #include "check/scope.hpp"
 
 namespace sysid {
-namespace {
-
-std::string reason(LeftOutTerm const& term, CheckedDictionary const& dictionary) {
-  std::string const of = term.equation >= 0 && dictionary.equations.size() > 1
-                             ? " for " + dictionary.equations[static_cast<std::size_t>(term.equation)].text
-                             : std::string();
-  switch (term.why) {
-    case LeftOutTerm::Why::same:
-      return fmt::format("{}{}: the same as {}", term.text, of, term.detail);
-    case LeftOutTerm::Why::zero:
-      return fmt::format("{}: always zero", term.text);
-    case LeftOutTerm::Why::excluded:
-      return fmt::format("{}: excluded", term.text);
-    case LeftOutTerm::Why::unit:
-      return fmt::format("{}{}: its coefficient would be in [{}]", term.text, of, term.detail);
-  }
-  return {};
-}
-
-}  // namespace
-
 DictionaryPage describe_dictionary(CheckedDictionary const& dictionary) {
   DictionaryPage page;
   page.name = dictionary.name;
@@ -48,7 +28,7 @@ DictionaryPage describe_dictionary(CheckedDictionary const& dictionary) {
                                                         : "coefficient " + term.coefficient});
     page.equations.push_back(std::move(entry));
   }
-  for (LeftOutTerm const& term : dictionary.left_out) page.left_out.push_back(reason(term, dictionary));
+  for (LeftOutText const& each : left_out_texts(dictionary)) page.left_out.push_back(each.term + ": " + each.reason);
   return page;
 }
 

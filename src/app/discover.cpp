@@ -8,8 +8,10 @@
 #include "app/discovery_findings.hpp"
 #include "app/experiments.hpp"
 #include "app/found_source.hpp"
+#include "app/left_out.hpp"
 #include "app/pipeline.hpp"
 #include "app/readiness.hpp"
+#include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/session.hpp"
 #include "inference/verdict.hpp"
@@ -43,7 +45,7 @@ class Discover {
     method.selector_settings = what_.selector_settings;
     method.seed = seed_;
     method.interrupted = [this] { return session_.interrupted(); };
-    regression::Discovery const found = regression::discover(dictionary_.numbers, experiments_of(data_), method);
+    regression::Discovery const found = regression::discover(numbers(), experiments_of(data_), method);
     if (found.interrupted) {
       session_.notices << fmt::format("{}: interrupted; it begins again\n", task_.name);
       return ExitCode::interrupted;
@@ -52,6 +54,13 @@ class Discover {
   }
 
  private:
+  // With the noise that the task gives.
+  regression::Dictionary numbers() const {
+    regression::Dictionary numbers = dictionary_.numbers;
+    for (std::size_t c = 0; c < what_.noise.size(); ++c) numbers.channels[c].noise_sd = what_.noise[c];
+    return numbers;
+  }
+
   ExitCode finish(regression::Discovery const& found, regression::SelectorRow const& selector) {
     Report report;
     report.version = SYSID_VERSION;
@@ -62,7 +71,9 @@ class Discover {
     report.model_name = dictionary_.name;
     report.model_title = dictionary_.title;
     report.model_text = std::string(session_.source.text(dictionary_.tree.span));
-    report.versions = {{"sysid", std::string(SYSID_VERSION)}, {"random_numbers", std::string("Philox4x64-10")}};
+    report.versions = {{"sysid", std::string(SYSID_VERSION)},
+                       {"random_numbers", std::string("Philox4x64-10")},
+                       {"model_sha256", task_digest(session_, task_)}};
     for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, dictionary_.measured));
     DiscoveryReport discovery = described(found, selector);
     for (DiscoveredEquation const& each : discovery.equations)
@@ -96,6 +107,8 @@ class Discover {
     return terms + "; " + judged.substr(0, judged.find('\n'));
   }
 
+  bool given(std::size_t channel) const { return !what_.noise.empty() && what_.noise[channel]; }
+
   // --- in the words of the file
   DiscoveryReport described(regression::Discovery const& found, regression::SelectorRow const& selector) const {
     DiscoveryReport out;
@@ -106,8 +119,9 @@ class Discover {
     out.half_width = found.half_width;
     for (std::size_t c = 0; c < found.noise_sd.size(); ++c) {
       Channel const& channel = dictionary_.measured.channels[c];
-      out.noise.push_back({channel.name, channel.unit_text(), channel.from_si(found.noise_sd[c])});
+      out.noise.push_back({channel.name, channel.unit_text(), channel.from_si(found.noise_sd[c]), given(c)});
     }
+    for (LeftOutText& each : left_out_texts(dictionary_)) out.left_out.push_back({std::move(each.term), std::move(each.reason)});
     for (std::size_t e = 0; e < found.equations.size(); ++e)
       out.equations.push_back(described(found.equations[e], static_cast<int>(e)));
     return out;

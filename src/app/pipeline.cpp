@@ -41,13 +41,6 @@ std::string verb_of(Task const& task) {
                                                            : "predict";
 }
 
-// The one that is fitted, or the first that is selected among.
-int model_of(CheckedFile const& file, PredictTask const& prediction) {
-  Task const& subject = file.tasks[static_cast<std::size_t>(prediction.fit)];
-  if (auto const* selection = std::get_if<SelectTask>(&subject.what)) return selection->fits.front().model;
-  return std::get<FitTask>(subject.what).model;
-}
-
 std::string dump(CandidateSet const& set) {
   std::string text = fmt::format("candidates {}{}\n", set.name, set.title.empty() ? "" : " \"" + set.title + "\"");
   for (CandidateModel const& each : set.models) text += fmt::format("  {} probability {}\n", each.name, each.probability);
@@ -123,20 +116,9 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
     auto const* made = std::get_if<SimulateTask>(&task.what);
     if (made != nullptr) return std::filesystem::exists(session.result_folder(task) / made->file);
     if (!complete(session.result_folder(task))) return false;
-    if (std::holds_alternative<DiscoverTask>(task.what)) return false;  // it takes seconds: done anew
-    int model = 0;
-    std::optional<std::uint64_t> seed = options.seed;
-    if (auto const* fit = std::get_if<FitTask>(&task.what)) {
-      model = fit->model;
-      if (!seed) seed = fit->seed;
-    } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
-      model = model_of(file, *prediction);
-      if (!seed) seed = prediction->seed;
-    } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
-      model = selection->fits.front().model;
-      if (!seed) seed = selection->seed;
-    }
-    if (auto const wrong = stored_otherwise(session, task, model, seed); wrong && options.resume) throw UserError(*wrong);
+    std::optional<std::uint64_t> const seed =
+        options.seed ? options.seed : std::visit([](auto const& what) { return what.seed; }, task.what);
+    if (auto const wrong = stored_otherwise(session, task, seed); wrong && options.resume) throw UserError(*wrong);
     return true;
   };
   if (std::none_of(file.tasks.begin(), file.tasks.end(), asked)) {

@@ -51,27 +51,43 @@ std::function<double(double)> prior_density(Parameter const& parameter, Model co
 std::vector<ExperimentUse> const& experiments_of(Task const& task) {
   if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->experiments;
   if (auto const* selection = std::get_if<SelectTask>(&task.what)) return selection->fits.front().experiments;
+  if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) return discovery->experiments;
   return std::get<FitTask>(task.what).experiments;
 }
 
-}  // namespace
+/// The task itself, or the one whose draws it predicts with.
+Task const& subject_of(Session const& session, Task const& task) {
+  auto const* prediction = std::get_if<PredictTask>(&task.what);
+  return prediction == nullptr ? task : session.file.tasks[static_cast<std::size_t>(prediction->fit)];
+}
 
-namespace {
-
-// Of the models that a task is about: one, or all candidates.
-std::string task_digest(Session const& session, Task const& task, std::string const& model) {
-  Task const* subject = &task;
-  if (auto const* prediction = std::get_if<PredictTask>(&task.what))
-    subject = &session.file.tasks[static_cast<std::size_t>(prediction->fit)];
-  auto const* selection = std::get_if<SelectTask>(&subject->what);
-  if (selection == nullptr) return model_digest(session, model);
-  std::string all;
-  for (FitTask const& fit : selection->fits)
-    all += model_digest(session, session.file.models[static_cast<std::size_t>(fit.model)].name);
-  return sha256(all);
+/// "model `duffing`": of a selection the first.
+std::string subject_name(Session const& session, Task const& task) {
+  Task const& subject = subject_of(session, task);
+  auto const model = [&](int index) {
+    return fmt::format("model `{}`", session.file.models[static_cast<std::size_t>(index)].name);
+  };
+  if (auto const* discovery = std::get_if<DiscoverTask>(&subject.what))
+    return fmt::format("dictionary `{}`", session.file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].name);
+  if (auto const* selection = std::get_if<SelectTask>(&subject.what)) return model(selection->fits.front().model);
+  return model(std::get<FitTask>(subject.what).model);
 }
 
 }  // namespace
+
+namespace {}  // namespace
+
+std::string task_digest(Session const& session, Task const& task) {
+  Task const& subject = subject_of(session, task);
+  auto const of_model = [&](int model) { return model_digest(session, session.file.models[static_cast<std::size_t>(model)].name); };
+  if (auto const* discovery = std::get_if<DiscoverTask>(&subject.what))
+    return sha256(unparse(ast::File{{session.file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].tree}}));
+  auto const* selection = std::get_if<SelectTask>(&subject.what);
+  if (selection == nullptr) return of_model(std::get<FitTask>(subject.what).model);
+  std::string all;
+  for (FitTask const& fit : selection->fits) all += of_model(fit.model);
+  return sha256(all);
+}
 
 Report begin_report(Session const& session, Task const& task, int model_index, std::string what, std::uint64_t seed) {
   Report report;
@@ -84,7 +100,7 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   report.model_title = model.title;
   report.versions = {{"sysid", std::string(SYSID_VERSION)},
                      {"random_numbers", std::string("Philox4x64-10")},
-                     {"model_sha256", task_digest(session, task, model.name)}};
+                     {"model_sha256", task_digest(session, task)}};
   ast::Model const* flat = find_model(session.file.tree, model.name);
   if (flat == nullptr) return report;
   report.model_text = std::string(session.source.text(flat->span));
@@ -129,7 +145,7 @@ std::string model_digest(Session const& session, std::string const& model) {
   return sha256(text);
 }
 
-std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, int model, std::optional<std::uint64_t> seed) {
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed) {
   auto const folder = session.result_folder(task);
   auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
   auto const refuse = [&](std::string const& what) {
@@ -137,9 +153,8 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
                       std::nullopt,    {},      "run the task again with --force, or write elsewhere with -o"};
   };
   if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
-  std::string const& name = session.file.models[static_cast<std::size_t>(model)].name;
-  if (summary["versions"].value("model_sha256", "") != task_digest(session, task, name))
-    return refuse("text of model `" + name + "`");
+  if (summary["versions"].value("model_sha256", "") != task_digest(session, task))
+    return refuse("text of " + subject_name(session, task));
   std::vector<ExperimentUse> const& experiments = experiments_of(task);
   auto const stored = summary.value("data", nlohmann::json::array());
   if (stored.size() != experiments.size()) return refuse("set of experiments");

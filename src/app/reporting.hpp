@@ -14,11 +14,14 @@ Report begin_report(Session const& session, Task const& task, int model, std::st
 /// What failed solves mean for a result: an error from 20 % on, a warning from 1 %, a note below.
 Severity failure_severity(std::uint64_t failed, std::uint64_t solves);
 
-/// SHA-256 of a model's text: what stored results are compared by.
+/// SHA-256 of a model's text.
 std::string model_digest(Session const& session, std::string const& model);
 
-/// What is wrong with taking up stored results of a task: they are of another text of the model, of other experiments, of other
-/// contents of their files, or of another seed (when one is stated); nothing when they fit.
-std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, int model, std::optional<std::uint64_t> seed);
+/// Of what a task is about, a model, all candidates or a dictionary: what stored results are compared by.
+std::string task_digest(Session const& session, Task const& task);
+
+/// What is wrong with taking up stored results of a task: they are of another text of what the task is about, of other experiments,
+/// of other contents of their files, or of another seed (when one is stated); nothing when they fit.
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed);
 
 }  // namespace sysid

@@ -82,12 +82,19 @@ std::string resolved_discover(Session const& session, Task const& task, Discover
     selector.insert(selector.size() - 1, ", " + derivatives);
   else
     selector += "(" + derivatives + ")";
+  CheckedDictionary const& dictionary = session.file.dictionaries[static_cast<std::size_t>(what.dictionary)];
+  std::string noise;
+  for (std::size_t c = 0; c < what.noise.size(); ++c) {
+    if (!what.noise[c]) continue;
+    Channel const& channel = dictionary.measured.channels[c];
+    noise += fmt::format("{}{} = {}{}", noise.empty() ? "" : ", ", channel.name, shortest(channel.from_si(*what.noise[c])),
+                         channel.unit ? fmt::format(" [{}]", channel.unit->text) : "");
+  }
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = discover {} from {} with "
-      "{}, "
-      "top = {}, candidates = {}, seed = {}\n",
-      task.name, without_tasks(session), task.name, session.file.dictionaries[static_cast<std::size_t>(what.dictionary)].name,
-      data_names(session.file, what.experiments), selector, what.top, what.candidates ? "yes" : "no", seed);
+      "{}, {}top = {}, candidates = {}, seed = {}\n",
+      task.name, without_tasks(session), task.name, dictionary.name, data_names(session.file, what.experiments), selector,
+      noise.empty() ? "" : fmt::format("noise({}), ", noise), what.top, what.candidates ? "yes" : "no", seed);
 }
 
 }  // namespace sysid

@@ -103,7 +103,7 @@ FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::st
 namespace {
 
 /// The folder of a task's complete results; UserError when there are none or they are of another text.
-std::filesystem::path stored_results(Session& session, Task const& task, int model, std::string_view verb) {
+std::filesystem::path stored_results(Session& session, Task const& task, std::string_view verb) {
   auto folder = session.result_folder(task);
   if (!complete(folder))
     throw UserError({Severity::error,
@@ -112,7 +112,7 @@ std::filesystem::path stored_results(Session& session, Task const& task, int mod
                      std::nullopt,
                      {},
                      fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb)});
-  if (auto wrong = stored_otherwise(session, task, model, std::nullopt)) {
+  if (auto wrong = stored_otherwise(session, task, std::nullopt)) {
     wrong->code = "E6201";
     throw UserError(*wrong);
   }
@@ -132,7 +132,7 @@ std::vector<SelectedCandidate> const& selected_candidates(Session& session, int 
   Task const& task = session.file.tasks[static_cast<std::size_t>(select)];
   SelectTask const& what = std::get<SelectTask>(task.what);
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
-  auto const folder = stored_results(session, task, what.fits.front().model, "select");
+  auto const folder = stored_results(session, task, "select");
   auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
   std::vector<SelectedCandidate> candidates;
   for (std::size_t k = 0; k < set.models.size(); ++k) {
@@ -164,7 +164,7 @@ FittedModel const& fitted_model(Session& session, int fit) {
   if (auto const place = session.fitted.find(fit); place != session.fitted.end()) return place->second;
   Task const& task = session.file.tasks[static_cast<std::size_t>(fit)];
   FitTask const& what = std::get<FitTask>(task.what);
-  auto const folder = stored_results(session, task, what.model, "fit");
+  auto const folder = stored_results(session, task, "fit");
   auto const space = parameter_space(session.file.models[static_cast<std::size_t>(what.model)], what.experiments);
   return session.fitted[fit] = read_fitted(folder, names_of(*space));
 }

@@ -220,8 +220,9 @@ struct DiscoverTask {
   Settings form_settings;
   std::string selector;
   Settings selector_settings;
-  int top = 5;              // supports that are shown, and written as candidates
-  bool candidates = false;  // whether they are
+  std::vector<std::optional<double>> noise;  // sd per channel of the dictionary, SI; absent: estimated from the record
+  int top = 5;                               // supports that are shown, and written as candidates
+  bool candidates = false;                   // whether they are
   std::optional<std::uint64_t> seed;
 };
 

@@ -1,6 +1,8 @@
 // Data blocks: statements in any order, each at most once where once is meant.
 #include "check/data.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -197,7 +199,9 @@ DeclaredNames declared_names(ast::File const& file) {
   return names;
 }
 
-void check_binding(DataBlock const& block, Model const& model, DeclaredNames const& declared, Span use, Diagnostics& diagnostics) {
+void check_binding(DataBlock const& block, Model const& model, std::string const& noun, DeclaredNames const& declared, Span use,
+                   Diagnostics& diagnostics) {
+  std::string const owner = fmt::format("{} `{}`", noun, model.name);
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
     if (!column.unit || !declared.unit) return;
     std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
@@ -213,14 +217,14 @@ void check_binding(DataBlock const& block, Model const& model, DeclaredNames con
   for (DataInputUse const& bound : block.inputs) {
     if (!declared.all || declared.inputs.contains(bound.input)) continue;
     misnamed = true;
-    add_once(diagnostics, errors::unknown_input(bound.input_span, bound.input, model.name, inputs));
+    add_once(diagnostics, errors::unknown_input(bound.input_span, bound.input, owner, inputs));
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     Quantity const& input = model.inputs[i];
     auto const bound =
         std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
     if (bound == block.inputs.end()) {
-      if (!misnamed) diagnostics.add(errors::input_not_bound(use, input.name, model.name, block.name));
+      if (!misnamed) diagnostics.add(errors::input_not_bound(use, input.name, owner, block.name));
       continue;
     }
     compare_units(*bound, input, "column `" + bound->column + "`");
@@ -245,14 +249,14 @@ void check_binding(DataBlock const& block, Model const& model, DeclaredNames con
     if (channel != model.channels.end())
       compare_units(measured, *channel, "column `" + measured.column + "`");
     else
-      add_once(diagnostics, errors::unknown_channel(measured.channel_span, measured.channel, model.name, channels));
+      add_once(diagnostics, errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
   }
   if (any) return;
   if (block.measured.empty()) {
-    diagnostics.add(errors::no_channel_bound(use, model.name, block.name, channels));
+    diagnostics.add(errors::no_channel_bound(use, owner, block.name, channels));
   } else {
     for (DataMeasureUse const& measured : block.measured)
-      diagnostics.add(errors::unknown_channel(measured.channel_span, measured.channel, model.name, channels));
+      diagnostics.add(errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
   }
 }
 

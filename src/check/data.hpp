@@ -27,8 +27,10 @@ std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnost
 void check_between_samples(DataBlock const& block, Model const* model, Diagnostics& diagnostics);
 
 /// Whether the block serves a model: every input bound, some channel measured, no input or channel that no model of the file has,
-/// units of one kind, input derivatives only where they exist. use: the place of the task that brings the two together.
-void check_binding(DataBlock const& block, Model const& model, DeclaredNames const& declared, Span use, Diagnostics& diagnostics);
+/// units of one kind, input derivatives only where they exist. noun: what messages call it, "model" or "dictionary"; use: the place
+/// of the task that brings the two together.
+void check_binding(DataBlock const& block, Model const& model, std::string const& noun, DeclaredNames const& declared, Span use,
+                   Diagnostics& diagnostics);
 
 /// The constants of a block as values of a model's parameters, SI, [parameters]; absent where it fixes none. A constant fixes a
 /// per-experiment parameter; one that no model of the file has is an error, and so is a per-experiment parameter that has neither

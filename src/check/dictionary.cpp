@@ -13,6 +13,7 @@
 #include "check/scope.hpp"
 #include "check/units.hpp"
 #include "expression/factors.hpp"
+#include "regression/signals.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
@@ -58,6 +59,7 @@ class DictionaryChecker {
     equations();
     if (!failed()) coefficient_units_used();
     if (!failed()) parameters_used();
+    if (!failed()) inputs_used();
     if (failed()) return std::nullopt;
     out_.measured.name = out_.name;
     out_.measured.graph = out_.numbers.graph;
@@ -473,8 +475,22 @@ class DictionaryChecker {
       bool const before_a_term =
           std::any_of(terms_.begin(), terms_.end(), [&](Candidate const& each) { return each.written.coefficient == name.text; });
       diagnostics_.add(before_a_term ? errors::unit_of_no_term(name.span, parameter.unit ? parameter.unit->text : "", possible)
-                                     : errors::unused_parameter(name.span, name.text, false, "dictionary"));
+                                     : errors::unused_parameter(name.span, name.text, false));
     }
+  }
+
+  void inputs_used() {
+    std::vector<NodeId> roots;
+    for (regression::Equation const& equation : out_.numbers.equations) {
+      roots.push_back(equation.known);
+      for (regression::Term const& term : equation.terms) roots.push_back(term.expression);
+    }
+    std::set<int> read;
+    for (regression::Symbol const& symbol : regression::symbols_below(out_.numbers, roots))
+      if (symbol.kind == regression::Symbol::Kind::input) read.insert(symbol.index);
+    for (std::size_t i = 0; i < out_.measured.inputs.size(); ++i)
+      if (!read.contains(static_cast<int>(i)))
+        diagnostics_.add(errors::unused_input(out_.measured.inputs[i].span, out_.measured.inputs[i].name, "dictionary"));
   }
 
   static constexpr std::size_t most_terms = 1000;

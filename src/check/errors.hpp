@@ -73,7 +73,7 @@ Diagnostic nothing_observed(ast::Name const& model);
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first);
 /// Warnings.
 Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where = "model");
-Diagnostic unused_input(Span declaration, std::string const& input);
+Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where = "model");
 Diagnostic time_twice(Span second, Span first);
 
 // samples and discrete time (E31)
@@ -102,10 +102,11 @@ Diagnostic unknown_rule(ast::Name const& rule);
 Diagnostic not_a_time(Span span, Unit const& unit);
 Diagnostic rate_not_positive(Span span);
 Diagnostic bad_rows(Span span);
-Diagnostic input_not_bound(Span span, std::string const& input, std::string const& model, std::string const& data);
-Diagnostic no_channel_bound(Span span, std::string const& model, std::string const& data, Names const& channels);
-Diagnostic unknown_input(Span span, std::string const& input, std::string const& model, Names const& inputs);
-Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& model, Names const& channels);
+// owner: "model `duffing`" or "dictionary `restoring`"
+Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data);
+Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels);
+Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs);
+Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels);
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input);
 Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit);
 

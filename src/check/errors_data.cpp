@@ -50,23 +50,22 @@ Diagnostic bad_rows(Span span) {
                "for example `split train = rows 1..500`");
 }
 
-Diagnostic input_not_bound(Span span, std::string const& input, std::string const& model, std::string const& data) {
-  return error("E4109", span, fmt::format("data `{}` does not give input `{}` of model `{}`", data, input, model),
+Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data) {
+  return error("E4109", span, fmt::format("data `{}` does not give input `{}` of {}", data, input, owner),
                fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input));
 }
 
-Diagnostic no_channel_bound(Span span, std::string const& model, std::string const& data, Names const& channels) {
-  return error("E4110", span, fmt::format("data `{}` measures no channel of model `{}`", data, model),
+Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels) {
+  return error("E4110", span, fmt::format("data `{}` measures no channel of {}", data, owner),
                fmt::format("add `measure {} = COLUMN [unit]` to the data block", channels.empty() ? "CHANNEL" : channels.front()));
 }
 
-Diagnostic unknown_input(Span span, std::string const& input, std::string const& model, Names const& inputs) {
-  return error("E4115", span, fmt::format("model `{}` has no input `{}`", model, input),
-               guess_or(input, inputs, choose(inputs, "input")));
+Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs) {
+  return error("E4115", span, fmt::format("{} has no input `{}`", owner, input), guess_or(input, inputs, choose(inputs, "input")));
 }
 
-Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& model, Names const& channels) {
-  return error("E4111", span, fmt::format("model `{}` has no channel `{}`", model, channel),
+Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels) {
+  return error("E4111", span, fmt::format("{} has no channel `{}`", owner, channel),
                guess_or(channel, channels, choose(channels, "channel")));
 }
 
@@ -77,7 +76,7 @@ Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input) 
 }
 
 Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {
-  return error("E4113", span, fmt::format("{} is in [{}], the model declares it in [{}]", what, column_unit, declared_unit),
+  return error("E4113", span, fmt::format("{} is in [{}], the declaration says [{}]", what, column_unit, declared_unit),
                "the two must measure the same kind of quantity");
 }
 

@@ -87,9 +87,10 @@ Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool
                 : has_prior ? "use it in an equation, an observation or another prior; as it is, its posterior is its prior"
                             : "use it in an equation, an observation or a prior, or delete it");
 }
-Diagnostic unused_input(Span declaration, std::string const& input) {
-  return unused(declaration, fmt::format("nothing in this model reads the input `{}`", input),
-                "use it in an equation or an observation, or delete it");
+Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where) {
+  return unused(declaration, fmt::format("nothing in this {} reads the input `{}`", where, input),
+                where == "dictionary" ? "put it into the target or a term: a force that acts and is left out stays in the residual"
+                                      : "use it in an equation or an observation, or delete it");
 }
 
 Diagnostic time_twice(Span second, Span first) {

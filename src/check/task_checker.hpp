@@ -1,6 +1,7 @@
 // One task on its way from the tree to what it runs from: what the verbs share, and one function for each verb, in a file of its
 // own (task_fit.cpp, task_predict.cpp, task_simulate.cpp).
 #pragma once
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -31,6 +32,10 @@ class TaskChecker {
   void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule);
   // Whether the option says how a fit simulates; read into `task` then.
   bool simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task);
+  // Each argument of `values(m = 1, ...)`, `noise(displacement = 0.1 [mm])` with the index of its name among `known`, once.
+  // owner, member: "model `duffing`", "parameter".
+  void each_named(ast::Call const& call, std::string const& owner, std::string const& member, std::vector<std::string> const& known,
+                  std::function<void(ast::Argument const&, std::size_t)> const& visit);
   // Whether the option names a back end, known or not.
   bool backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
                       std::string& backend, Settings& settings);
@@ -57,6 +62,8 @@ class TaskChecker {
   // `spike_slab(derivatives = weak(...), ...)`.
   void discover_method(ast::Option const& option, std::string const& key, DiscoverTask& task);
   void derivatives(ast::Expression const& tree, DiscoverTask& task);
+  // `noise(displacement = 0.1 [mm])`.
+  void noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task);
   // Every channel of the dictionary is measured in every experiment.
   void require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task);
 

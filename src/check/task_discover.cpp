@@ -36,7 +36,18 @@ void TaskChecker::discover_method(ast::Option const& option, std::string const& 
     std::erase_if(arguments, [](ast::Argument const& each) { return each.name && each.name->text == "derivatives"; });
   }
   if (!backend_option(selector, key, backends_.discovering, task.selector, task.selector_settings))
-    options_.unknown(option, {"top", "candidates", "seed"});
+    options_.unknown(option, {"noise", "top", "candidates", "seed"});
+}
+
+void TaskChecker::noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task) {
+  std::vector<std::string> known;
+  for (Channel const& channel : dictionary.measured.channels) known.push_back(channel.name);
+  task.noise.resize(known.size());
+  each_named(call, "dictionary `" + dictionary.name + "`", "channel", known, [&](ast::Argument const& argument, std::size_t index) {
+    std::optional<Unit> unit = dictionary.measured.channels[index].unit;
+    if (unit) unit->offset = 0;  // an sd is a difference
+    if (auto const value = options_.number(argument.value, argument.name->text, unit, 1e-300, 1e300)) task.noise[index] = *value;
+  });
 }
 
 void TaskChecker::require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task) {
@@ -74,6 +85,8 @@ DiscoverTask TaskChecker::discover() {
         options_.seed(option, task.seed);
       else
         options_.flag(option, key, task.candidates);
+    } else if (key == "noise" && as_call(option.value) != nullptr) {
+      if (options_.fresh(option, key) && dictionary != nullptr) noise(*as_call(option.value), *dictionary, task);
     } else {
       discover_method(option, key, task);
     }

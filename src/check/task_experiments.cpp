@@ -40,7 +40,8 @@ std::optional<ExperimentUse> TaskChecker::experiment(ast::DataReference const& r
     use.part = static_cast<int>(place - block.parts.begin());
   }
   if (model == nullptr) return std::nullopt;
-  check_binding(block, *model, names_.declared, reference.span, diagnostics_);
+  check_binding(block, *model, tree_.verb.text == "discover" ? "dictionary" : "model", names_.declared, reference.span,
+                diagnostics_);
   use.constants = check_constants(block, *model, names_.declared, reference.span, diagnostics_);
   return use;
 }

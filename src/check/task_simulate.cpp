@@ -104,30 +104,15 @@ SimulateTask TaskChecker::simulate() {
 
 void TaskChecker::values(ast::Call const& call, Model const& model, SimulateTask& task) {
   std::vector<std::string> known;
-  std::map<std::string, Span> given;
   for (Parameter const& parameter : model.parameters) known.push_back(parameter.name);
-  for (ast::Argument const& argument : call.arguments) {
-    if (!argument.name) {
-      diagnostics_.add(errors::must_be_named(argument.span, "values", known));
-      continue;
-    }
-    auto const place = std::find(known.begin(), known.end(), argument.name->text);
-    if (place == known.end()) {
-      diagnostics_.add(errors::unknown_member(*argument.name, "model `" + model.name + "`", "parameter", known));
-      continue;
-    }
-    if (auto const [first, is_fresh] = given.emplace(argument.name->text, argument.span); !is_fresh) {
-      diagnostics_.add(errors::stated_twice(argument.span, first->second, "`" + argument.name->text + "`"));
-      continue;
-    }
-    auto const index = static_cast<std::size_t>(place - known.begin());
+  each_named(call, "model `" + model.name + "`", "parameter", known, [&](ast::Argument const& argument, std::size_t index) {
     if (model.parameters[index].value && !model.parameters[index].per_experiment) {
       diagnostics_.add(errors::fixed_parameter(*argument.name, model.parameters[index].span));
-      continue;
+      return;
     }
     std::optional<Unit> const& unit = model.parameters[index].unit;
     if (auto const value = options_.number(argument.value, argument.name->text, unit, -1e300, 1e300)) task.values[index] = *value;
-  }
+  });
 }
 
 std::vector<std::string> TaskChecker::values_needed(Model const& model, SimulateTask const& task) const {

@@ -83,6 +83,27 @@ bool TaskChecker::simulation_option(ast::Option const& option, std::string const
   return true;
 }
 
+void TaskChecker::each_named(ast::Call const& call, std::string const& owner, std::string const& member,
+                             std::vector<std::string> const& known,
+                             std::function<void(ast::Argument const&, std::size_t)> const& visit) {
+  std::map<std::string, Span> given;
+  for (ast::Argument const& argument : call.arguments) {
+    if (!argument.name) {
+      diagnostics_.add(errors::must_be_named(argument.span, call.function.text, known));
+      continue;
+    }
+    auto const place = std::find(known.begin(), known.end(), argument.name->text);
+    if (place == known.end()) {
+      diagnostics_.add(errors::unknown_member(*argument.name, owner, member, known));
+      continue;
+    }
+    if (auto const [first, is_fresh] = given.emplace(argument.name->text, argument.span); !is_fresh)
+      diagnostics_.add(errors::stated_twice(argument.span, first->second, "`" + argument.name->text + "`"));
+    else
+      visit(argument, static_cast<std::size_t>(place - known.begin()));
+  }
+}
+
 bool TaskChecker::backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
                                  std::string& backend, Settings& settings) {
   if (option.input || option.key || key.empty()) return false;

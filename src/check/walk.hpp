@@ -7,27 +7,28 @@
 
 namespace sysid {
 
-template <class Visit>
-void each_expression(ast::Expression const& tree, Visit const& visit) {
+/// Expression: ast::Expression, const or not; what `visit` puts in its place is walked through.
+template <class Expression, class Visit>
+void each_expression(Expression& tree, Visit const& visit) {
   visit(tree);
   std::visit(
-      [&](auto const& node) {
+      [&](auto& node) {
         using Node = std::decay_t<decltype(node)>;
         if constexpr (std::is_same_v<Node, ast::Reference>) {
-          for (auto const& index : node.index) each_expression(index, visit);
+          for (auto& index : node.index) each_expression(index, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Unary>>) {
           each_expression(*node->operand, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Binary>>) {
           each_expression(*node->left, visit);
           each_expression(*node->right, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Call>>) {
-          for (auto const& argument : node->arguments) each_expression(argument.value, visit);
+          for (auto& argument : node->arguments) each_expression(argument.value, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::Conditional>>) {
           each_expression(*node->condition, visit);
           each_expression(*node->then, visit);
           each_expression(*node->otherwise, visit);
         } else if constexpr (std::is_same_v<Node, ast::Box<ast::List>>) {
-          for (auto const& item : node->items) each_expression(item, visit);
+          for (auto& item : node->items) each_expression(item, visit);
         }
       },
       tree.node);

@@ -150,11 +150,10 @@ Diagnostic rows_outside(std::string const& file, std::string const& what, int fi
 
 Diagnostic cycles_against_radians(std::string const& column, std::string const& column_unit, std::string const& declared_unit,
                                   Mention mention) {
-  return error(
-      "E4017", mention,
-      fmt::format("column `{}` is in [{}], the model declares it in [{}]: one counts cycles, the other radians, 2 pi apart", column,
-                  column_unit, declared_unit),
-      "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
+  return error("E4017", mention,
+               fmt::format("column `{}` is in [{}], the declaration says [{}]: one counts cycles, the other radians, 2 pi apart",
+                           column, column_unit, declared_unit),
+               "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
 }
 
 }  // namespace sysid::data_errors

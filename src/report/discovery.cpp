@@ -62,9 +62,10 @@ std::pair<std::string, std::string> coefficient_text(double value, double sd) {
 std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
   std::vector<ReportTable> tables;
   if (!discovery.noise.empty()) {
-    ReportTable noise{"measurement noise", "As the regression took it, estimated from the record.", {"channel", "unit", "sd"}, {}};
+    ReportTable noise{"measurement noise", "As the regression took it.", {"channel", "unit", "sd", ""}, {}};
     for (DiscoveryReport::Noise const& each : discovery.noise)
-      noise.rows.push_back({each.channel, each.unit, each.sd > 0 ? significant(each.sd, 3) : "not estimated"});
+      noise.rows.push_back(
+          {each.channel, each.unit, each.sd > 0 ? significant(each.sd, 3) : "none", each.given ? "given" : "estimated"});
     tables.push_back(std::move(noise));
   }
   for (DiscoveredEquation const& equation : discovery.equations) {
@@ -72,15 +73,23 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     tables.push_back(term_table(discovery, equation));
     if (equation.supports.size() > 1) tables.push_back(support_table(equation));
   }
+  if (!discovery.left_out.empty()) {
+    ReportTable left_out{"not offered", "Left out of the dictionary before the record was looked at.", {"term", ""}, {}};
+    for (DiscoveryReport::LeftOut const& each : discovery.left_out) left_out.rows.push_back({each.term, each.reason});
+    tables.push_back(std::move(left_out));
+  }
   return tables;
 }
 
 nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
   Json out = {{"selector", discovery.selector}, {"derivatives", discovery.derivatives},
               {"measure", discovery.measure},   {"half_width", discovery.half_width},
-              {"noise", Json::object()},        {"equations", Json::array()}};
+              {"noise", Json::object()},        {"equations", Json::array()},
+              {"left_out", Json::array()}};
   for (DiscoveryReport::Noise const& noise : discovery.noise)
-    out["noise"][noise.channel] = {{"unit", noise.unit}, {"sd", noise.sd}};
+    out["noise"][noise.channel] = {{"unit", noise.unit}, {"sd", noise.sd}, {"given", noise.given}};
+  for (DiscoveryReport::LeftOut const& each : discovery.left_out)
+    out["left_out"].push_back({{"term", each.term}, {"reason", each.reason}});
   for (DiscoveredEquation const& equation : discovery.equations) {
     Json terms = Json::array(), supports = Json::array();
     for (DiscoveredTerm const& term : equation.terms)

@@ -48,11 +48,16 @@ struct DiscoveryReport {
   int half_width = 0;
   struct Noise {
     std::string channel, unit;
-    double sd = 0;  // in `unit`
+    double sd = 0;       // in `unit`
+    bool given = false;  // else estimated from the record
   };
   std::vector<Noise> noise;
   std::vector<DiscoveredEquation> equations;
-  std::string source;  // of the model that was found; empty: none
+  struct LeftOut {
+    std::string term, reason;
+  };
+  std::vector<LeftOut> left_out;  // of the dictionary, before the record was looked at
+  std::string source;             // of the model that was found; empty: none
 };
 
 /// A coefficient and its sd with the digits that the sd leaves.

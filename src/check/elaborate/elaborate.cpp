@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "check/elaborate/candidates.hpp"
+#include "check/elaborate/dictionary_functions.hpp"
 #include "check/elaborate/errors.hpp"
 #include "check/elaborate/flatten.hpp"
 #include "check/elaborate/frame.hpp"
@@ -34,6 +35,8 @@ class Elaborator {
         others.push_back(elaborated(*task));
       else if (auto const* set = std::get_if<ast::Candidates>(&item))
         others.push_back(elaborated(*set));
+      else if (auto const* dictionary = std::get_if<ast::Dictionary>(&item))
+        others.push_back(with_functions(*dictionary, environments_.main()));
       else if (!std::holds_alternative<ast::Model>(item) && !std::holds_alternative<ast::Use>(item))
         others.push_back(item);
     }

@@ -1,0 +1,333 @@
+// What may go wrong with a dictionary and a record, each through the whole program: one message with a code, a place where the text
+// has one, and the exit code that belongs to it.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "app/readiness.hpp"
+#include "app/running.hpp"
+#include "core/random.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+constexpr double step = 0.01;
+
+/// An oscillator y'' = u - 0.8 y' - 25 y - 60 y^3 under a held random force, with noise of 0.5 %; Runge and Kutta's steps of 1 ms.
+struct Made {
+  std::vector<double> t, u, y;
+
+  explicit Made(int rows, double offset = 0, double noise = 0.005) {
+    Stream force({4, Purpose::input, 0, 0}), error({4, Purpose::noise, 0, 0});
+    double position = 0, speed = 0, held = 0;
+    for (int i = 0; i < rows; ++i) {
+      if (i % 5 == 0) held = 8 * force.normal();
+      t.push_back(step * i);
+      u.push_back(held);
+      y.push_back(offset + position + noise * 0.35 * error.normal());
+      auto const rate = [&](double at, double moving) { return held - 0.8 * moving - 25 * at - 60 * at * at * at; };
+      double const h = step / 10;
+      for (int k = 0; k < 10; ++k) {
+        double const p1 = speed, v1 = rate(position, speed);
+        double const p2 = speed + h / 2 * v1, v2 = rate(position + h / 2 * p1, p2);
+        double const p3 = speed + h / 2 * v2, v3 = rate(position + h / 2 * p2, p3);
+        double const p4 = speed + h * v3, v4 = rate(position + h * p3, p4);
+        position += h / 6 * (p1 + 2 * p2 + 2 * p3 + p4);
+        speed += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
+      }
+    }
+  }
+  std::string csv() const {
+    std::string text = "t,u,y\n";
+    for (std::size_t i = 0; i < t.size(); ++i) text += fmt::format("{:.12g},{:.12g},{:.12g}\n", t[i], u[i], y[i]);
+    return text;
+  }
+};
+
+std::string const record = Made(900).csv();
+
+std::string file(std::string const& statements, std::string const& options = "seed = 1",
+                 std::string const& input = "input u = u [N] hold zero_order; ") {
+  return "dictionary terms {\ninput u [N]\nstate y [m] = displacement\n" + statements +
+         "\n}\ndata bench { file \"bench.csv\"; time t [s]; " + input +
+         "measure displacement = y [m] }\nfound = discover terms from bench with " + options + "\n";
+}
+
+struct Answer {
+  int exit = 0;
+  std::string said;  // standard output, or the message that ended it
+  json summary;
+
+  json finding(std::string const& code) const {
+    if (summary.contains("findings"))
+      for (json const& each : summary.at("findings"))
+        if (each.at("code") == code) return each;
+    return {};
+  }
+  std::vector<std::string> kept() const {
+    std::vector<std::string> all;
+    for (json const& term : summary.at("discovery").at("equations").at(0).at("terms"))
+      if (term.at("kept").get<bool>()) all.push_back(term.at("term"));
+    return all;
+  }
+  std::vector<std::string> codes() const {
+    std::vector<std::string> all;
+    for (json const& each : summary.at("findings")) all.push_back(each.at("code"));
+    return all;
+  }
+};
+using Texts = std::vector<std::string>;
+
+/// As the command line would: messages of the text and of the data end it with 65.
+Answer run(std::string const& text, std::string const& csv = record) {
+  TemporaryFolder folder;
+  write_file(folder.path() / "bench.csv", csv);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  options.figures = false;
+  Source source((folder.path() / "case.sysid").string(), text);
+  Diagnostics diagnostics;
+  auto const checked = load(source, diagnostics);
+  Answer answer;
+  answer.said = render(diagnostics, source);
+  answer.exit = 65;
+  if (!checked) return answer;
+  SilentProgress silent;
+  std::ostringstream out, notices;
+  try {
+    answer.exit = static_cast<int>(run_tasks(source, *checked, {}, options, silent, out, notices));
+  } catch (UnusableData const& error) {
+    answer.said += render(error.diagnostics(), source);
+    return answer;
+  }
+  answer.said += out.str();
+  answer.summary = json::parse(read_file(options.output / "found/summary.json"));
+  return answer;
+}
+
+bool contains(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+
+std::string const oscillator = "target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1";
+
+/// The record with column `column` of row `row` (from 0) replaced.
+std::string replaced(std::size_t row, int column, std::string const& value) {
+  std::size_t begin = record.find('\n') + 1;
+  for (std::size_t i = 0; i < row; ++i) begin = record.find('\n', begin) + 1;
+  for (int i = 0; i < column; ++i) begin = record.find(',', begin) + 1;
+  std::string text = record;
+  text.replace(begin, record.find_first_of(",\n", begin) - begin, value);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("the record that the corner cases vary is found without a word") {
+  Answer const answer = run(file(oscillator));
+  CHECK(answer.exit == 0);
+  CHECK(answer.kept() == Texts{"y'", "y", "y^3"});
+  CHECK(answer.codes().empty());
+}
+
+TEST_CASE("a forcing that the dictionary declares and does not read is named where it stands") {
+  Answer const answer = run(file("target = y''\nterms = y', y, y^2, y^3, 1"));
+  CHECK(answer.exit == 0);
+  CHECK(contains(answer.said, "case.sysid:2:7: warning[E3019]: nothing in this dictionary reads the input `u`"));
+  json const finding = answer.finding("unexplained_residual");
+  REQUIRE_FALSE(finding.is_null());
+  CHECK(finding.at("severity") == "warning");
+}
+
+TEST_CASE("a forcing that the data hold and the dictionary does not declare is named where it stands") {
+  std::string text = file("target = y''\nterms = y', y, y^2, y^3, 1");
+  text = without(text, "input u [N]\n");
+  Answer const answer = run(text);
+  CHECK(answer.exit == 65);
+  CHECK(contains(answer.said, "error[E4115]: dictionary `terms` has no input `u`"));
+}
+
+TEST_CASE("a forcing that was not recorded, and a term that the dictionary lacks, are missed in the residual") {
+  std::string text = without(file("target = y''\nterms = y', y, y^2, y^3, 1", "seed = 1", ""), "input u [N]\n");
+  Answer const forcing = run(text);
+  CHECK(forcing.exit == 0);
+  REQUIRE_FALSE(forcing.finding("unexplained_residual").is_null());
+  CHECK(contains(forcing.finding("unexplained_residual").at("message"), "a forcing or a term is missing"));
+  Answer const term = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, 1"));
+  CHECK_FALSE(term.finding("unexplained_residual").is_null());
+}
+
+TEST_CASE("terms that are one on this record are named, and the first stays") {
+  Answer const repeats = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^3, abs(y)*sign(y)"));
+  CHECK(repeats.exit == 0);
+  CHECK(repeats.kept() == Texts{"y'", "y", "y^3"});
+  CHECK(contains(repeats.finding("terms_repeat").at("message"), "`abs(y)*sign(y)` is a multiple of `y`"));
+  Answer const sum = run(file("let angle = y/1 [m]\ntarget = u - 1 [kg]*y''\nterms = y', y, y^3, sin(angle)^2, 1, cos(angle)^2"));
+  CHECK(sum.exit == 0);
+  CHECK(contains(sum.finding("terms_collinear").at("message"), "`cos(angle)^2` is a sum of `sin(angle)^2` and `1`"));
+  CHECK(sum.finding("terms_collinear").at("severity") == "warning");
+}
+
+TEST_CASE("terms that are nearly one are named") {
+  // Around a displacement of 20 the powers of y say nearly the same.
+  Answer const near = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1", "threshold(share = 1e-9), seed = 1"),
+                           Made(900, 20).csv());
+  REQUIRE_FALSE(near.finding("terms_nearly_collinear").is_null());
+  CHECK(contains(near.finding("terms_nearly_collinear").at("message"), "barely told apart"));
+  CHECK(near.exit == 0);
+}
+
+TEST_CASE("a term that is always zero is named, by its text or on the record") {
+  Answer const text = run(file(oscillator + ", y - y"));
+  CHECK(text.exit == 0);
+  CHECK(contains(text.said, "y - y  always zero"));
+  CHECK(text.kept() == Texts{"y'", "y", "y^3"});
+  Answer const data = run(file(oscillator + ", max(y - 100 [m], 0)"));
+  CHECK(data.exit == 0);
+  CHECK(contains(data.finding("term_always_zero").at("message"), "`max(y - 100 [m], 0)` is zero on the whole record"));
+  CHECK(data.kept() == Texts{"y'", "y", "y^3"});
+}
+
+TEST_CASE("a term that is not finite somewhere is left out by name") {
+  Answer const answer = run(file(oscillator + ", sqrt(y*1 [m])"));
+  CHECK(answer.exit == 0);
+  CHECK(contains(answer.finding("term_not_finite").at("message"), "`sqrt(y*1 [m])` is not finite in"));
+  CHECK(answer.kept() == Texts{"y'", "y", "y^3"});
+}
+
+TEST_CASE("too few samples are counted") {
+  for (int const rows : {2, 15, 25}) {
+    CAPTURE(rows);
+    Answer const answer = run(file(oscillator), Made(rows).csv());
+    CHECK(answer.exit == 1);
+    CHECK(answer.codes() == Texts{"too_few_rows"});
+    CHECK(answer.finding("too_few_rows").at("severity") == "error");
+  }
+  Answer const samples = run(file(oscillator, "threshold(derivatives = central), seed = 1"), Made(9).csv());
+  CHECK(contains(samples.finding("too_few_rows").at("message"), "samples for 5 terms are too few; at least 11 are needed"));
+}
+
+TEST_CASE("a single row is an error of the data, as for any task") {
+  Answer const answer = run(file(oscillator), Made(1).csv());
+  CHECK(answer.exit == 65);
+  CHECK(contains(answer.said, "case.sysid:7:"));
+  CHECK(contains(answer.said, "error[E4"));
+}
+
+TEST_CASE("a record at rest says nothing about its equation") {
+  Made still(900);
+  for (double& value : still.y) value = 0.3;
+  Answer const answer = run(file(oscillator), still.csv());
+  CHECK(answer.exit == 1);
+  CHECK(answer.codes() == Texts{"record_at_rest"});
+  CHECK(contains(answer.finding("record_at_rest").at("message"), "`displacement` is 0.3 on the whole record"));
+}
+
+TEST_CASE("a unit that no term can have is an error where it stands") {
+  Answer const answer = run(file(oscillator + "\ncoefficients = [N/m], [N/m^3], [N s/m], [N/m^4]"));
+  CHECK(answer.exit == 65);
+  CHECK(contains(answer.said, "case.sysid:6:42: error[E6609]: no term has a coefficient in [N/m^4]"));
+}
+
+TEST_CASE("missing samples cost windows, missing forces are an error") {
+  Answer const gap = run(file(oscillator), replaced(200, 2, "NA"));
+  CHECK(gap.exit == 0);
+  CHECK(gap.kept() == Texts{"y'", "y", "y^3"});
+  CHECK(gap.finding("windows_missing").at("severity") == "note");
+  Answer const number = run(file(oscillator), replaced(200, 2, "nan"));
+  CHECK(number.exit == 65);
+  CHECK(contains(number.said, "case.sysid:7:"));
+  Answer const force = run(file(oscillator), replaced(200, 1, "NA"));
+  CHECK(force.exit == 65);
+  CHECK(contains(force.said, "case.sysid:7:"));
+  // Every second sample: no window is whole.
+  Made sparse(900);
+  std::string csv = "t,u,y\n";
+  for (std::size_t i = 0; i < sparse.t.size(); ++i)
+    csv += fmt::format("{:.12g},{:.12g},{}\n", sparse.t[i], sparse.u[i], i % 2 == 1 ? "NA" : fmt::format("{:.12g}", sparse.y[i]));
+  Answer const none = run(file(oscillator), csv);
+  CHECK(none.exit == 1);
+  CHECK_FALSE(none.finding("too_few_rows").is_null());
+  CHECK(contains(none.finding("windows_missing").at("message"), "100 % of the windows touch a missing sample"));
+}
+
+TEST_CASE("unequal steps are named") {
+  Answer const answer = run(file(oscillator), replaced(450, 0, "4.5031"));
+  CHECK(answer.exit == 1);
+  CHECK(answer.codes() == Texts{"unequal_steps"});
+  CHECK(contains(answer.finding("unequal_steps").at("message"), "`bench`"));
+}
+
+TEST_CASE("an input that is constant stands for the constant, and is named with it") {
+  Made steady(900);
+  Answer const held = [&] {
+    Made still(900);
+    for (double& value : still.u) value = 2;
+    return run(file("target = y''\nterms = y', y, y^2, y^3, u, 1"), still.csv());
+  }();
+  CHECK(contains(held.finding("terms_repeat").at("message"), "`1` is a multiple of `u`"));
+  for (double& value : steady.u) value = 0;
+  Answer const zero = run(file("target = u\nterms = y'', y', y, y^3"), steady.csv());
+  CHECK(zero.exit == 1);
+  CHECK(zero.codes() == Texts{"nothing_to_explain"});
+}
+
+TEST_CASE("noise that is given takes the place of the estimate") {
+  Answer const estimated = run(file(oscillator));
+  json const& of_record = estimated.summary.at("discovery").at("noise").at("displacement");
+  CHECK(of_record.at("given") == false);
+  CHECK(of_record.at("sd").get<double>() == doctest::Approx(0.00175).epsilon(0.1));
+  Answer const given = run(file(oscillator, "noise(displacement = 0.5 [mm]), seed = 1"));
+  json const& noise = given.summary.at("discovery").at("noise").at("displacement");
+  CHECK(noise.at("given") == true);
+  CHECK(noise.at("sd").get<double>() == doctest::Approx(0.0005).epsilon(1e-14));
+  // What is taken for less noise than there is leaves a residual of as many times the noise.
+  double const ratio = given.summary.at("discovery").at("equations").at(0).at("noise_ratio");
+  CHECK(ratio == doctest::Approx(3.5).epsilon(0.15));
+  CHECK_FALSE(given.finding("unexplained_residual").is_null());
+  Answer const unknown = run(file(oscillator, "noise(position = 0.5 [mm]), seed = 1"));
+  CHECK(unknown.exit == 65);
+  CHECK(contains(unknown.said, "dictionary `terms` has no channel `position`"));
+  Answer const unit = run(file(oscillator, "noise(displacement = 0.5 [N]), seed = 1"));
+  CHECK(unit.exit == 65);
+}
+
+TEST_CASE("a discovery that is complete is kept by --resume, one of another text is refused") {
+  TemporaryFolder folder;
+  write_file(folder.path() / "bench.csv", record);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  std::string const text = file(oscillator);
+  CHECK(run_text(folder.path() / "case.sysid", text, options).exit == 0);
+  options.resume = true;
+  RunResult const again = run_text(folder.path() / "case.sysid", text, options);
+  CHECK(again.exit == 0);
+  CHECK(contains(again.notices, "found: complete, kept"));
+  std::string const other = with(text, ", 1\n", ", 1, y*y'\n");
+  CHECK_THROWS_WITH_AS(run_text(folder.path() / "case.sysid", other, options),
+                       doctest::Contains("of another text of dictionary `terms`"), UserError);
+}
+
+TEST_CASE("functions of modules serve in dictionaries, and come with the model that is found") {
+  TemporaryFolder folder;
+  write_file(folder.path() / "bench.csv", record);
+  write_file(folder.path() / "laws.sysid", "use powers\nfunction cube(z) = z*inner(z)\n");
+  RunOptions options;
+  options.output = folder.path() / "results";
+  write_file(folder.path() / "powers.sysid", "function inner(z) = z*z\n");
+  // The file's own `inner` means another thing.
+  std::string const text =
+      "use laws\nfunction inner(z) = 2*z\n" + file("target = u - 1 [kg]*y''\nterms = y', inner(y), y^2, cube(y), 1");
+  RunResult const result = run_text(folder.path() / "case.sysid", text, options);
+  CHECK(result.exit == 0);
+  json const summary = json::parse(read_file(options.output / "found/summary.json"));
+  Answer const answer{result.exit, result.out, summary};
+  CHECK(answer.kept() == Texts{"y'", "inner(y)", "cube(y)"});
+  std::string const source = read_file(options.output / "found/found.sysid");
+  CHECK(contains(source, "powers_inner(z) = z*z"));
+  CHECK(contains(source, "= z*powers_inner(z)"));
+}
