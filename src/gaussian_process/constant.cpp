@@ -22,7 +22,7 @@ void stationary(Numbers p, double* covariance, double* derivatives) {
 
 void transition(Numbers, double, double* transition, double* derivatives) {
   transition[0] = 1;
-  derivatives[0] = 0;
+  if (derivatives != nullptr) derivatives[0] = 0;
 }
 
 constexpr StateSpaceRow state_space{1, &stationary, &transition};

@@ -40,7 +40,7 @@ struct StateSpaceRow {
   /// P [d x d] and, for each hyper-parameter, its derivative in the hyper-parameter's logarithm; matrices by columns, one after
   /// another.
   void (*stationary)(Numbers parameters, double* covariance, double* derivatives);
-  /// A [d x d] over `step` >= 0, and its derivatives likewise.
+  /// A [d x d] over `step` >= 0, and its derivatives likewise; nullptr where they are not wanted.
   void (*transition)(Numbers parameters, double step, double* transition, double* derivatives);
 };
 

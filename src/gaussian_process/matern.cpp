@@ -130,6 +130,7 @@ void transition(Numbers p, double step, double* out, double* derivatives) {
       out[i] += power[i];
     }
   }
+  if (derivatives == nullptr) return;
   product<D>(Form<D>::drift, out, derivatives + D * D);
   for (int i = 0; i < D * D; ++i) {
     derivatives[i] = 0;

@@ -109,6 +109,7 @@ void transition(Numbers p, double step, double* out, double* derivatives) {
   Response const free = response(a, square, step);
   out[0] = free.c + a * free.s, out[2] = free.s;
   out[1] = -square * free.s, out[3] = free.c - a * free.s;
+  if (derivatives == nullptr) return;
   // Derivatives of c and s in delta, then in a and w^2: d/da = -step - 2 a d/d(delta), since exp(-a step) is a factor of both.
   double const c_delta = -0.5 * step * free.s, s_delta = free.d;
   double const c_a = -step * free.c - 2 * a * c_delta, s_a = -step * free.s - 2 * a * s_delta;
