@@ -1,4 +1,5 @@
-// The layers: which folder may include which, and who alone may include Boost.Spirit and SUNDIALS. Read from the #include lines.
+// The layers: which folder may include which, and who alone may include Boost.Spirit, SUNDIALS and NLopt. Read from the #include
+// lines.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -59,6 +60,7 @@ TEST_CASE("includes point one way, Boost.Spirit stays in grammar/ and SUNDIALS i
                      line.find("likelihood/selection_target.hpp") != std::string::npos));
         }
         if (line.starts_with("#include <boost/spirit")) CHECK(folder == "grammar");
+        if (line.starts_with("#include <nlopt")) CHECK(folder == "gaussian_process");
         for (char const* header : {"<cvode", "<ida", "<arkode", "<nvector", "<sunmatrix", "<sunlinsol", "<sundials"})
           if (line.starts_with(std::string("#include ") + header)) CHECK(folder == "simulate");
       }
