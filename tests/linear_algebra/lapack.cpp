@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "core/random.hpp"
 
@@ -93,4 +95,22 @@ TEST_CASE("the same bytes twice") {
   lapack::invert_cholesky(first);
   lapack::invert_cholesky(second);
   CHECK((first.array() == second.array()).all());
+}
+
+TEST_CASE("callers in several threads get the same bytes") {
+  MatrixXd alone = random_covariance(200, 7);
+  std::vector<MatrixXd> together(4, alone);
+  REQUIRE(lapack::cholesky(alone));
+  lapack::invert_cholesky(alone);
+  std::vector<std::thread> threads;
+  for (MatrixXd& own : together)
+    threads.emplace_back([&own] {
+      MatrixXd const before = own;
+      for (int repeat = 0; repeat < 20; ++repeat) {
+        own = before;
+        if (lapack::cholesky(own)) lapack::invert_cholesky(own);
+      }
+    });
+  for (std::thread& one : threads) one.join();
+  for (MatrixXd const& own : together) CHECK((own.array() == alone.array()).all());
 }
