@@ -7,7 +7,11 @@
 
 #include "app/discovery_findings.hpp"
 #include "app/experiments.hpp"
+#include "app/found_equation.hpp"
+#include "app/found_model.hpp"
 #include "app/found_source.hpp"
+#include "app/judge_structures.hpp"
+#include "app/kept_aside.hpp"
 #include "app/left_out.hpp"
 #include "app/pipeline.hpp"
 #include "app/readiness.hpp"
@@ -46,11 +50,16 @@ class Discover {
     method.seed = seed_;
     method.interrupted = [this] { return session_.interrupted(); };
     regression::Discovery const found = regression::discover(numbers(), experiments_of(data_), method);
-    if (found.interrupted) {
-      session_.notices << fmt::format("{}: interrupted; it begins again\n", task_.name);
-      return ExitCode::interrupted;
+    if (found.interrupted) return stop();
+    FoundSource const source{session_, task_, what_, dictionary_, data_, found, seed_};
+    std::vector<FoundStructure> structures = best_structures(found, what_.top);
+    std::optional<Judgement> judgement;
+    if (what_.refit && !structures.empty()) {
+      judgement = judge_structures(source, structures, aside(), method.interrupted);
+      if (judgement->interrupted) return stop();
+      structures = judgement->order;
     }
-    return finish(found, *method.selector);
+    return finish(found, *method.selector, source, structures, judgement);
   }
 
  private:
@@ -61,7 +70,19 @@ class Discover {
     return numbers;
   }
 
-  ExitCode finish(regression::Discovery const& found, regression::SelectorRow const& selector) {
+  ExitCode stop() const {
+    session_.notices << fmt::format("{}: interrupted; it begins again\n", task_.name);
+    return ExitCode::interrupted;
+  }
+
+  // With the dictionary's columns, as the task's own.
+  std::vector<ExperimentData> aside() const {
+    return load_experiments(session_, unused_parts(session_.file, what_, 1), dictionary_.measured, {StartRule::Kind::rest, 0},
+                            PredictionRule::as_written);
+  }
+
+  ExitCode finish(regression::Discovery const& found, regression::SelectorRow const& selector, FoundSource const& source,
+                  std::vector<FoundStructure> structures, std::optional<Judgement>& judgement) {
     Report report;
     report.version = SYSID_VERSION;
     report.task = task_.name;
@@ -76,10 +97,14 @@ class Discover {
                        {"model_sha256", task_digest(session_, task_)}};
     for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, dictionary_.measured));
     DiscoveryReport discovery = described(found, selector);
-    for (DiscoveredEquation const& each : discovery.equations)
-      if (!each.equation.empty()) report.equations.push_back(each.equation);
     add_findings(found, report.findings);
-    add_source(found, discovery, report.findings);
+    if (judgement) {
+      report.findings.insert(report.findings.end(), judgement->findings.begin(), judgement->findings.end());
+      discovery.judged = std::move(judgement->report);
+    }
+    report.equations = equations(discovery);
+    if (!what_.candidates && !structures.empty()) structures.resize(1);
+    add_source(source, structures, discovery, report.findings);
     report.tables = discovery_tables(discovery);
     report.settings = {{"selector", what_.selector}};
     for (auto const& [name, value] : what_.selector_settings.all()) report.settings.emplace_back(name, value);
@@ -88,7 +113,7 @@ class Discover {
     report.resolved_text = resolved_discover(session_, task_, what_, seed_);
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
     report.timing = {{"wall_seconds", wall.count()}};
-    report.verdict = headline(discovery, report.findings);
+    report.verdict = headline(discovery, report.equations, report.findings);
     report.discovery = std::move(discovery);
     write_result(report, session_.result_folder(task_), session_.options.figures);
     session_.out << terminal_summary(report);
@@ -98,11 +123,21 @@ class Discover {
     return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
   }
 
-  static std::string headline(DiscoveryReport const& discovery, Findings const& findings) {
-    std::string terms;
+  // By simulation where that has judged.
+  static std::vector<std::string> equations(DiscoveryReport const& discovery) {
+    if (discovery.judged && discovery.judged->structures.front().failure.empty())
+      return discovery.judged->structures.front().equations;
+    std::vector<std::string> all;
     for (DiscoveredEquation const& each : discovery.equations)
-      terms +=
-          fmt::format("{}{}", terms.empty() ? "" : "; ", each.equation.empty() ? each.target + ": nothing found" : each.equation);
+      if (!each.equation.empty()) all.push_back(each.equation);
+    return all;
+  }
+
+  static std::string headline(DiscoveryReport const& discovery, std::vector<std::string> const& equations,
+                              Findings const& findings) {
+    std::string terms = fmt::format("{}", fmt::join(equations, "; "));
+    for (DiscoveredEquation const& each : discovery.equations)
+      if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
     std::string const judged = judge(findings).text;
     return terms + "; " + judged.substr(0, judged.find('\n'));
   }
@@ -161,7 +196,10 @@ class Discover {
       to.inflation = from.inflation;
       out.terms.push_back(std::move(to));
     }
-    out.equation = printed(out, equation);
+    std::vector<PrintedTerm> printed;
+    for (std::size_t j = 0; j < out.terms.size(); ++j)
+      if (out.terms[j].kept) printed.push_back({j, out.terms[j].coefficient, out.terms[j].sd});
+    out.equation = equation_text(equation, printed);
     for (std::size_t s = 0; s < found.supports.size() && s < static_cast<std::size_t>(what_.top); ++s) {
       regression::Support const& support = found.supports[s];
       DiscoveredSupport to{{}, support.probability, support.log_evidence};
@@ -173,22 +211,6 @@ class Discover {
     return out;
   }
 
-  // "m*y'' - x = -20*y' - 1e4*y".
-  static std::string printed(DiscoveredEquation const& out, DictionaryEquation const& equation) {
-    std::string sum;
-    for (std::size_t j = 0; j < out.terms.size(); ++j) {
-      if (!out.terms[j].kept || equation.terms[j].in_target) continue;
-      double const value = out.terms[j].coefficient;
-      std::string const size = coefficient_text(std::fabs(value), out.terms[j].sd).first;
-      std::string const sign = sum.empty() ? (value < 0 ? "-" : "") : (value < 0 ? " - " : " + ");
-      bool const one = equation.terms[j].text == "1";
-      bool const is_sum =
-          equation.terms[j].text.find(" + ") != std::string::npos || equation.terms[j].text.find(" - ") != std::string::npos;
-      sum += sign + size + (one ? "" : is_sum ? "*(" + equation.terms[j].text + ")" : "*" + equation.terms[j].text);
-    }
-    return fmt::format("{} = {}", equation.text, sum.empty() ? "0" : sum);
-  }
-
   void add_findings(regression::Discovery const& found, Findings& findings) const {
     for (regression::FoundEquation const& equation : found.equations)
       for (regression::Concern const& concern : equation.concerns) {
@@ -198,10 +220,9 @@ class Discover {
   }
 
   // Written only when the program takes it: a structure may be no model that can be simulated.
-  void add_source(regression::Discovery const& found, DiscoveryReport& discovery, Findings& findings) const {
-    auto const structures = best_structures(found, what_.candidates ? what_.top : 1);
+  void add_source(FoundSource const& source, std::vector<FoundStructure> const& structures, DiscoveryReport& discovery,
+                  Findings& findings) const {
     if (structures.empty()) return;
-    FoundSource const source{session_, task_, what_, dictionary_, data_, found, seed_};
     std::string text = source.text(structures);
     Source read((session_.result_folder(task_) / "found.sysid").string(), text);
     Diagnostics diagnostics;

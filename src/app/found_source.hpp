@@ -4,24 +4,10 @@
 #include <vector>
 
 #include "app/experiments.hpp"
+#include "app/found_structure.hpp"
 #include "app/session.hpp"
-#include "regression/discovery.hpp"
 
 namespace sysid {
-
-/// One support for each equation of the dictionary: what becomes a model.
-struct FoundStructure {
-  std::vector<regression::Support const*> equations;
-  double score = 0;  // log probability, or log evidence where the selector knows no probabilities; summed over equations
-};
-
-/// The structure that was chosen first, then the best of the others; each support as its equation lists it. Empty when an equation
-/// was not found.
-std::vector<FoundStructure> best_structures(regression::Discovery const& discovery, int most);
-
-/// Names of the coefficients of one equation's terms in the source: the parameter where one is named, else `a3`, the third term of
-/// the first equation.
-std::vector<std::string> coefficient_names(CheckedDictionary const& dictionary, int equation);
 
 struct FoundSource {
   Session const& session;

@@ -92,9 +92,10 @@ std::string resolved_discover(Session const& session, Task const& task, Discover
   }
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = discover {} from {} with "
-      "{}, {}top = {}, candidates = {}, seed = {}\n",
+      "{}, {}top = {}, candidates = {}, refit = {}, seed = {}\n",
       task.name, without_tasks(session), task.name, dictionary.name, data_names(session.file, what.experiments), selector,
-      noise.empty() ? "" : fmt::format("noise({}), ", noise), what.top, what.candidates ? "yes" : "no", seed);
+      noise.empty() ? "" : fmt::format("noise({}), ", noise), what.top, what.candidates ? "yes" : "no", what.refit ? "yes" : "no",
+      seed);
 }
 
 }  // namespace sysid

@@ -223,6 +223,7 @@ struct DiscoverTask {
   std::vector<std::optional<double>> noise;  // sd per channel of the dictionary, SI; absent: estimated from the record
   int top = 5;                               // supports that are shown, and written as candidates
   bool candidates = false;                   // whether they are
+  bool refit = true;                         // by simulation: ranked by the evidence of the motion, scored on rows kept aside
   std::optional<std::uint64_t> seed;
 };
 

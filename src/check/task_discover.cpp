@@ -36,7 +36,7 @@ void TaskChecker::discover_method(ast::Option const& option, std::string const& 
     std::erase_if(arguments, [](ast::Argument const& each) { return each.name && each.name->text == "derivatives"; });
   }
   if (!backend_option(selector, key, backends_.discovering, task.selector, task.selector_settings))
-    options_.unknown(option, {"noise", "top", "candidates", "seed"});
+    options_.unknown(option, {"noise", "top", "candidates", "refit", "seed"});
 }
 
 void TaskChecker::noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task) {
@@ -77,14 +77,14 @@ DiscoverTask TaskChecker::discover() {
   if (dictionary != nullptr && !diagnostics_.has_errors(before_)) require_channels(*dictionary, task);
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
-    if (!option.input && option.key && (key == "top" || key == "candidates" || key == "seed")) {
+    if (!option.input && option.key && (key == "top" || key == "candidates" || key == "refit" || key == "seed")) {
       if (!options_.fresh(option, key)) continue;
       if (key == "top")
         options_.whole(option, key, 1, 1000, task.top);
       else if (key == "seed")
         options_.seed(option, task.seed);
       else
-        options_.flag(option, key, task.candidates);
+        options_.flag(option, key, key == "refit" ? task.refit : task.candidates);
     } else if (key == "noise" && as_call(option.value) != nullptr) {
       if (options_.fresh(option, key) && dictionary != nullptr) noise(*as_call(option.value), *dictionary, task);
     } else {

@@ -4,13 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "core/elementary.hpp"
-#include "core/fourier.hpp"
+#include "regression/spectrum.hpp"
 
 namespace sysid::regression {
 
@@ -80,46 +77,13 @@ double estimated_noise(std::span<double const> samples) {
 }
 
 double fastest_period(std::span<double const> samples, double step) {
-  std::size_t const n = samples.size();
-  std::vector<double> filled(samples.begin(), samples.end());
-  std::size_t last = n;  // the finite sample before, n: none
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!std::isfinite(filled[i])) continue;
-    std::size_t const first = last == n ? 0 : last + 1;
-    for (std::size_t k = first; k < i; ++k)
-      filled[k] = last == n
-                      ? filled[i]
-                      : filled[last] + (filled[i] - filled[last]) * static_cast<double>(k - last) / static_cast<double>(i - last);
-    last = i;
-  }
-  if (last == n) return std::numeric_limits<double>::infinity();
-  for (std::size_t k = last + 1; k < n; ++k) filled[k] = filled[last];
-  auto const [low, high] = std::minmax_element(filled.begin(), filled.end());
-  if (*low == *high) return std::numeric_limits<double>::infinity();
-
-  double mean = 0;
-  for (double const value : filled) mean += value / static_cast<double>(n);
-  std::size_t const size = std::bit_ceil(std::max<std::size_t>(n, 4));
-  Fourier::Parts re(size, 0.0), im(size, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    double const angle = 2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-    re[i] = (filled[i] - mean) * (1 - elementary::cos(angle));
-  }
-  Fourier(size).to_reversed(re, im);
-  int const bits = std::countr_zero(size);
-  std::vector<double> power(size / 2 + 1);
-  double total = 0;
-  for (std::size_t k = 0; k < power.size(); ++k) {
-    std::size_t reversed = 0;
-    for (int b = 0; b < bits; ++b) reversed |= ((k >> b) & 1) << (bits - 1 - b);
-    power[k] = re[reversed] * re[reversed] + im[reversed] * im[reversed];
-    total += power[k];
-  }
+  Spectrum const spectrum = spectrum_of(samples, step);
+  double total = 0, sum = 0;
+  for (double const power : spectrum.power) total += power;
   if (!(total > 0)) return std::numeric_limits<double>::infinity();
-  double sum = 0;
   std::size_t k = 0;
-  while (k + 1 < power.size() && (sum += power[k]) < 0.95 * total) ++k;
-  return static_cast<double>(size) * step / static_cast<double>(std::max<std::size_t>(k, 1));
+  while (k + 1 < spectrum.power.size() && (sum += spectrum.power[k]) < 0.95 * total) ++k;
+  return spectrum.length / static_cast<double>(std::max<std::size_t>(k, 1));
 }
 
 std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Experiment const> experiments) {

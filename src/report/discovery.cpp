@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string probability_text(double p) { return p > 0 && p < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", p); }
-
 ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation const& equation) {
   std::string title = fmt::format("terms of {}: {} {}", equation.target, equation.rows, discovery.windows ? "windows" : "samples");
   if (equation.noise_ratio > 0) title += fmt::format(", residual {} times the noise", significant(equation.noise_ratio, 3));
@@ -53,6 +51,10 @@ ReportTable support_table(DiscoveredEquation const& equation) {
 
 }  // namespace
 
+std::string probability_text(double probability) {
+  return probability > 0 && probability < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", probability);
+}
+
 std::pair<std::string, std::string> coefficient_text(double value, double sd) {
   double const none = std::numeric_limits<double>::quiet_NaN();
   SummaryText const text = format_summary({"", "", value, value, sd, none, value, value, none, none, none, sd / 10});
@@ -78,6 +80,8 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     for (DiscoveryReport::LeftOut const& each : discovery.left_out) left_out.rows.push_back({each.term, each.reason});
     tables.push_back(std::move(left_out));
   }
+  if (discovery.judged)
+    for (ReportTable& table : judged_tables(*discovery.judged)) tables.push_back(std::move(table));
   return tables;
 }
 
@@ -117,6 +121,7 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
                                 {"terms", std::move(terms)},
                                 {"supports", std::move(supports)}});
   }
+  if (discovery.judged) out["judged"] = judged_json(*discovery.judged);
   return out;
 }
 
@@ -131,6 +136,8 @@ std::vector<std::pair<std::string, std::string>> discovery_files(Report const& r
                            shortest(term.sd), shortest(term.measure), shortest(term.mean), shortest(term.mean_sd),
                            shortest(term.contribution), shortest(term.inflation));
   std::vector<std::pair<std::string, std::string>> files = {{"terms.csv", std::move(terms)}};
+  if (discovery.judged)
+    for (auto& file : judged_files(report, *discovery.judged)) files.push_back(std::move(file));
   if (!discovery.source.empty()) files.emplace_back("found.sysid", discovery.source);
   return files;
 }

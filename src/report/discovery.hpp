@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "report/judged.hpp"
+
 namespace sysid {
 
 struct Report;
@@ -56,16 +58,20 @@ struct DiscoveryReport {
   struct LeftOut {
     std::string term, reason;
   };
-  std::vector<LeftOut> left_out;  // of the dictionary, before the record was looked at
-  std::string source;             // of the model that was found; empty: none
+  std::vector<LeftOut> left_out;       // of the dictionary, before the record was looked at
+  std::optional<JudgedReport> judged;  // by simulation; absent: it was left out, or there is nothing to simulate
+  std::string source;                  // of the model that was found; empty: none
 };
+
+/// "0.988", "< 0.001".
+std::string probability_text(double probability);
 
 /// A coefficient and its sd with the digits that the sd leaves.
 std::pair<std::string, std::string> coefficient_text(double value, double sd);
 
 std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery);
 nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery);
-/// File names and contents: terms.csv and found.sysid.
+/// File names and contents: terms.csv, found.sysid, and those of `judged_files`.
 std::vector<std::pair<std::string, std::string>> discovery_files(Report const& report);
 
 }  // namespace sysid

@@ -98,7 +98,7 @@ TEST_CASE("two runs of one seed leave the same bytes") {
   Discovered one, other;
   discover(one, duffing);
   discover(other, duffing);
-  for (char const* name : {"summary.json", "terms.csv", "resolved.sysid"})
+  for (char const* name : {"summary.json", "terms.csv", "structures.csv", "refit.csv", "resolved.sysid"})
     CHECK(read_file(one.source.parent_path() / name) == read_file(other.source.parent_path() / name));
   CHECK(one.result.out == other.result.out);
 }
