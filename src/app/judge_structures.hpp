@@ -18,11 +18,11 @@ struct Judgement {
   bool interrupted = false;  // nothing else is set
 };
 
-/// structures: as best_structures gives them, the regression's choice first; at least one. aside: experiments that the task did not
-/// use, with the dictionary's columns; where there are none the last fifth of each of the task's is kept aside for the scores.
+/// structures: as best_structures gives them, the regression's choice first; at least one. unused: experiments that the task did
+/// not use, with the dictionary's columns; where there are none the last fifth of each of the task's is kept aside for the scores.
 /// Every structure is fitted over the same segments: as long as the best one follows the record. The same bytes for any number of
 /// threads and lanes.
 Judgement judge_structures(FoundSource const& source, std::vector<FoundStructure> structures,
-                           std::vector<ExperimentData> const& aside, std::function<bool()> const& interrupted);
+                           std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted);
 
 }  // namespace sysid

@@ -63,6 +63,8 @@ class SegmentSimulation {
   int samples_of_segment(int segment) const { return per_segment_[static_cast<std::size_t>(segment)]; }
   /// sd about its mean of all that a channel measures in the experiments; 1 where it does not move.
   double size(int channel) const { return size_[static_cast<std::size_t>(channel)]; }
+  /// Whether outputs are smooth functions of the point to the last digits: of fixed steps.
+  bool smooth() const { return settings_.solver.fixed_step(); }
   /// Whether a row of a segment's slopes is measured.
   bool measured(int segment, int row) const;
   /// Rows of a segment's slopes that belong to one channel.

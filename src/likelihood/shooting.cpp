@@ -12,15 +12,16 @@
 namespace sysid {
 namespace {
 
-// As for estimated starts: small against curvature, large against rounding; within the factor a slope serves.
-constexpr double relative_effect = 1e-4;
+// What a perturbation moves the outputs by, in their sds: small against curvature, which is large where neighbours part, and large
+// against rounding or against the tolerance that an adaptive solver keeps. Within the factor a slope serves.
+constexpr double smooth_effect = 1e-6, rough_effect = 1e-4;
 constexpr double near_enough = 100;
 constexpr int most_probes = 12;
 constexpr double largest_step = 1e30;  // where nothing shows
 constexpr double least_noise = 1e-9;   // of the channel's sd
 constexpr double ridge = 1e-12;        // on starts, of their own column: those that a segment does not show stay where they are
 constexpr double first_damping = 1e-3, most_damping = 1e10, least_damping = 1e-12;
-constexpr double rough = 100;          // gains that are not met by this many times the smallest are the solver's roughness
+constexpr double rough = 1000;         // gains that are not met by this many times the smallest are the solver's roughness
 constexpr double same_columns = 1e-9;  // what is left of a coefficient's column once the others have explained theirs
 
 /// Perturbations, as large as show.
@@ -29,7 +30,7 @@ struct Steps {
   Eigen::MatrixXd start;        // [states x segments]
 };
 
-double first_step(double value) { return value != 0 ? relative_effect * std::abs(value) : 1e-6; }
+double first_step(double value) { return value != 0 ? smooth_effect * std::abs(value) : smooth_effect; }
 
 Steps first_steps(ShootingPoint const& at) { return {at.coefficients.unaryExpr(&first_step), at.starts.unaryExpr(&first_step)}; }
 
@@ -56,7 +57,7 @@ class Differences {
     int const k = simulation_.coefficients(), d = simulation_.states();
     bool good = true;
     auto const mend_one = [&](double& step, double effect) {
-      effect /= relative_effect;
+      effect /= simulation_.smooth() ? smooth_effect : rough_effect;
       if (!std::isfinite(effect)) {
         step *= 1e-3;
         good = false;

@@ -41,7 +41,8 @@ struct ShootingFit {
 };
 
 /// Each round is one batch of 1 + k + states simulations of the record: slopes are differences, each perturbation as large as moves
-/// the outputs by 1e-4 of their sd. Start states are eliminated segment by segment by QR, damping after Marquardt (1963).
+/// the outputs by 1e-6 of their sd (1e-4 with adaptive solvers). Start states are eliminated segment by segment by QR, damping
+/// after Marquardt (1963).
 ShootingFit fit_by_shooting(SegmentSimulation const& simulation, ShootingPoint from, ShootingOptions const& options = {});
 
 /// Start states alone, coefficients as they are, each segment for itself: its own damping, its own end. A segment from whose start

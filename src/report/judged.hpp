@@ -25,6 +25,7 @@ struct JudgedCoefficient {
   std::string target, term, name, unit;
   double regression = 0, regression_sd = 0;  // in `unit`
   double value = 0, sd = 0;
+  bool of_target = false;  // it stands in the target: known to be there
 };
 
 /// A structure: one support for each equation.
@@ -53,7 +54,6 @@ struct JudgedReport {
   double step = 0;                          // [s] of the record
   double horizon = 0;                       // [s] of predictions k steps ahead
   int horizon_rows = 0, window_rows = 0;
-  double aside_length = 0;  // [s] of a free run, the longest
   std::string aside;        // "bench.test", "the last fifth of bench"; empty: nothing was scored
   bool aside_seen = false;  // the choice of structures saw these rows
   std::string solver;

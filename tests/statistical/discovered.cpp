@@ -1,0 +1,71 @@
+// What a discovery's refit by simulation is worth over records of a known truth: the structure, the coefficients, and their sds.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/running.hpp"
+#include "regression/problems.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+constexpr int records = 20;
+double const truth[] = {1, 20, 1e4, 5e9};
+
+/// The first structure of a record by simulation, from displacement and force alone.
+json refitted(std::uint64_t seed, double noise) {
+  TemporaryFolder folder;
+  Experiment const made = regression::duffing_record(seed, 500, noise);
+  std::string csv = "t,x,y\n";
+  for (std::size_t i = 0; i < made.time.size(); ++i)
+    csv += fmt::format("{:.17g},{:.17g},{:.17g}\n", made.time[i], made.inputs[0].sample(static_cast<int>(i)), made.measured[0][i]);
+  write_file(folder.path() / "made.csv", csv);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "made.sysid", R"(
+dictionary oscillator {
+  input x [N]
+  state y [m] = displacement
+  target = x
+  terms = y'', y', y, y^2, y^3, abs(y)*y', sign(y'), y'^2, abs(y')*y', y'^3, 1
+}
+data bench { file "made.csv"; time t [s]; input x = x [N] hold zero_order; measure displacement = y [m] }
+found = discover oscillator from bench with seed = 1
+)",
+           options);
+  return json::parse(read_file(options.output / "found/summary.json")).at("discovery").at("judged").at("structures").at(0);
+}
+
+}  // namespace
+
+TEST_CASE("over twenty records the refit keeps the structure, and its coefficients are as near as its sds say") {
+  for (double const noise : {0.01, 0.05}) {
+    CAPTURE(noise);
+    int exact = 0;
+    double squares[4] = {0, 0, 0, 0}, sum[4] = {0, 0, 0, 0};
+    for (std::uint64_t seed = 1; seed <= records; ++seed) {
+      json const first = refitted(seed, noise);
+      if (first.at("terms") != "y'', y', y, y^3") continue;
+      ++exact;
+      for (std::size_t k = 0; k < 4; ++k) {
+        json const& each = first.at("coefficients").at(k);
+        double const error = each.at("value").get<double>() - truth[k], z = error / each.at("sd").get<double>();
+        squares[k] += z * z;
+        sum[k] += z;
+        if (noise == 0.01) CHECK(std::abs(error) < (k == 3 ? 0.015 : 0.005) * truth[k]);
+      }
+    }
+    CHECK(exact >= 18);
+    // Of 20 standard normal numbers the mean square lies in [0.3, 2.3] but for one of 1000 times, the mean within 3.3/sqrt(20).
+    for (std::size_t k = 0; k < 4; ++k) {
+      CAPTURE(k);
+      CHECK(squares[k] / exact > 0.3);
+      CHECK(squares[k] / exact < 2.3);
+      CHECK(std::abs(sum[k] / exact) < 0.74);
+    }
+  }
+}
