@@ -32,10 +32,10 @@ class Forecasts {
   Forecasts(JudgedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
             std::span<Experiment const> experiments, StartGuess& guess, ForecastSettings const& settings,
             std::vector<Segment> const& segments)
-      : simulation_(model.compiled, experiments, segments, simulated(model, coefficients, settings, 0)) {
+      : simulation_(model.compiled, experiments, segments, simulated(model, coefficients, settings)) {
     std::vector<Segment> windows = segments;
     for (Segment& each : windows) each.count = settings.window;
-    SegmentSimulation const start(model.compiled, experiments, windows, simulated(model, coefficients, settings, 0));
+    SegmentSimulation const start(model.compiled, experiments, windows, simulated(model, coefficients, settings));
     ShootingPoint point{Eigen::VectorXd(), model.starts(segments, guess)};
     fit_starts(start, point, noise_sd);
     runs_ = simulation_.residuals(point);
@@ -50,8 +50,8 @@ class Forecasts {
 
  private:
   static SegmentSimulation::Settings simulated(JudgedModel const& model, Eigen::VectorXd const& coefficients,
-                                               ForecastSettings const& settings, int counted) {
-    SegmentSimulation::Settings out{{}, model.others, counted, settings.solver, settings.execution, settings.pool};
+                                               ForecastSettings const& settings) {
+    SegmentSimulation::Settings out{{}, model.others, 0, settings.solver, settings.execution, settings.pool, model.centres};
     for (std::size_t j = 0; j < model.coefficients.size(); ++j)
       out.others[static_cast<std::size_t>(model.coefficients[j].parameter)] = coefficients(static_cast<Eigen::Index>(j));
     return out;
@@ -132,19 +132,17 @@ int bounded_runs(JudgedModel const& model, std::span<Experiment const> experimen
                  ForecastSettings const& settings) {
   if (points.empty()) return 0;
   std::vector<bool> bounded(static_cast<std::size_t>(points.front().width()), true);
-  auto const& records = model.compiled->records;
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     Experiment const& experiment = experiments[e];
-    int const rows = static_cast<int>(experiment.time.size()), count = static_cast<int>(records.size());
-    Simulator const simulator(model.compiled->trajectory, Schedule(*model.compiled->trajectory, experiment, settings.solver),
-                              settings.execution, settings.pool);
+    int const rows = static_cast<int>(experiment.time.size()), count = static_cast<int>(model.channels.size());
+    Simulator const simulator(model.centres, Schedule(*model.centres, experiment, settings.solver), settings.execution,
+                              settings.pool);
     LaneArray out(rows * count, points[e].width());
     std::vector<Outcome> outcome(bounded.size());
     simulator.records(points[e], 0, rows, out, outcome);
     for (int r = 0; r < count; ++r) {
-      if (records[static_cast<std::size_t>(r)].kind != CompiledModel::Record::Kind::centre) continue;
       double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (double const y : experiment.measured[static_cast<std::size_t>(records[static_cast<std::size_t>(r)].index)])
+      for (double const y : experiment.measured[static_cast<std::size_t>(r)])
         if (std::isfinite(y)) low = std::min(low, y), high = std::max(high, y);
       double const middle = (low + high) / 2, most = bound_factor * (high - low) / 2;
       for (int w = 0; w < out.width(); ++w)

@@ -29,9 +29,9 @@ Findings judged_findings(JudgedReport const& judged) {
   if (regression != judged.structures.begin())
     add(Severity::warning, "simulation_prefers",
         fmt::format("simulation ranks `{}` first, the regression `{}`, which {}", best.terms, regression->terms,
-                    regression->failure.empty() ? fmt::format("has a log evidence of {} less over the motion",
-                                                              significant(best.log_evidence - regression->log_evidence, 3))
-                                                : "was not judged: " + regression->failure),
+                    regression->failure.empty()
+                        ? fmt::format("has a probability of {} by the motion", probability_text(regression->probability))
+                        : "was not judged: " + regression->failure),
         "the model that is written is the one that simulation ranks first; a record of other amplitude may decide");
   if (!best.failure.empty()) {
     add(Severity::warning, "not_refitted", fmt::format("no structure could be judged by simulation: {}", best.failure),

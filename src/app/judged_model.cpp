@@ -83,6 +83,7 @@ JudgedModel judged_model(FoundSource const& source, FoundStructure const& struct
   }
   out.solver = solver_of(*file);
   out.compiled = compile(model, true, out.solver.method);
+  out.centres = compile_centres(*out.compiled);
   out.others.assign(model.parameters.size(), 1);
   for (std::size_t p = 0; p < model.parameters.size(); ++p)
     if (model.parameters[p].value) out.others[p] = model.graph.evaluate(*model.parameters[p].value, [](NodeId) { return 0.0; });

@@ -15,7 +15,8 @@ namespace sysid {
 struct JudgedModel {
   std::string failure;  // why it cannot be simulated; empty: all below is set
   std::shared_ptr<CompiledModel const> compiled;
-  SolverSettings solver;  // as its own fit would begin with
+  std::shared_ptr<SimulationProgram const> centres;  // of its channels alone
+  SolverSettings solver;                             // as its own fit would begin with
   struct Coefficient {
     std::size_t equation, term;  // of the dictionary
     int parameter;               // of the model

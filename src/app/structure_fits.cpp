@@ -57,8 +57,9 @@ SolverSettings StructureFits::solver(std::size_t m) const {
 SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> const& segments) const {
   std::vector<Experiment> own;
   for (Experiment const& each : settings_.records) own.push_back(models_[m].view(each));
-  return SegmentSimulation(models_[m].compiled, own, segments,
-                           {models_[m].fitted(), models_[m].others, 0, solver(m), settings_.execution, settings_.pool});
+  return SegmentSimulation(
+      models_[m].compiled, own, segments,
+      {models_[m].fitted(), models_[m].others, 0, solver(m), settings_.execution, settings_.pool, models_[m].centres});
 }
 
 ShootingOptions StructureFits::options(bool last) const {

@@ -26,6 +26,15 @@ double size_of(std::span<Experiment const> experiments, std::size_t channel) {
 
 }  // namespace
 
+std::shared_ptr<SimulationProgram const> compile_centres(CompiledModel const& compiled) {
+  SimulationSource source = compiled.trajectory->source;
+  std::vector<NodeId> centres;
+  for (std::size_t r = 0; r < compiled.records.size(); ++r)
+    if (compiled.records[r].kind == CompiledModel::Record::Kind::centre) centres.push_back(source.records[r]);
+  source.records = std::move(centres);
+  return std::make_shared<SimulationProgram const>(compile(std::move(source)));
+}
+
 int halvings(int rows, int least) {
   int count = 0;
   while ((rows >> (count + 1)) >= std::max(least, 2)) ++count;
@@ -61,20 +70,17 @@ Experiment rows_of(Experiment const& experiment, int first, int count) {
 SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compiled, std::span<Experiment const> experiments,
                                      std::vector<Segment> segments, Settings settings)
     : compiled_(std::move(compiled)), segments_(std::move(segments)), settings_(std::move(settings)) {
-  record_.assign(static_cast<std::size_t>(channels()), -1);
-  for (std::size_t r = 0; r < compiled_->records.size(); ++r)
-    if (compiled_->records[r].kind == CompiledModel::Record::Kind::centre)
-      record_[static_cast<std::size_t>(compiled_->records[r].index)] = static_cast<int>(r);
+  if (!settings_.centres) settings_.centres = compile_centres(*compiled_);
   for (int c = 0; c < channels(); ++c) size_.push_back(size_of(experiments, static_cast<std::size_t>(c)));
   per_channel_.assign(static_cast<std::size_t>(channels()), 0);
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     Segment const& segment = segments_[s];
     Experiment const part = rows_of(experiments[static_cast<std::size_t>(segment.experiment)], segment.first, segment.count);
-    simulators_.emplace_back(compiled_->trajectory, Schedule(*compiled_->trajectory, part, settings_.solver), settings_.execution,
+    simulators_.emplace_back(settings_.centres, Schedule(*settings_.centres, part, settings_.solver), settings_.execution,
                              settings_.pool);
     std::vector<double> samples;
     int counted = 0;
-    for (std::size_t c = 0; c < part.measured.size() && c < record_.size(); ++c)
+    for (std::size_t c = 0; c < part.measured.size() && c < per_channel_.size(); ++c)
       for (int i = 0; i < counted_rows(static_cast<int>(s)); ++i) {
         auto const row = static_cast<std::size_t>(i);
         bool const counts = !part.measured[c].empty() && part.scored[row] != 0 && std::isfinite(part.measured[c][row]);
@@ -105,7 +111,7 @@ std::vector<SegmentSlopes> SegmentSimulation::residuals(ShootingPoint const& at)
 std::vector<SegmentSlopes> SegmentSimulation::run(ShootingPoint const& at, Eigen::VectorXd const* step,
                                                   Eigen::MatrixXd const* start_step) const {
   int const k = step == nullptr ? 0 : coefficients(), d = start_step == nullptr ? 0 : states(), lanes = 1 + k + d;
-  int const records = static_cast<int>(compiled_->records.size());
+  int const records = channels();
   int const parameters = static_cast<int>(compiled_->model.parameters.size());
   std::size_t const count = segments_.size();
   std::vector<LaneArray> points, out;
@@ -134,7 +140,7 @@ std::vector<SegmentSlopes> SegmentSimulation::run(ShootingPoint const& at, Eigen
     auto const size = static_cast<Eigen::Index>(samples_[s].size());
     SegmentSlopes slopes{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, k), Eigen::MatrixXd::Zero(size, d)};
     Eigen::Index row = 0;
-    for (int const record : record_)
+    for (int record = 0; record < records; ++record)
       for (int i = 0; i < rows; ++i, ++row) {
         double const sample = samples_[s][static_cast<std::size_t>(row)];
         if (std::isnan(sample)) continue;

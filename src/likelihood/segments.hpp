@@ -32,6 +32,9 @@ struct ShootingPoint {
   Eigen::MatrixXd starts;
 };
 
+/// The simulations of a model that record the centre of each channel and nothing else.
+std::shared_ptr<SimulationProgram const> compile_centres(CompiledModel const& compiled);
+
 /// A segment at a point. Rows are channel by channel, in each sample by sample; 0 where nothing is measured.
 struct SegmentSlopes {
   Eigen::VectorXd residual;        // simulated - measured
@@ -49,6 +52,7 @@ class SegmentSimulation {
     SolverSettings solver;
     ExecutionOptions execution;
     std::shared_ptr<ThreadPool> pool;
+    std::shared_ptr<SimulationProgram const> centres;  // of `compile_centres`; null: compiled here
   };
   /// compiled: with a free start. Segments have two rows or more.
   SegmentSimulation(std::shared_ptr<CompiledModel const> compiled, std::span<Experiment const> experiments,
@@ -83,7 +87,6 @@ class SegmentSimulation {
   std::vector<Segment> segments_;
   Settings settings_;
   std::vector<Simulator> simulators_;
-  std::vector<int> record_;                   // row of the centre of each channel
   std::vector<std::vector<double>> samples_;  // [segments][rows of slopes]; NaN: nothing measured
   std::vector<int> per_channel_, per_segment_;
   std::vector<double> size_;

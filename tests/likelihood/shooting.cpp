@@ -47,7 +47,8 @@ std::shared_ptr<CompiledModel const> decay_model() {
 }
 
 SegmentSimulation decay(std::vector<Segment> const& segments, ExecutionOptions execution = {}) {
-  return SegmentSimulation(decay_model(), decays(), segments, {{0}, {0}, 0, {.substeps = 4}, execution, make_pool(execution)});
+  return SegmentSimulation(decay_model(), decays(), segments,
+                           {{0}, {0}, 0, {.substeps = 4}, execution, make_pool(execution), nullptr});
 }
 
 ShootingPoint from(double coefficient, int states, std::size_t segments) {
@@ -199,7 +200,7 @@ TEST_CASE("a coefficient that moves nothing is not determined") {
                                          "parameter s ~ log_uniform(0.01, 10)\nobserve o ~ normal(y, sd = s)\n"),
                                 true, "rk4");
   std::vector<Segment> const segments = cut_into_segments(decays(), 7, 1);
-  SegmentSimulation const simulation(compiled, decays(), segments, {{0, 1}, {1, 1, 1}, 0, {.substeps = 4}, {}, nullptr});
+  SegmentSimulation const simulation(compiled, decays(), segments, {{0, 1}, {1, 1, 1}, 0, {.substeps = 4}, {}, nullptr, nullptr});
   ShootingPoint const start{Eigen::VectorXd::Constant(2, 1.0),
                             Eigen::MatrixXd::Constant(1, static_cast<Eigen::Index>(segments.size()), 1.0)};
   ShootingFit const fit = fit_by_shooting(simulation, start);
@@ -221,7 +222,8 @@ TEST_CASE("a chaotic record gives its coefficients from segments that grow") {
   std::vector<Segment> before;
   for (int halved = most; halved >= 0; --halved) {
     std::vector<Segment> const segments = cut_into_segments(records, 40, halved);
-    SegmentSimulation const simulation(compiled, records, segments, {{0, 1, 2}, {1, 1, 1}, 0, {.substeps = 2}, {}, nullptr});
+    SegmentSimulation const simulation(compiled, records, segments,
+                                       {{0, 1, 2}, {1, 1, 1}, 0, {.substeps = 2}, {}, nullptr, nullptr});
     ShootingPoint point{Eigen::Vector3d(9, 26, 3), Eigen::MatrixXd(3, static_cast<Eigen::Index>(segments.size()))};
     if (halved < most) point.coefficients = fit.point.coefficients;
     for (std::size_t s = 0; s < segments.size(); ++s)
