@@ -7,6 +7,7 @@
 
 #include "app/check_looked_at.hpp"
 #include "app/tolerance.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
 namespace {
@@ -19,10 +20,10 @@ double move_of(LocalSlopes const& local, Eigen::Index level) {
   Eigen::VectorXd const change = local.sensitivity.others.col(level);
   if (!change.allFinite()) return std::numeric_limits<double>::infinity();
   Eigen::MatrixXd const slopes = local.sensitivity.slopes * local.spread.asDiagonal();
-  Eigen::JacobiSVD<Eigen::MatrixXd> const svd(slopes, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::VectorXd const s = svd.singularValues();
+  SingularValues const svd = singular_values(slopes);
+  Eigen::VectorXd const& s = svd.values;
   Eigen::VectorXd const gain = s.array() / (s.array().square() + 1);
-  Eigen::VectorXd const move = svd.matrixV() * gain.asDiagonal() * svd.matrixU().transpose() * change;
+  Eigen::VectorXd const move = svd.right * gain.asDiagonal() * svd.left.transpose() * change;
   return (move.cwiseAbs().array() / expect(local).shrinkage.array()).maxCoeff();
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/elementary.hpp"
 #include "inference/checkpoint.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::metropolis {
 namespace {
@@ -30,12 +31,12 @@ Adaptation::Adaptation(std::vector<int> chains, Eigen::MatrixXd covariance)
 }
 
 void Adaptation::refactor() {
-  Eigen::LLT<Eigen::MatrixXd> const cholesky(covariance_ + 1e-9 * first_);
+  auto const factor = cholesky(covariance_ + 1e-9 * first_);
   proposal_.scale = elementary::exp(log_scale_);
-  if (cholesky.info() != Eigen::Success) return;  // the former factor serves on
+  if (!factor) return;  // the former factor serves on
   Eigen::Index const n = covariance_.rows();
   for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j) proposal_.factor[static_cast<std::size_t>(i * n + j)] = cholesky.matrixLLT()(i, j);
+    for (Eigen::Index j = 0; j <= i; ++j) proposal_.factor[static_cast<std::size_t>(i * n + j)] = (*factor)(i, j);
 }
 
 void Adaptation::learn(State const& state, Info const& info) {

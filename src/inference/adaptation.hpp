@@ -1,6 +1,6 @@
 // Learns a full-covariance proposal during burn-in from the chains that started in one mode; afterwards it is frozen.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 #include <vector>
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear_algebra/decompositions.hpp"
+
 namespace sysid {
 namespace {
 
@@ -100,7 +102,7 @@ Eigen::VectorXd damped_step(Objective const& objective, Slope const& slope, doub
   Eigen::VectorXd const diagonal = system.diagonal();
   double const ridge = 1e-12 * std::max(1.0, diagonal.maxCoeff());
   for (Eigen::Index p = 0; p < system.rows(); ++p) system(p, p) += damping * std::max(diagonal(p), 1e-8) + ridge;
-  Eigen::VectorXd step = system.ldlt().solve(slope.gradient.cwiseProduct(s));
+  Eigen::VectorXd step = solve_symmetric(system, slope.gradient.cwiseProduct(s));
   if (!step.allFinite()) return Eigen::VectorXd::Zero(s.size());
   double const longest = step.cwiseAbs().maxCoeff();
   if (longest > most_step) step *= most_step / longest;

@@ -1,6 +1,6 @@
 // Levenberg-Marquardt from many starts at once: every finite difference and every trial step of every start is a lane of one batch.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <functional>
 #include <vector>
 

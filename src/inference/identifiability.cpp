@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "linear_algebra/decompositions.hpp"
+
 namespace sysid {
 namespace {
 
@@ -50,8 +52,8 @@ LocalNull local_null(LocalSlopes const& draw, std::vector<bool> const& left_out)
   }
   result.loud = static_cast<int>(m);
   if (m == 0) return result;
-  Eigen::JacobiSVD<Matrix> const svd(scaled, Eigen::ComputeFullV);
-  Vector const values = svd.singularValues();
+  SingularValues const svd = singular_values(scaled);
+  Vector const& values = svd.values;
   int nullity = 0;
   for (Eigen::Index k = 0; k < m; ++k)
     if (k >= values.size() || values(k) < result.floor) ++nullity;
@@ -60,15 +62,14 @@ LocalNull local_null(LocalSlopes const& draw, std::vector<bool> const& left_out)
     for (Eigen::Index k = 0; k < m; ++k) {
       Eigen::Index const p = kept[static_cast<std::size_t>(k)];
       double const unit = result.silent[static_cast<std::size_t>(p)] ? 1 : 1 / length(p);
-      result.basis(p, j) = svd.matrixV()(k, m - nullity + j) * unit;
+      result.basis(p, j) = svd.right(k, m - nullity + j) * unit;
     }
   return result;
 }
 
 Matrix orthonormal(Matrix const& columns) {
   if (columns.cols() == 0) return columns;
-  Eigen::HouseholderQR<Matrix> const factored(columns);
-  return factored.householderQ() * Matrix::Identity(columns.rows(), columns.cols());
+  return OrthogonalTriangular(columns).basis();
 }
 
 /// Directions that lie in every one of the spaces: eigenvectors of the mean projector onto their complements with eigenvalue (mean
@@ -79,10 +80,10 @@ Matrix common(std::vector<Matrix> const& spaces, Eigen::Index dimension) {
     Matrix const q = orthonormal(space);
     complement += Matrix::Identity(dimension, dimension) - q * q.transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Matrix> const solver(complement / static_cast<double>(spaces.size()));
+  auto const [values, vectors] = symmetric_eigen(complement / static_cast<double>(spaces.size()));
   Eigen::Index count = 0;
-  while (count < dimension && solver.eigenvalues()(count) < same_direction * same_direction) ++count;
-  return solver.eigenvectors().leftCols(count);
+  while (count < dimension && values(count) < same_direction * same_direction) ++count;
+  return vectors.leftCols(count);
 }
 
 /// A basis with as many zeros as elimination with full pivoting gives: rows of the reduced echelon form of the transpose.
@@ -211,9 +212,8 @@ NullSpace find_null_space(std::span<LocalSlopes const> draws) {
     Matrix const known = orthonormal(spread.cwiseInverse().asDiagonal() * found);
     rest -= known * (known.transpose() * space);
   }
-  Eigen::JacobiSVD<Matrix> const svd(rest, Eigen::ComputeThinU);
   int const missing = dimension - static_cast<int>(found.cols());
-  for (Vector const& direction : sparse_basis(svd.matrixU().leftCols(missing)))
+  for (Vector const& direction : sparse_basis(singular_values(rest).left.leftCols(missing)))
     result.directions.push_back(
         named(NullDirection::Kind::general, direction / direction.cwiseAbs().maxCoeff(),
               (direction / direction.cwiseAbs().maxCoeff()).cwiseProduct(spread).cwiseProduct(first.at->scale)));
@@ -224,9 +224,9 @@ Expectation expect(LocalSlopes const& draw) {
   Matrix const slopes = draw.sensitivity.slopes * draw.spread.asDiagonal();
   Eigen::Index const n = slopes.cols();
   // By singular values of the slopes themselves: their square would lose the weak directions beside the strong ones.
-  Eigen::JacobiSVD<Matrix> const svd(slopes, Eigen::ComputeFullV);
-  Vector const kept = (svd.singularValues().array().square() + 1).inverse();
-  Matrix const covariance = svd.matrixV() * kept.asDiagonal() * svd.matrixV().transpose();
+  SingularValues const svd = singular_values(slopes);
+  Vector const kept = (svd.values.array().square() + 1).inverse();
+  Matrix const covariance = svd.right * kept.asDiagonal() * svd.right.transpose();
   Expectation result{covariance.diagonal().cwiseSqrt(), Matrix(n, n)};
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) result.correlation(i, j) = covariance(i, j) / (result.shrinkage(i) * result.shrinkage(j));

@@ -1,7 +1,7 @@
 // What outputs can and cannot tell about parameters, from their slopes at several points: directions that change nothing,
 // recognised as what they are to a person, and how far the data will narrow the rest.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <vector>

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/elementary.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
 namespace {
@@ -72,8 +73,8 @@ Spectrum spectrum_of(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& sc
   Eigen::VectorXd unit = scale;
   for (Eigen::Index i = 0; i < unit.size(); ++i)
     if (curvature(i, i) > 0) unit(i) = std::min(scale(i), 1 / std::sqrt(curvature(i, i)));
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const solver(unit.asDiagonal() * curvature * unit.asDiagonal());
-  Spectrum spectrum{unit, solver.eigenvalues(), solver.eigenvectors(), {}};
+  auto [values, vectors] = symmetric_eigen(unit.asDiagonal() * curvature * unit.asDiagonal());
+  Spectrum spectrum{unit, std::move(values), std::move(vectors), {}};
   constexpr double longest = 10;   // prior widths
   constexpr double noise = 1e-11;  // what rounding leaves in second differences
   for (Eigen::Index k = 0; k < unit.size(); ++k) {
@@ -86,7 +87,7 @@ Spectrum spectrum_of(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& sc
   return spectrum;
 }
 
-Eigen::MatrixXd inverse(Spectrum const& s) {
+Eigen::MatrixXd covariance_from(Spectrum const& s) {
   Eigen::MatrixXd const vectors = s.unit.asDiagonal() * s.vectors;
   return vectors * s.values.cwiseInverse().asDiagonal() * vectors.transpose();
 }
@@ -162,14 +163,6 @@ Eigen::MatrixXd fill_declared(Target const& target, Eigen::VectorXd const& theta
   return slope;
 }
 
-/// log |det|, as a sum: the product may leave the range of numbers.
-double log_volume(Eigen::MatrixXd const& slope) {
-  Eigen::PartialPivLU<Eigen::MatrixXd> const factored(slope);
-  double sum = 0;
-  for (double const pivot : factored.matrixLU().diagonal()) sum += elementary::log(std::fabs(pivot));
-  return sum;
-}
-
 /// A flat direction as moves of the declared parameters, without those that hardly take part.
 void add_flat(Eigen::VectorXd move, Eigen::VectorXd const& scale, Eigen::MatrixXd const& slope, Mode& mode) {
   Eigen::VectorXd const widths = move.cwiseQuotient(scale);
@@ -193,7 +186,7 @@ Eigen::MatrixXd covariance_of(Mode const& mode) {
 
 double distance(Mode const& a, Mode const& b) {
   Eigen::VectorXd const gap = theta_of(a) - theta_of(b);
-  return std::sqrt(std::max(0.0, gap.dot((covariance_of(a) + covariance_of(b)).ldlt().solve(gap))));
+  return std::sqrt(std::max(0.0, gap.dot(solve_symmetric(covariance_of(a) + covariance_of(b), gap))));
 }
 
 Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger) {
@@ -209,11 +202,11 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
       steps.columns *= 0.25;
       continue;
     }
-    Eigen::MatrixXd const back = steps.along_parameters ? Eigen::MatrixXd(steps.columns.diagonal().cwiseInverse().asDiagonal())
-                                                        : Eigen::MatrixXd(steps.columns.partialPivLu().inverse());
+    Eigen::MatrixXd const back =
+        steps.along_parameters ? Eigen::MatrixXd(steps.columns.diagonal().cwiseInverse().asDiagonal()) : inverse(steps.columns);
     Eigen::VectorXd const gradient = back.transpose() * local.gradient;
     if (full) curvature = back.transpose() * local.curvature * back;
-    Eigen::MatrixXd const covariance = inverse(spectrum_of(curvature, scale));
+    Eigen::MatrixXd const covariance = covariance_from(spectrum_of(curvature, scale));
     Eigen::VectorXd const move = covariance * gradient;
     Steps const former = std::exchange(steps, steps_from(curvature, scale, full));
     // Steps far from what the curvature here asks for would blur it: measure again before believing.
@@ -231,7 +224,7 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
     }
   }
   Spectrum const spectrum = spectrum_of(curvature, scale);
-  Eigen::MatrixXd const covariance = inverse(spectrum);
+  Eigen::MatrixXd const covariance = covariance_from(spectrum);
   Eigen::Index const n = theta.size();
   Mode mode;
   mode.theta.assign(theta.data(), theta.data() + n);
@@ -241,7 +234,7 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
   for (Eigen::Index i = 0; i < n; ++i)
     mode.log_mass += elementary::log(spectrum.unit(i)) + 0.5 * elementary::log(2 * std::numbers::pi / spectrum.values(i));
   Eigen::MatrixXd const slope = fill_declared(objective.target, theta, covariance, mode);
-  if (objective.aim != Aim::posterior) mode.log_mass += log_volume(slope);
+  if (objective.aim != Aim::posterior) mode.log_mass += log_absolute_determinant(slope);
   for (Eigen::Index const k : spectrum.flat) add_flat(spectrum.unit.cwiseProduct(spectrum.vectors.col(k)), scale, slope, mode);
   return mode;
 }

@@ -1,6 +1,6 @@
 // The Gaussian approximation at an optimum: a few Newton steps onto it, then the curvature by central differences in lanes.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "inference/backend.hpp"
 #include "inference/objective.hpp"

@@ -1,6 +1,6 @@
 // What a search climbs: a posterior or a likelihood over the sampler's coordinates, with the prior's widths as its yardstick.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <functional>
 #include <vector>
 

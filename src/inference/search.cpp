@@ -12,6 +12,7 @@
 #include "inference/descent.hpp"
 #include "inference/identifiability.hpp"
 #include "inference/laplace.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
 namespace {
@@ -284,7 +285,7 @@ LaneArray overdispersed_starts(Target const& target, std::vector<Mode> const& mo
         {context.seed, Purpose::start, static_cast<std::uint64_t>(chain), dispersal_step + static_cast<std::uint64_t>(attempt)});
     Eigen::VectorXd z(target.dimension());
     for (double& v : z) v = stream.normal();
-    Eigen::VectorXd const move = covariance_of(mode).llt().matrixL() * z;
+    Eigen::VectorXd const move = cholesky(covariance_of(mode)).value() * z;
     return theta_of(mode) + inflation * move;
   };
   for (int const chain : settle(target, starts, 100, context.ledger, redraw))

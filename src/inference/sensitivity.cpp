@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "linear_algebra/decompositions.hpp"
+
 namespace sysid {
 namespace {
 
@@ -74,14 +76,12 @@ Sensitivity sensitivity(OutputFunction const& outputs, int rows, std::span<doubl
   // Rows of zeros below, so that fewer outputs than parameters are no special case.
   Eigen::MatrixXd tall = Eigen::MatrixXd::Zero(std::max(rows, width), width);
   tall.topRows(rows) = stacked.leftCols(width);
-  Eigen::HouseholderQR<Eigen::MatrixXd> const factored(tall);
-  Eigen::MatrixXd const triangle = factored.matrixQR().topRows(width).triangularView<Eigen::Upper>();
-  result.slopes = triangle.bottomRightCorner(parameters, parameters);
+  OrthogonalTriangular const factored(tall);
+  result.slopes = factored.triangle().bottomRightCorner(parameters, parameters);
   if (extra > 0) {
     Eigen::MatrixXd given = Eigen::MatrixXd::Zero(tall.rows(), extra);
     given.topRows(rows) = others;
-    Eigen::MatrixXd const turned = factored.householderQ().adjoint() * given;
-    result.others = turned.middleRows(nuisances, parameters);
+    result.others = factored.turned(given).middleRows(nuisances, parameters);
   }
   return result;
 }

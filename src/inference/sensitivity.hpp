@@ -1,7 +1,7 @@
 // How predictions answer to parameters at one point: slopes by central differences over a ladder of steps, each with the error that
 // the ladder itself shows.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <functional>
 #include <span>
 

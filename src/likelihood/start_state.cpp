@@ -2,10 +2,12 @@
 // parameter vector that is still at work.
 #include "likelihood/start_state.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
 namespace {
@@ -166,7 +168,7 @@ void StartState::advance(Search& search, Slopes const& slopes) const {
   ++search.moves;
   Eigen::MatrixXd normal = scaled.transpose() * scaled;
   for (Eigen::Index s = 0; s < effect.size(); ++s) normal(s, s) += effect(s) > 0 ? 1e-10 : 1.0;
-  Eigen::VectorXd const solved = normal.ldlt().solve(scaled.transpose() * slopes.residual);
+  Eigen::VectorXd const solved = solve_symmetric(normal, scaled.transpose() * slopes.residual);
   search.predicted = (scaled * solved).norm();
   for (Eigen::Index s = 0; s < effect.size(); ++s) search.move(s) = effect(s) > 0 ? solved(s) / effect(s) : 0;
   double const misfit = std::sqrt(cost) / data_norm_;

@@ -1,10 +1,11 @@
 // MacKay's updates on a scaled problem reduced to its triangle.
 #include "regression/ard.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 
+#include "linear_algebra/decompositions.hpp"
 #include "regression/triangle.hpp"
 
 namespace sysid::regression::ard {
@@ -59,9 +60,10 @@ Choice choose(LinearProblem const& problem, Settings const& settings, SelectorCo
         precision(a, b) = alpha * gram(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
       precision(a, a) += lambda(kept[static_cast<std::size_t>(a)]);
     }
-    Eigen::LLT<Eigen::MatrixXd> const factor(precision);
-    result.covariance = factor.solve(Eigen::MatrixXd::Identity(size, size));
-    result.mean = factor.solve(linear);
+    // Positive definite but for rounding, which a record almost without noise can bring near.
+    auto const factor = cholesky(precision);
+    result.covariance = factor ? solve_cholesky(*factor, Eigen::MatrixXd::Identity(size, size)) : inverse(precision);
+    result.mean = factor ? solve_cholesky(*factor, linear) : result.covariance * linear;
     return result;
   };
 

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::regression {
 namespace {
@@ -65,7 +67,7 @@ Usable independent_terms(Equation const& equation, Columns const& columns) {
       taken.push_back(j);
       continue;
     }
-    Eigen::VectorXd const weights = unit_columns(columns, taken).householderQr().solve(column / length);
+    Eigen::VectorXd const weights = OrthogonalTriangular(unit_columns(columns, taken)).solve(column / length);
     std::vector<int> others;
     for (std::size_t k = 0; k < taken.size(); ++k)
       if (std::abs(weights(static_cast<Eigen::Index>(k))) > 1e-6) others.push_back(taken[k]);
@@ -91,15 +93,9 @@ Usable independent_terms(Equation const& equation, Columns const& columns) {
 Concerns near_dependence(Equation const& equation, Columns const& columns, std::vector<int> const& terms) {
   Concerns concerns;
   if (terms.size() < 2) return concerns;
-  Eigen::JacobiSVD<Eigen::MatrixXd> const svd(unit_columns(columns, terms)
-                                                  .householderQr()
-                                                  .matrixQR()
-                                                  .topRows(static_cast<Eigen::Index>(terms.size()))
-                                                  .triangularView<Eigen::Upper>()
-                                                  .toDenseMatrix(),
-                                              Eigen::ComputeFullV);
-  Eigen::VectorXd const values = svd.singularValues();
-  Eigen::MatrixXd share = svd.matrixV().array().square().matrix() * values.array().square().inverse().matrix().asDiagonal();
+  SingularValues const svd = singular_values(OrthogonalTriangular(unit_columns(columns, terms)).triangle());
+  Eigen::VectorXd const& values = svd.values;
+  Eigen::MatrixXd share = svd.right.array().square().matrix() * values.array().square().inverse().matrix().asDiagonal();
   for (Eigen::Index k = 0; k < share.rows(); ++k) share.row(k) /= share.row(k).sum();
   for (Eigen::Index m = 0; m < values.size(); ++m) {
     double const index = values(0) / values(m);
@@ -120,8 +116,8 @@ std::vector<double> variance_inflation(Columns const& columns, std::vector<int> 
   auto const size = static_cast<Eigen::Index>(terms.size());
   std::vector<double> inflation;
   if (size == 0) return inflation;
-  Eigen::MatrixXd const r = unit_columns(columns, terms).householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>();
-  Eigen::MatrixXd const inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(size, size));
+  Eigen::MatrixXd const r = OrthogonalTriangular(unit_columns(columns, terms)).triangle();
+  Eigen::MatrixXd const inverse = solve_upper(r, Eigen::MatrixXd::Identity(size, size));
   for (Eigen::Index k = 0; k < size; ++k) inflation.push_back(inverse.row(k).squaredNorm());
   return inflation;
 }

@@ -1,12 +1,13 @@
 // Filters by least squares on polynomials and B-splines.
 #include "regression/smoothing.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/elementary.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "regression/band_matrix.hpp"
 
 namespace sysid::regression {
@@ -38,7 +39,7 @@ std::vector<double> savitzky_golay_weights(int half, int degree, int derivative)
     double power = 1;
     for (int k = 0; k <= degree; ++k, power *= t) powers(i, k) = power;
   }
-  Eigen::MatrixXd const inverse = powers.householderQr().solve(Eigen::MatrixXd::Identity(count, count));
+  Eigen::MatrixXd const inverse = OrthogonalTriangular(powers).solve(Eigen::MatrixXd::Identity(count, count));
   double factor = 1;  // derivative! / half^derivative
   for (int k = 1; k <= derivative; ++k) factor *= static_cast<double>(k) / std::max(half, 1);
   std::vector<double> weights;

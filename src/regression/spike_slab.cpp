@@ -1,7 +1,7 @@
 // Every support weighed by depth-first orthogonalisation, or Gibbs chains over supports; then the same summary of what was weighed.
 #include "regression/spike_slab.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,9 +1,11 @@
 // Small dense least squares on column subsets.
 #include "regression/triangle.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::regression {
 
@@ -17,9 +19,9 @@ Triangle reduce(LinearProblem const& problem) {
     triangle.scale(j) = std::sqrt(scaled.col(j).squaredNorm() / static_cast<double>(rows));
     scaled.col(j) /= triangle.scale(j);
   }
-  Eigen::HouseholderQR<Eigen::MatrixXd> const qr(scaled);
-  triangle.r = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
-  Eigen::VectorXd const turned = qr.householderQ().adjoint() * problem.known;
+  OrthogonalTriangular const qr(scaled);
+  triangle.r = qr.triangle();
+  Eigen::VectorXd const turned = qr.turned(problem.known);
   triangle.known = turned.head(count);
   triangle.rest = turned.tail(rows - count).squaredNorm();
   triangle.total = problem.known.squaredNorm();
@@ -43,10 +45,9 @@ SubsetFit fit(Triangle const& triangle, std::vector<int> const& terms) {
     result.squares = triangle.total;
     return result;
   }
-  Eigen::HouseholderQR<Eigen::MatrixXd> const qr(columns_of(triangle, terms));
-  Eigen::VectorXd const turned = qr.householderQ().adjoint() * triangle.known;
-  Eigen::MatrixXd const r = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
-  Eigen::MatrixXd const inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(size, size));
+  OrthogonalTriangular const qr(columns_of(triangle, terms));
+  Eigen::VectorXd const turned = qr.turned(triangle.known);
+  Eigen::MatrixXd const inverse = solve_upper(qr.triangle(), Eigen::MatrixXd::Identity(size, size));
   result.coefficient = inverse * turned.head(size);
   result.inverse = inverse * inverse.transpose();
   result.squares = triangle.rest + turned.tail(turned.size() - size).squaredNorm();
@@ -56,8 +57,7 @@ SubsetFit fit(Triangle const& triangle, std::vector<int> const& terms) {
 double residual_squares(Triangle const& triangle, std::vector<int> const& terms) {
   if (terms.empty()) return triangle.total;
   auto const size = static_cast<Eigen::Index>(terms.size());
-  Eigen::HouseholderQR<Eigen::MatrixXd> const qr(columns_of(triangle, terms));
-  Eigen::VectorXd const turned = qr.householderQ().adjoint() * triangle.known;
+  Eigen::VectorXd const turned = OrthogonalTriangular(columns_of(triangle, terms)).turned(triangle.known);
   return triangle.rest + turned.tail(turned.size() - size).squaredNorm();
 }
 

@@ -4,6 +4,7 @@
 #include "core/elementary.hpp"
 #include "inference/abc/kernel.hpp"
 #include "inference/abc/kernel_numerics.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::abc {
 namespace {
@@ -14,7 +15,7 @@ class Gaussian : public Kernel {
   Gaussian(ConstLanes at, std::span<double const> weight, Eigen::MatrixXd const& covariance)
       : at_(at),
         weight_(weight),
-        factor_(covariance.llt().matrixL()),
+        factor_(cholesky(covariance).value()),
         log_normaliser_(log_normaliser(factor_)),
         white_(whiten(at)) {}
 

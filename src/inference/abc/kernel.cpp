@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "linear_algebra/decompositions.hpp"
+
 namespace sysid::abc {
 
 std::unique_ptr<Kernel> make_gaussian(Plan const&, ConstLanes, std::span<double const>, Width const&);
@@ -46,7 +48,7 @@ Width width_of(ConstLanes at, std::span<double const> weight, Width const& last)
       width.covariance(d, e) = width.covariance(e, d) = sum;
     }
   bool const wide = dimension == 0 || width.range.minCoeff() > 0;
-  return wide && width.covariance.llt().info() == Eigen::Success ? width : last;
+  return wide && cholesky(width.covariance) ? width : last;
 }
 
 }  // namespace sysid::abc

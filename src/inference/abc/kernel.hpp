@@ -1,6 +1,6 @@
 // Perturbation kernels of ABC-SMC: how a particle of the last population moves, and with what density a place is reached.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <string_view>

@@ -1,6 +1,6 @@
 // What the normal kernels have in common.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <span>
 
 #include "core/random.hpp"

@@ -6,6 +6,7 @@
 #include "core/elementary.hpp"
 #include "inference/abc/kernel.hpp"
 #include "inference/abc/kernel_numerics.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::abc {
 namespace {
@@ -42,9 +43,8 @@ class NearestNeighbours : public Kernel {
       // Few neighbours span no volume.
       covariance =
           scale * (count < at.rows() + 1 ? width.covariance : Eigen::MatrixXd(covariance / total + 1e-6 * width.covariance));
-      Eigen::LLT<Eigen::MatrixXd> const factorised(covariance);
-      factors_.push_back(factorised.info() == Eigen::Success ? Eigen::MatrixXd(factorised.matrixL())
-                                                             : Eigen::MatrixXd(width.covariance.llt().matrixL()));
+      auto factor = cholesky(covariance);
+      factors_.push_back(factor ? std::move(*factor) : cholesky(width.covariance).value());
       log_normalisers_.push_back(log_normaliser(factors_.back()));
     }
     log_scale_ = *std::max_element(log_normalisers_.begin(), log_normalisers_.end());
