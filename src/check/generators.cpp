@@ -5,6 +5,7 @@
 #include <string>
 
 #include "check/elaborate/tree.hpp"
+#include "core/table.hpp"
 
 namespace sysid {
 namespace {
@@ -108,10 +109,6 @@ GeneratorRow const rows[] = {
 
 std::span<GeneratorRow const> generators() { return rows; }
 
-GeneratorRow const* find_generator(std::string_view name) {
-  for (GeneratorRow const& row : rows)
-    if (row.name == name) return &row;
-  return nullptr;
-}
+GeneratorRow const* find_generator(std::string_view name) { return row_named(rows, name); }
 
 }  // namespace sysid

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/diagnostic.hpp"
+#include "core/table.hpp"
 
 namespace sysid {
 namespace {
@@ -74,11 +75,7 @@ std::string setting_text(SettingValue const& value) {
       value);
 }
 
-SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_view name) {
-  for (SettingRow const& row : rows)
-    if (row.name == name) return &row;
-  return nullptr;
-}
+SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_view name) { return row_named(rows, name); }
 
 std::string refuse(SettingRow const& row, SettingValue const& value) {
   auto const inside = [&](double x) { return x >= row.minimum && x <= row.maximum; };

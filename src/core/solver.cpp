@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/diagnostic.hpp"
+#include "core/table.hpp"
 
 namespace sysid {
 namespace {
@@ -41,11 +42,7 @@ std::span<SolverRow const> solvers() {
   return rows;
 }
 
-SolverRow const* find_solver(std::string_view name) {
-  for (SolverRow const& row : solvers())
-    if (row.name == name) return &row;
-  return nullptr;
-}
+SolverRow const* find_solver(std::string_view name) { return row_named(solvers(), name); }
 
 SolverRow const& SolverSettings::row() const {
   SolverRow const* found = find_solver(method);

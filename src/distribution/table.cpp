@@ -1,6 +1,8 @@
 // All distributions of the language, in the order `sysid list distributions` prints. A new one is a file and a line here.
 #include "distribution/rows.hpp"
 
+#include "core/table.hpp"
+
 namespace sysid {
 
 std::span<DistributionRow const> distributions() {
@@ -13,10 +15,6 @@ std::span<DistributionRow const> distributions() {
   return rows;
 }
 
-DistributionRow const* find_distribution(std::string_view name) {
-  for (DistributionRow const& row : distributions())
-    if (row.name == name) return &row;
-  return nullptr;
-}
+DistributionRow const* find_distribution(std::string_view name) { return row_named(distributions(), name); }
 
 }  // namespace sysid

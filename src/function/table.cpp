@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/table.hpp"
 #include "function/primitive.hpp"
 
 namespace sysid {
@@ -89,10 +90,6 @@ constexpr FunctionRow rows[] = {
 
 std::span<FunctionRow const> functions() { return rows; }
 
-FunctionRow const* find_function(std::string_view name) {
-  for (FunctionRow const& row : rows)
-    if (row.name == name) return &row;
-  return nullptr;
-}
+FunctionRow const* find_function(std::string_view name) { return row_named(rows, name); }
 
 }  // namespace sysid

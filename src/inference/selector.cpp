@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/table.hpp"
 #include "inference/abc/abc_smc.hpp"
 #include "inference/abc/settings.hpp"
 
@@ -20,11 +21,7 @@ SelectorRow const rows[] = {
 
 std::span<SelectorRow const> selectors() { return rows; }
 
-SelectorRow const* find_selector(std::string_view name) {
-  for (SelectorRow const& row : rows)
-    if (row.name == name) return &row;
-  return nullptr;
-}
+SelectorRow const* find_selector(std::string_view name) { return row_named(rows, name); }
 
 double PopulationRecord::share(int model) const {
   return accepted == 0 ? 0 : static_cast<double>(models[static_cast<std::size_t>(model)].particles) / accepted;

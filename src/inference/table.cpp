@@ -1,4 +1,5 @@
 // The back ends, one line each, in the order `sysid list` prints them.
+#include "core/table.hpp"
 #include "inference/backend.hpp"
 #include "inference/mh.hpp"
 #include "inference/optimum.hpp"
@@ -36,11 +37,7 @@ BackendRow const rows[] = {
 
 std::span<BackendRow const> backends() { return rows; }
 
-BackendRow const* find_backend(std::string_view name) {
-  for (BackendRow const& row : rows)
-    if (row.name == name) return &row;
-  return nullptr;
-}
+BackendRow const* find_backend(std::string_view name) { return row_named(rows, name); }
 
 std::vector<Summary> summarise(FitResult const& result) {
   if (!result.summaries.empty()) return result.summaries;

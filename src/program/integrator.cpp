@@ -1,6 +1,8 @@
 // The table of explicit one-step methods, and what they share.
 #include "program/integrator.hpp"
 
+#include "core/table.hpp"
+
 namespace sysid {
 
 std::vector<NodeId> rk4_step(Stages const& stages);    // rk4.cpp
@@ -16,11 +18,7 @@ std::span<IntegratorRow const> integrators() {
   return rows;
 }
 
-IntegratorRow const* find_integrator(std::string_view name) {
-  for (IntegratorRow const& row : integrators())
-    if (row.name == name) return &row;
-  return nullptr;
-}
+IntegratorRow const* find_integrator(std::string_view name) { return row_named(integrators(), name); }
 
 std::vector<NodeId> Stages::evaluate(std::span<NodeId const> at, Stage stage) const {
   visited.push_back({{at.begin(), at.end()}, stage});

@@ -1,4 +1,5 @@
 // The ways to have derivatives, one line each.
+#include "core/table.hpp"
 #include "regression/columns.hpp"
 #include "regression/sampled.hpp"
 #include "regression/weak.hpp"
@@ -23,10 +24,6 @@ Form const rows[] = {
 
 std::span<Form const> forms() { return rows; }
 
-Form const* find_form(std::string_view name) {
-  for (Form const& row : rows)
-    if (row.name == name) return &row;
-  return nullptr;
-}
+Form const* find_form(std::string_view name) { return row_named(rows, name); }
 
 }  // namespace sysid::regression

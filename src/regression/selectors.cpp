@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/elementary.hpp"
+#include "core/table.hpp"
 #include "regression/ard.hpp"
 #include "regression/selector.hpp"
 #include "regression/spike_slab.hpp"
@@ -26,11 +27,7 @@ SelectorRow const rows[] = {
 
 std::span<SelectorRow const> selectors() { return rows; }
 
-SelectorRow const* find_selector(std::string_view name) {
-  for (SelectorRow const& row : rows)
-    if (row.name == name) return &row;
-  return nullptr;
-}
+SelectorRow const* find_selector(std::string_view name) { return row_named(rows, name); }
 
 Support least_squares(LinearProblem const& problem, std::vector<int> terms) {
   return support_of(reduce(problem), std::move(terms));
