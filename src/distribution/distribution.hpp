@@ -29,32 +29,34 @@ struct ArgumentRow {
 /// Which side of a quantile a probability is counted on: in its own tail it keeps all its digits.
 enum class Tail { lower, upper };
 
+/// A row names what it has; what it leaves out it has not.
 struct DistributionRow {
   std::string_view name;
   std::span<ArgumentRow const> arguments;
-  bool noise;        // may stand after `observe CHANNEL ~`
-  bool proper;       // has a finite integral; `flat` has not and cannot be drawn from: bounds restrict it and nothing is normalised
-  bool logarithmic;  // the sampler's coordinate is logarithmic between finite bounds (log_uniform)
-  bool dimensionless;  // the variate is a pure number (beta)
+  bool noise = false;  // may stand after `observe CHANNEL ~`
+  /// Has a finite integral; `flat` has not and cannot be drawn from: bounds restrict it and nothing is normalised.
+  bool proper = true;
+  bool logarithmic = false;    // the sampler's coordinate is logarithmic between finite bounds (log_uniform)
+  bool dimensionless = false;  // the variate is a pure number (beta)
   /// log p(x | arguments), all constants kept; x inside the support.
   NodeId (*log_density)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// P(X <= x); nullptr: cannot be truncated.
-  NodeId (*cumulative)(Graph&, NodeId x, std::span<NodeId const> arguments);
+  NodeId (*cumulative)(Graph&, NodeId x, std::span<NodeId const> arguments) = nullptr;
   /// P(X > x), accurate where it is small; nullptr only when improper or discrete.
-  NodeId (*survival)(Graph&, NodeId x, std::span<NodeId const> arguments);
+  NodeId (*survival)(Graph&, NodeId x, std::span<NodeId const> arguments) = nullptr;
   /// Natural bounds of the support; nullptr: infinite on that side.
-  NodeId (*lower)(Graph&, std::span<NodeId const> arguments);
-  NodeId (*upper)(Graph&, std::span<NodeId const> arguments);
+  NodeId (*lower)(Graph&, std::span<NodeId const> arguments) = nullptr;
+  NodeId (*upper)(Graph&, std::span<NodeId const> arguments) = nullptr;
   /// The x at which a noise density is largest as a function of its location: where residuals vanish. nullptr unless noise.
-  NodeId (*centre)(Graph&, std::span<NodeId const> arguments);
+  NodeId (*centre)(Graph&, std::span<NodeId const> arguments) = nullptr;
   /// The largest log density that any location gives to x, all else equal: log p(x | location = x, ...). Untruncated,
   /// saturated - log_density is never negative: half the squared deviance residual of x. nullptr unless noise.
-  NodeId (*saturated)(Graph&, NodeId x, std::span<NodeId const> arguments);
+  NodeId (*saturated)(Graph&, NodeId x, std::span<NodeId const> arguments) = nullptr;
   /// One draw, untruncated; nullptr when improper.
-  double (*draw)(Stream&, std::span<double const> arguments);
+  double (*draw)(Stream&, std::span<double const> arguments) = nullptr;
   /// Inverse of `cumulative` (tail lower) or `survival` (upper), for draws from narrow truncations; nullptr only when improper or
   /// discrete.
-  double (*quantile)(double probability, Tail tail, std::span<double const> arguments);
+  double (*quantile)(double probability, Tail tail, std::span<double const> arguments) = nullptr;
   /// Whether numeric arguments are admissible (sd > 0, lower < upper); returns the reason when not, else empty.
   std::string_view (*refuse)(std::span<double const> arguments);
   std::string_view summary;

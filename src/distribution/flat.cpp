@@ -17,19 +17,9 @@ std::string_view refuse(Numbers) { return {}; }
 DistributionRow flat_distribution() {
   return {.name = "flat",
           .arguments = {},
-          .noise = false,
           .proper = false,
-          .logarithmic = false,
-          .dimensionless = false,
           .log_density = &log_density,
           .cumulative = &cumulative,
-          .survival = nullptr,
-          .lower = nullptr,
-          .upper = nullptr,
-          .centre = nullptr,
-          .saturated = nullptr,
-          .draw = nullptr,
-          .quantile = nullptr,
           .refuse = &refuse,
           .summary = "improper constant density; no evidence, no prior draws"};
 }
