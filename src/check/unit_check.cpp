@@ -17,55 +17,6 @@ namespace {
 bool is_known(UnitOperand const& operand) { return operand.value.kind == Typed::Kind::known; }
 Dimension const& dimension_of(UnitOperand const& operand) { return operand.value.unit.dimension; }
 
-// A factor of a product that is a number without a unit; null when there is none.
-ast::Expression const* bare_factor(ast::Expression const& tree) {
-  if (auto const* number = std::get_if<ast::Number>(&tree.node)) return number->unit ? nullptr : &tree;
-  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return bare_factor(*(*unary)->operand);
-  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
-  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return nullptr;
-  ast::Expression const* left = bare_factor(*(*binary)->left);
-  return left != nullptr || (*binary)->symbol == "/" ? left : bare_factor(*(*binary)->right);
-}
-
-// A factor of a product that is a name with primes or without; null when there is none.
-ast::Reference const* named_factor(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
-  if (auto const* reference = std::get_if<ast::Reference>(&tree.node)) {
-    bool const moves = std::any_of(declared.begin(), declared.end(),
-                                   [&](DeclaredUnit const& each) { return each.moves && each.name == reference->name.text; });
-    return moves ? reference : nullptr;
-  }
-  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return named_factor(*(*unary)->operand, declared);
-  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
-  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return nullptr;
-  ast::Reference const* left = named_factor(*(*binary)->left, declared);
-  return left != nullptr || (*binary)->symbol == "/" ? left : named_factor(*(*binary)->right, declared);
-}
-
-// A unit in coherent SI, without the name it was written by.
-Unit plain(Unit const& unit) {
-  Unit result;
-  result.dimension = unit.dimension;
-  return result;
-}
-
-std::vector<std::string> names_in(ast::Expression const& tree) {
-  std::vector<std::string> names;
-  each_reference(tree, [&](ast::Reference const& reference) { names.push_back(reference.name.text); });
-  return names;
-}
-
-// The one declared name in an expression that does not move and is no pure number: what its unit depends on, beside the states.
-std::optional<DeclaredUnit> only_coefficient(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
-  std::optional<DeclaredUnit> found;
-  for (std::string const& name : names_in(tree))
-    for (DeclaredUnit const& each : declared) {
-      if (each.name != name || each.moves || each.unit.dimensionless()) continue;
-      if (found) return std::nullopt;
-      found = each;
-    }
-  return found;
-}
-
 std::size_t size_of(UnitOperand const& operand) {
   std::size_t size = 0;  // a declaration: what the user says plainly
   if (operand.tree != nullptr) each_expression(*operand.tree, [&](ast::Expression const&) { ++size; });
@@ -122,106 +73,10 @@ Stretch agreeing(std::span<UnitOperand const> operands, std::vector<std::size_t>
   return {cover(operands[first].value.span, operands[last].value.span), last<odd, last> first};
 }
 
-// Whether `cycles` holds a frequency in Hz where `other`, which counts neither cycles nor radians, asks for an angular one: as a
-// square (k = m omega^2), or as the factor of something else that moves beside a derivative in time (y'' + omega^2 y, y' = -omega
-// y). A displacement per revolution times a speed in Hz is a flow: a frequency alone is no mistake.
-bool used_as_angular(UnitOperand const& cycles, UnitOperand const& other, std::vector<DeclaredUnit> const& declared) {
-  Unit const &ours = cycles.value.unit, &theirs = other.value.unit;
-  if (cycles.tree == nullptr || ours.hertz.numerator == 0 || theirs.hertz.numerator != 0 || !(ours.radian == theirs.radian))
-    return false;
-  if (std::abs(ours.hertz.numerator) == 2 && ours.hertz.denominator == 1) return true;
-  bool derivative = false;
-  if (other.tree != nullptr)
-    each_reference(*other.tree, [&](ast::Reference const& reference) { derivative = derivative || reference.primes > 0; });
-  return derivative && std::any_of(declared.begin(), declared.end(), [&](DeclaredUnit const& each) {
-           std::vector<std::string> const names = names_in(*cycles.tree);
-           bool const stands_here = std::find(names.begin(), names.end(), each.name) != names.end();
-           return stands_here && each.moves && each.unit.hertz.numerator == 0;
-         });
-}
-
-// A name declared in a unit that counts cycles; empty without one.
-std::string frequency_in(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
-  for (std::string const& name : names_in(tree))
-    for (DeclaredUnit const& each : declared)
-      if (each.name == name && each.unit.hertz.numerator != 0) return name;
-  return {};
-}
-
 }  // namespace
-
-void UnitCheck::declare(DeclaredUnit declared) {
-  add_unit_names(declared.unit.text, names_in_use_);
-  declared_.push_back(std::move(declared));
-}
 
 Label UnitCheck::unit_label(UnitOperand const& operand) const {
   return {operand.value.span, "[" + words(operand.value.unit) + "]"};
-}
-
-std::string UnitCheck::words(Unit const& unit) const {
-  if (unit.text.empty() && !unit.dimensionless())
-    for (DeclaredUnit const& each : declared_)
-      if (each.unit.dimension == unit.dimension && each.unit.scale == 1 && each.unit.offset == unit.offset &&
-          each.unit.radian == unit.radian && each.unit.hertz == unit.hertz)
-        return each.unit.text;
-  return unit_words(unit, names_in_use_);
-}
-
-// "`y`", "`y` or `l`": declared names of this dimension.
-std::string UnitCheck::named(Dimension const& dimension, std::vector<std::string> const& but) const {
-  Unit second;
-  second.dimension[2] = {1, 1};
-  std::string text;
-  int count = 0;
-  for (DeclaredUnit const& each : declared_) {
-    if (std::find(but.begin(), but.end(), each.name) != but.end()) continue;
-    std::string name;
-    if (each.unit.dimension == dimension)
-      name = each.name;
-    else if (each.moves && divide(each.unit, second).dimension == dimension)
-      name = each.name + "'";
-    if (name.empty() || ++count > 2) continue;
-    text += (text.empty() ? "`" : " or `") + name + "`";
-  }
-  return text;
-}
-
-std::string UnitCheck::cure(UnitOperand const& odd, std::string const& wanted, Dimension const& missing, bool pure) const {
-  std::vector<std::string> but;
-  if (pure && odd.tree != nullptr) but = names_in(*odd.tree);
-  if (odd.tree != nullptr && !pure) {
-    // A number in the place of a coefficient: nothing else in the product could carry its unit.
-    ast::Expression const* number = bare_factor(*odd.tree);
-    std::vector<std::string> const used = names_in(*odd.tree);
-    bool const coefficient = std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
-      return !each.moves && std::find(used.begin(), used.end(), each.name) != used.end();
-    });
-    Unit unit;
-    unit.dimension = missing;
-    if (number != nullptr && !coefficient && !used.empty()) return errors::tag_the_number(unparse(*number), words(unit));
-  }
-  // A prime too few or too many is likelier than a missing rate or time, whatever there is by that unit.
-  ast::Reference const* moving = odd.tree == nullptr || pure ? nullptr : named_factor(*odd.tree, declared_);
-  for (int const primes : {1, 2}) {
-    Dimension time{};
-    time[2] = {primes, 1};
-    if (moving != nullptr && (missing == inverse(time) || (missing == time && moving->primes >= primes))) {
-      Unit factor;
-      factor.dimension = missing;
-      auto const coefficient = only_coefficient(*odd.tree, declared_);
-      std::string const other = coefficient ? words(multiply(plain(coefficient->unit), factor)) : "";
-      return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes),
-                                  coefficient ? coefficient->name : "", other);
-    }
-  }
-  if (std::string const names = named(missing, but); !names.empty())
-    return errors::multiply_by(kind_words(missing, names_in_use_), names);
-  if (std::string const names = named(inverse(missing), but); !names.empty())
-    return errors::divide_by(kind_words(inverse(missing), names_in_use_), names);
-  if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing, names_in_use_), "");
-  if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing), names_in_use_), "");
-  return errors::should_be_in(wanted);
 }
 
 void UnitCheck::remember(UnitOperand const& operand, std::string why) {
@@ -241,6 +96,9 @@ void UnitCheck::report(Diagnostic diagnostic) {
 }
 
 void UnitCheck::hint_cycles(std::span<UnitOperand const> operands) {
+  auto const angular = [&](UnitOperand const& cycles, UnitOperand const& other) {
+    return declared_.used_as_angular(cycles.tree, cycles.value.unit, other.tree, other.value.unit);
+  };
   for (std::size_t i = 0; i < operands.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       Unit const &a = operands[j].value.unit, &b = operands[i].value.unit;
@@ -252,10 +110,10 @@ void UnitCheck::hint_cycles(std::span<UnitOperand const> operands) {
         report(errors::cycles_meet_radians(unit_label(shown), unit_label(other), counts_cycles));
         return;
       }
-      bool const first = used_as_angular(operands[j], operands[i], declared_);
-      if (first || used_as_angular(operands[i], operands[j], declared_)) {
+      bool const first = angular(operands[j], operands[i]);
+      if (first || angular(operands[i], operands[j])) {
         UnitOperand const &shown = operands[first ? j : i], &other = operands[first ? i : j];
-        report(errors::cycles_as_angular(unit_label(shown), unit_label(other), frequency_in(*shown.tree, declared_)));
+        report(errors::cycles_as_angular(unit_label(shown), unit_label(other), declared_.frequency_in(*shown.tree)));
         return;
       }
     }
@@ -310,7 +168,7 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   conflict.wanted = words(wanted);
   conflict.found = words(operands[shown].value.unit);
   missing_.push_back(quotient(wanted.dimension, dimension_of(operands[shown])));
-  conflict.help = cure(operands[shown], conflict.wanted, missing_.back(), false);
+  conflict.help = declared_.cure(operands[shown].tree, conflict.wanted, missing_.back(), false);
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));
@@ -328,7 +186,7 @@ bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, b
   }
   missing_.push_back(inverse(unit.dimension));
   report(errors::pure_argument({argument.value.span, "[" + words(unit) + "]"}, function,
-                               cure(argument, "-", inverse(unit.dimension), true)));
+                               declared_.cure(argument.tree, "-", inverse(unit.dimension), true)));
   return false;
 }
 
@@ -336,7 +194,7 @@ bool UnitCheck::power(UnitOperand const& base, UnitOperand const& exponent, std:
   if (is_known(exponent) && !exponent.value.unit.dimensionless()) {
     missing_.push_back(inverse(exponent.value.unit.dimension));
     report(errors::exponent_with_unit({exponent.value.span, "[" + words(exponent.value.unit) + "]"},
-                                      cure(exponent, "-", inverse(exponent.value.unit.dimension), true)));
+                                      declared_.cure(exponent.tree, "-", inverse(exponent.value.unit.dimension), true)));
     return false;
   }
   if (!is_known(base) || base.value.unit.dimensionless()) return true;

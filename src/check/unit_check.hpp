@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "check/declared_units.hpp"
 #include "check/quantity.hpp"
-#include "check/unit_words.hpp"
 #include "core/diagnostic.hpp"
 #include "syntax/ast.hpp"
 
@@ -30,13 +30,6 @@ struct Occasion {
   bool is_width = false;  // what is declared as a temperature stands for a difference of two
 };
 
-/// A declared name with its unit. Names that move carry primes in equations.
-struct DeclaredUnit {
-  std::string name;
-  Unit unit;
-  bool moves = false;
-};
-
 /// Compares units where they must agree, adds a diagnostic where they do not, and remembers what could not be compared. Nothing is
 /// said of what is unknown: after an error an expression is made unknown by the caller, so that one mistake gives one message.
 class UnitCheck {
@@ -45,7 +38,7 @@ class UnitCheck {
   UnitCheck(UnitCheck const& other, Diagnostics& diagnostics) : UnitCheck(other) { diagnostics_ = &diagnostics; }
 
   /// Known to the help lines ("multiply it by a length; `y` is one").
-  void declare(DeclaredUnit declared);
+  void declare(DeclaredUnit declared) { declared_.declare(std::move(declared)); }
 
   /// False, with a diagnostic, when the known units differ. The odd ones out are those that the majority does not share.
   bool agree(Occasion const& occasion, std::span<UnitOperand const> operands);
@@ -78,21 +71,18 @@ class UnitCheck {
   std::vector<NotCompared> const& not_compared() const { return not_compared_; }
 
   /// A unit as the text has it, else in the names that it uses.
-  std::string words(Unit const& unit) const;
+  std::string words(Unit const& unit) const { return declared_.words(unit); }
   /// Of every conflict the factor that what was shown lacks.
   std::vector<Dimension> const& missing() const { return missing_; }
 
  private:
   void hint_cycles(std::span<UnitOperand const> operands);
   Label unit_label(UnitOperand const& operand) const;
-  std::string named(Dimension const& dimension, std::vector<std::string> const& but) const;
-  std::string cure(UnitOperand const& odd, std::string const& wanted, Dimension const& missing, bool pure) const;
   void remember(UnitOperand const& operand, std::string why = {});
   void report(Diagnostic diagnostic);
 
   Diagnostics* diagnostics_;
-  std::vector<DeclaredUnit> declared_;
-  UnitNames names_in_use_;
+  DeclaredUnits declared_;
   std::vector<Call> calls_;
   std::vector<std::pair<Span, std::string>> said_in_functions_;
   std::vector<NotCompared> not_compared_;
