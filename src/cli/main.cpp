@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
@@ -312,8 +311,4 @@ int main(int argument_count, char** arguments) {
 }  // namespace
 }  // namespace sysid
 
-int main(int argument_count, char** arguments) {
-  // Eigen cuts sums of products to the caches of the processor it runs on; the same bytes everywhere need one size everywhere.
-  Eigen::setCpuCacheSizes(32 * 1024, 256 * 1024, 2048 * 1024);
-  return sysid::main(argument_count, arguments);
-}
+int main(int argument_count, char** arguments) { return sysid::main(argument_count, arguments); }
