@@ -27,6 +27,10 @@ double PopulationRecord::share(int model) const {
   return accepted == 0 ? 0 : static_cast<double>(models[static_cast<std::size_t>(model)].particles) / accepted;
 }
 
+double PopulationRecord::acceptance() const {
+  return proposed == 0 ? 1 : static_cast<double>(accepted) / static_cast<double>(proposed);
+}
+
 WeightedSummary summarise_weighted(std::string name, std::string unit, std::span<double const> values,
                                    std::span<double const> weights) {
   WeightedSummary summary{std::move(name), std::move(unit)};

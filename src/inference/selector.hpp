@@ -27,6 +27,8 @@ struct PopulationRecord {
 
   /// The tutorial's (8.21): a part of the particles, which is no probability after the second population.
   double share(int model) const;
+  /// Accepted part of the proposals; 1 before the first.
+  double acceptance() const;
 };
 
 /// A weighted parameter of one model, declared unit.

@@ -11,6 +11,8 @@
 #include "core/elementary.hpp"
 #include "inference/abc/findings.hpp"
 #include "inference/abc/proposals.hpp"
+#include "inference/abc/state.hpp"
+#include "inference/abc/stops.hpp"
 #include "inference/checkpoint.hpp"
 
 namespace sysid::abc {
@@ -37,23 +39,6 @@ constexpr double surprising = 3;
 /// A model that had fewer particles than these was proposed from places that need not be its best.
 constexpr int few_particles = 10;
 
-/// A population that finds nothing in so many proposals will not find enough.
-constexpr std::uint64_t patience = 1'000'000;
-
-/// Proposals outside of the prior's support cost no simulation, and yet must end.
-constexpr double proposals_per_simulation = 100;
-
-json identity(SelectionTarget const& candidates, Settings const& settings, std::uint64_t seed) {
-  json values = json::object(), models = json::array();
-  for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);
-  for (int m = 0; m < candidates.size(); ++m) {
-    json parameters = json::array();
-    for (ParameterInfo const& each : candidates.parameters(m)) parameters.push_back(each.name);
-    models.push_back({candidates.name(m), candidates.prior_probability(m), parameters});
-  }
-  return {{"backend", "abc_smc"}, {"settings", values}, {"seed", seed}, {"models", models}};
-}
-
 class Run {
  public:
   Run(SelectionTarget const& candidates, Settings const& settings, RunContext& context)
@@ -67,7 +52,7 @@ class Run {
 
   SelectionResult run() {
     if (!begin()) return std::move(result_);
-    while (!over() && populate()) settle();
+    while (!stop(end_after_population(state_, plan_)) && populate()) settle();
     finish();
     return std::move(result_);
   }
@@ -76,7 +61,7 @@ class Run {
   // --- one population
   // -------------------------------------------------------------------------------------------------------------
 
-  /// Fills `next_` up; false when the run is stopped before it is full.
+  /// Fills the next population up; false when the run is stopped before it is full.
   bool populate() {
     Proposals const proposals(candidates_, plan_, walk_, context_.seed, last_);
     context_.progress.begin(fmt::format("population {}", next_.number), static_cast<std::uint64_t>(plan_.particles));
@@ -86,11 +71,11 @@ class Run {
         result_.interrupted = true;
         break;
       }
-      if (out_of_budget()) break;
+      if (stop(end_within_population(state_, plan_, seconds()))) break;
       propose(proposals);
       full = record_.accepted >= plan_.particles;
       context_.progress.advance(static_cast<std::uint64_t>(next_.accepted()),
-                                fmt::format("threshold {:.4g}, acceptance {:.2g}", next_.threshold, acceptance()));
+                                fmt::format("threshold {:.4g}, acceptance {:.2g}", next_.threshold, record_.acceptance()));
       save_sometimes();
     }
     context_.progress.end();
@@ -99,10 +84,10 @@ class Run {
 
   /// How many proposals to make at once: what the rest of the population is expected to need.
   int batch_size() const {
-    double const rate =
-        record_.proposed == 0 ? last_acceptance_ : (record_.accepted + 1.0) / static_cast<double>(record_.proposed + 1);
+    double const before = state_.records.empty() ? 1 : state_.records.back().acceptance();
+    double const rate = record_.proposed == 0 ? before : (record_.accepted + 1.0) / static_cast<double>(record_.proposed + 1);
     double const needed = (plan_.particles - record_.accepted) / std::max(rate, 1e-6);
-    double const allowed = static_cast<double>(plan_.simulations - simulations_ - record_.simulated);
+    double const allowed = static_cast<double>(plan_.simulations - state_.simulations() - record_.simulated);
     return static_cast<int>(std::min(std::clamp<double>(std::ceil(needed), least_batch, most_batch), allowed));
   }
 
@@ -217,23 +202,17 @@ class Run {
       std::vector<double> within = particles.weight;
       for (double& w : within) w /= sum;
       next_.widths[m] = width_of(particles.lanes(candidates_.dimension(static_cast<int>(m))), within, last_.widths[m]);
-      SelectedModel& model = result_.models[m];
       bool const lived = last_.number == 0 || last_.models[m].count() > 0;
-      if (lived && particles.count() == 0) {
-        model.died_in = next_.number;
-        model.by_chance = may_be_chance(m);
-        if (last_.number > 0) departed_[m] = last_.models[m];
-      }
+      if (lived && particles.count() == 0)
+        state_.departures[m] = {next_.number, may_be_chance(m), last_.number > 0 ? last_.models[m] : Particles{}};
     }
-    simulations_ += record_.simulated;
-    last_acceptance_ = static_cast<double>(record_.accepted) / static_cast<double>(record_.proposed);
-    result_.populations.push_back(record_);
+    state_.records.push_back(record_);
     last_ = std::move(next_);
     start_population();
     if (context_.checkpoint) save();
   }
 
-  /// Readies `next_` and its threshold.
+  /// Readies the next population and its threshold.
   void start_population() {
     next_ = {};
     next_.number = last_.number + 1;
@@ -254,57 +233,11 @@ class Run {
   // --- the end
   // --------------------------------------------------------------------------------------------------------------------
 
-  double acceptance() const {
-    return record_.proposed == 0 ? 1 : static_cast<double>(record_.accepted) / static_cast<double>(record_.proposed);
-  }
-
-  /// Whether the run ends with the last population, and why.
-  bool over() {
-    if (last_.number == 0) return false;
-    double const fall = last_.threshold - next_.threshold;
-    if (!plan_.schedule.empty()) {
-      if (static_cast<std::size_t>(last_.number) >= plan_.schedule.size()) return stop("the schedule of thresholds has ended");
-    } else if (last_.threshold <= plan_.target) {
-      return stop(fmt::format("the threshold has reached its target {}", plan_.target));
-    } else if (fall <= plan_.threshold_change) {
-      return stop(fmt::format("the next threshold would be lower by {:.2g}, not more than {}", fall, plan_.threshold_change));
-    } else if (fall <= plan_.relative_change * next_.threshold) {
-      return stop(fmt::format("the next threshold would be lower by {:.2g} %, not more than {} %", 100 * fall / next_.threshold,
-                              100 * plan_.relative_change));
-    }
-    if (last_acceptance_ < plan_.acceptance)
-      return stop(fmt::format("{:.2g} of the proposals were accepted, less than {}", last_acceptance_, plan_.acceptance));
-    if (last_.number >= plan_.populations) return stop(fmt::format("`populations = {}` is reached", plan_.populations));
-    return false;
-  }
-
-  bool stop(std::string why) {
-    result_.stopped_by = std::move(why);
+  bool stop(std::optional<Stop> const& why) {
+    if (!why) return false;
+    result_.stopped_by = why->why;
+    result_.ran_out = why->ran_out;
     return true;
-  }
-
-  /// Whether a budget ends the run within a population.
-  bool out_of_budget() {
-    auto const proposed = static_cast<double>(record_.proposed);
-    if (simulations_ + record_.simulated >= plan_.simulations)
-      return spent(fmt::format("`simulations = {}` are spent", plan_.simulations));
-    if (proposed >= proposals_per_simulation * static_cast<double>(plan_.simulations))
-      return spent(fmt::format("{} proposals, most of them outside of the priors, had not filled population {}", record_.proposed,
-                               next_.number));
-    if (plan_.wall_time > 0 && std::chrono::duration<double>(Clock::now() - began_).count() > plan_.wall_time)
-      return spent(fmt::format("`wall_time = {}` is over", plan_.wall_time));
-    if (record_.accepted == 0 && record_.proposed >= patience)
-      return spent(fmt::format("population {} accepted none of {} proposals", next_.number, record_.proposed));
-    // So many proposals fill a population at that rate, and this one is not full.
-    if (plan_.acceptance * proposed >= plan_.particles)
-      return stop(fmt::format("fewer than {} of the proposals of population {} were accepted", plan_.acceptance, next_.number));
-    return false;
-  }
-
-  /// What ends here was not finished.
-  bool spent(std::string why) {
-    result_.ran_out = true;
-    return stop(std::move(why));
   }
 
   void finish() {
@@ -313,6 +246,7 @@ class Run {
       if (!result_.interrupted) result_.failure = no_population(record_, plan_.first_threshold, plan_.particles);
       return;
     }
+    result_.populations = state_.records;
     result_.threshold = last_.threshold;
     result_.next_threshold = next_.threshold;
     for (int m = 0; m < candidates_.size(); ++m) fill(m);
@@ -321,11 +255,13 @@ class Run {
 
   void fill(int m) {
     SelectedModel& model = result_.models[static_cast<std::size_t>(m)];
+    State::Departure const& departure = state_.departures[static_cast<std::size_t>(m)];
     PopulationRecord const& record = result_.populations.back();
+    model.died_in = departure.population;
+    model.by_chance = departure.by_chance;
     model.probability = record.models[static_cast<std::size_t>(m)].probability;
     model.share = record.share(m);
-    Particles const& particles =
-        model.died_in > 0 ? departed_[static_cast<std::size_t>(m)] : last_.models[static_cast<std::size_t>(m)];
+    Particles const& particles = model.died_in > 0 ? departure.particles : last_.models[static_cast<std::size_t>(m)];
     LaneArray const x = particles.lanes(candidates_.dimension(m));
     model.theta = model.declared = x;
     walk_.to_theta(m, x, model.theta);
@@ -351,12 +287,11 @@ class Run {
       model.parameters.assign(candidates_.parameters(m).begin(), candidates_.parameters(m).end());
       result_.models.push_back(std::move(model));
     }
-    departed_.resize(result_.models.size());
     if (context_.resume) {
       result_.failure = checkpoint::refuse(*context_.resume, identity_);
       if (result_.failure) return false;
       try {
-        restore(*context_.resume);
+        state_ = restore(*context_.resume, candidates_, context_.ledger);
         return true;
       } catch (checkpoint::Mismatch const& mismatch) {
         result_.failure = checkpoint::unusable(mismatch.what());
@@ -367,6 +302,7 @@ class Run {
     }
     for (int m = 0; m < candidates_.size(); ++m) last_.widths.push_back(prior_width(m));
     last_.models.resize(static_cast<std::size_t>(candidates_.size()));
+    state_.departures.resize(last_.models.size());
     start_population();
     return true;
   }
@@ -380,45 +316,16 @@ class Run {
     return width_of(x, equal, {Eigen::MatrixXd::Identity(dimension, dimension), Eigen::VectorXd::Ones(dimension)});
   }
 
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+
   void save_sometimes() {
     if (!context_.checkpoint || std::chrono::duration<double>(Clock::now() - saved_).count() < context_.checkpoint_interval) return;
     save();
   }
 
   void save() {
-    json records = json::array(), deaths = json::array();
-    for (PopulationRecord const& each : result_.populations) records.push_back(store(each));
-    for (SelectedModel const& each : result_.models) deaths.push_back({each.died_in, each.by_chance});
-    Population gone = last_;
-    gone.models = departed_;
-    context_.checkpoint({{"identity", identity_},
-                         {"last", store(last_)},
-                         {"next", store(next_)},
-                         {"departed", store(gone)},
-                         {"record", store(record_)},
-                         {"records", std::move(records)},
-                         {"deaths", std::move(deaths)},
-                         {"ledger", checkpoint::encode(context_.ledger)}});
+    context_.checkpoint(store(state_, identity_, context_.ledger));
     saved_ = Clock::now();
-  }
-
-  void restore(json const& stored) {
-    std::vector<int> dimensions;
-    for (int m = 0; m < candidates_.size(); ++m) dimensions.push_back(candidates_.dimension(m));
-    last_ = restore_population(stored.at("last"), dimensions);
-    next_ = restore_population(stored.at("next"), dimensions);
-    departed_ = restore_population(stored.at("departed"), dimensions).models;
-    record_ = restore_record(stored.at("record"));
-    for (auto const& each : stored.at("records")) result_.populations.push_back(restore_record(each));
-    for (std::size_t m = 0; m < result_.models.size(); ++m) {
-      result_.models[m].died_in = stored.at("deaths").at(m).at(0).get<int>();
-      result_.models[m].by_chance = stored.at("deaths").at(m).at(1).get<bool>();
-    }
-    context_.ledger = checkpoint::decode_ledger(stored.at("ledger"));
-    for (PopulationRecord const& each : result_.populations) {
-      simulations_ += each.simulated;
-      last_acceptance_ = static_cast<double>(each.accepted) / static_cast<double>(each.proposed);
-    }
   }
 
   SelectionTarget const& candidates_;
@@ -427,11 +334,9 @@ class Run {
   RunContext& context_;
   json const identity_;
   SelectionResult result_;
-  Population last_, next_;           // the last whole one, and the one in the making
-  PopulationRecord record_;          // of the one in the making
-  std::vector<Particles> departed_;  // per model: the last particles of a dead one
-  std::uint64_t simulations_ = 0;    // of whole populations
-  double last_acceptance_ = 1;
+  State state_;
+  Population &last_ = state_.last, &next_ = state_.next;
+  PopulationRecord& record_ = state_.record;
   Clock::time_point const began_ = Clock::now();
   Clock::time_point saved_ = began_;
 };

@@ -1,11 +1,9 @@
-// Particles of one population, and how they are kept.
+// Particles of one population.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/lanes.hpp"
 #include "inference/abc/kernel.hpp"
-#include "inference/selector.hpp"
 
 namespace sysid::abc {
 
@@ -34,11 +32,5 @@ struct Population {
   /// The smallest distance that at least this part of all particles, of equal weight, does not exceed.
   double quantile(double part) const;
 };
-
-nlohmann::json store(Population const& population);
-/// Throws checkpoint::Mismatch or a JSON exception when it is not what `store` made for models of these dimensions.
-Population restore_population(nlohmann::json const& stored, std::vector<int> const& dimensions);
-nlohmann::json store(PopulationRecord const& record);
-PopulationRecord restore_record(nlohmann::json const& stored);
 
 }  // namespace sysid::abc

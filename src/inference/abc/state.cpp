@@ -1,0 +1,134 @@
+// States to JSON and back.
+#include "inference/abc/state.hpp"
+
+#include <variant>
+
+#include "inference/checkpoint.hpp"
+
+namespace sysid::abc {
+namespace {
+
+using json = nlohmann::json;
+
+json block(std::vector<double> const& values) { return checkpoint::encode(std::span<double const>(values)); }
+
+std::vector<double> numbers(Eigen::MatrixXd const& matrix) { return {matrix.data(), matrix.data() + matrix.size()}; }
+
+json store(Particles const& particles) {
+  return {block(particles.at), block(particles.log_prior), block(particles.distance), block(particles.weight)};
+}
+
+Particles restore_particles(json const& stored, int dimension) {
+  Particles particles{checkpoint::decode(stored.at(0)), checkpoint::decode(stored.at(1)), checkpoint::decode(stored.at(2)),
+                      checkpoint::decode(stored.at(3))};
+  auto const count = particles.distance.size();
+  if (particles.at.size() != count * static_cast<std::size_t>(dimension) || particles.log_prior.size() != count ||
+      particles.weight.size() != count)
+    throw checkpoint::Mismatch("its particles have another number or dimension");
+  return particles;
+}
+
+json store(Population const& population) {
+  json models = json::array(), widths = json::array();
+  for (Particles const& each : population.models) models.push_back(store(each));
+  for (Width const& each : population.widths) widths.push_back({block(numbers(each.covariance)), block(numbers(each.range))});
+  return {{"number", population.number},
+          {"threshold", block({population.threshold})},
+          {"models", std::move(models)},
+          {"widths", std::move(widths)}};
+}
+
+Population restore_population(json const& stored, SelectionTarget const& candidates) {
+  Population population;
+  population.number = stored.at("number").get<int>();
+  population.threshold = checkpoint::decode(stored.at("threshold")).at(0);
+  for (int m = 0; m < candidates.size(); ++m) {
+    auto const at = static_cast<std::size_t>(m);
+    int const dimension = candidates.dimension(m);
+    population.models.push_back(restore_particles(stored.at("models").at(at), dimension));
+    std::vector<double> const covariance = checkpoint::decode(stored.at("widths").at(at).at(0)),
+                              range = checkpoint::decode(stored.at("widths").at(at).at(1));
+    if (range.size() != static_cast<std::size_t>(dimension) || covariance.size() != range.size() * range.size())
+      throw checkpoint::Mismatch("its kernels have another dimension");
+    population.widths.push_back({Eigen::Map<Eigen::MatrixXd const>(covariance.data(), dimension, dimension),
+                                 Eigen::Map<Eigen::VectorXd const>(range.data(), dimension)});
+  }
+  return population;
+}
+
+json store(PopulationRecord const& record) {
+  json models = json::array();
+  for (auto const& each : record.models)
+    models.push_back({each.proposed, each.failed, each.particles, block({each.probability, each.nearest})});
+  return {{"numbers", block({record.threshold, record.ess})},
+          {"counts", {record.proposed, record.simulated, record.failed, record.accepted}},
+          {"models", std::move(models)}};
+}
+
+PopulationRecord restore_record(json const& stored) {
+  PopulationRecord record;
+  std::vector<double> const pair = checkpoint::decode(stored.at("numbers"));
+  record.threshold = pair.at(0);
+  record.ess = pair.at(1);
+  auto const& counts = stored.at("counts");
+  record.proposed = counts.at(0).get<std::uint64_t>();
+  record.simulated = counts.at(1).get<std::uint64_t>();
+  record.failed = counts.at(2).get<std::uint64_t>();
+  record.accepted = counts.at(3).get<int>();
+  for (auto const& model : stored.at("models")) {
+    std::vector<double> const two = checkpoint::decode(model.at(3));
+    record.models.push_back(
+        {model.at(0).get<std::uint64_t>(), model.at(1).get<std::uint64_t>(), model.at(2).get<int>(), two.at(0), two.at(1)});
+  }
+  return record;
+}
+
+}  // namespace
+
+std::uint64_t State::simulations() const {
+  std::uint64_t sum = 0;
+  for (PopulationRecord const& each : records) sum += each.simulated;
+  return sum;
+}
+
+json identity(SelectionTarget const& candidates, Settings const& settings, std::uint64_t seed) {
+  json values = json::object(), models = json::array();
+  for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);
+  for (int m = 0; m < candidates.size(); ++m) {
+    json parameters = json::array();
+    for (ParameterInfo const& each : candidates.parameters(m)) parameters.push_back(each.name);
+    models.push_back({candidates.name(m), candidates.prior_probability(m), parameters});
+  }
+  return {{"backend", "abc_smc"}, {"settings", values}, {"seed", seed}, {"models", models}};
+}
+
+json store(State const& state, json const& identity, Ledger const& ledger) {
+  json records = json::array(), departures = json::array();
+  for (PopulationRecord const& each : state.records) records.push_back(store(each));
+  for (State::Departure const& each : state.departures)
+    departures.push_back({each.population, each.by_chance, store(each.particles)});
+  return {{"identity", identity},
+          {"last", store(state.last)},
+          {"next", store(state.next)},
+          {"record", store(state.record)},
+          {"records", std::move(records)},
+          {"departures", std::move(departures)},
+          {"ledger", checkpoint::encode(ledger)}};
+}
+
+State restore(json const& stored, SelectionTarget const& candidates, Ledger& ledger) {
+  State state;
+  state.last = restore_population(stored.at("last"), candidates);
+  state.next = restore_population(stored.at("next"), candidates);
+  state.record = restore_record(stored.at("record"));
+  for (json const& each : stored.at("records")) state.records.push_back(restore_record(each));
+  for (int m = 0; m < candidates.size(); ++m) {
+    json const& departure = stored.at("departures").at(static_cast<std::size_t>(m));
+    state.departures.push_back(
+        {departure.at(0).get<int>(), departure.at(1).get<bool>(), restore_particles(departure.at(2), candidates.dimension(m))});
+  }
+  ledger = checkpoint::decode_ledger(stored.at("ledger"));
+  return state;
+}
+
+}  // namespace sysid::abc
