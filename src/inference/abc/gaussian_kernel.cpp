@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "core/elementary.hpp"
+#include "core/normals.hpp"
 #include "inference/abc/kernel.hpp"
 #include "inference/abc/kernel_numerics.hpp"
 #include "linear_algebra/decompositions.hpp"
@@ -19,9 +20,9 @@ class Gaussian : public Kernel {
         log_normaliser_(log_normaliser(factor_)),
         white_(whiten(at)) {}
 
-  void perturb(int centre, Stream& stream, std::span<double> out) const override {
-    for (int d = 0; d < at_.rows(); ++d) out[static_cast<std::size_t>(d)] = at_(d, centre);
-    add_normals(factor_, stream, out);
+  void perturb(std::span<int const> centres, std::span<Stream> streams, Lanes out) const override {
+    draw_normals(streams, out);
+    for (std::size_t w = 0; w < centres.size(); ++w) move_from(at_, centres[w], factor_, out, static_cast<int>(w));
   }
 
   void log_density(ConstLanes x, std::span<double> out) const override {

@@ -24,8 +24,8 @@ Width width_of(ConstLanes at, std::span<double const> weight, Width const& last)
 class Kernel {
  public:
   virtual ~Kernel() = default;
-  /// A draw from K(. | centre number `centre`). out: [D].
-  virtual void perturb(int centre, Stream& stream, std::span<double> out) const = 0;
+  /// Draws from K(. | centre), one for each of the centres' numbers [W], with the numbers of a stream each [W]. out: [D x W].
+  virtual void perturb(std::span<int const> centres, std::span<Stream> streams, Lanes out) const = 0;
   /// log sum_j w_j K(x | centre_j) for x [D x W]. out: [W].
   virtual void log_density(ConstLanes x, std::span<double> out) const = 0;
 };

@@ -21,11 +21,13 @@ double log_normaliser(Eigen::MatrixXd const& factor) {
   return log;
 }
 
-void add_normals(Eigen::MatrixXd const& factor, Stream& stream, std::span<double> out) {
-  Eigen::VectorXd normal(factor.rows());
-  for (double& value : normal) value = stream.normal();
-  for (Eigen::Index d = 0; d < factor.rows(); ++d)
-    for (Eigen::Index e = 0; e <= d; ++e) out[static_cast<std::size_t>(d)] += factor(d, e) * normal[e];
+void move_from(ConstLanes at, int centre, Eigen::MatrixXd const& factor, Lanes out, int lane) {
+  // From the last row up: a row reads the rows before it.
+  for (int d = out.rows() - 1; d >= 0; --d) {
+    double value = at(d, centre);
+    for (int e = 0; e <= d; ++e) value += factor(d, e) * out(e, lane);
+    out(d, lane) = value;
+  }
 }
 
 }  // namespace sysid::abc

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "core/random.hpp"
+#include "core/lanes.hpp"
 
 namespace sysid::abc {
 
@@ -13,7 +13,7 @@ double weighted_exponentials(std::span<double> square, std::span<double const> w
 /// log of 1 / sqrt((2 pi)^D det(L L')).
 double log_normaliser(Eigen::MatrixXd const& factor);
 
-/// Adds L z, z standard normal, to out: [D].
-void add_normals(Eigen::MatrixXd const& factor, Stream& stream, std::span<double> out);
+/// Makes centre + L z of z, which is column `lane` of out [D x W]; the centre a column of at [D x n].
+void move_from(ConstLanes at, int centre, Eigen::MatrixXd const& factor, Lanes out, int lane);
 
 }  // namespace sysid::abc

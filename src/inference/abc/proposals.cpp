@@ -87,21 +87,24 @@ Proposed Proposals::make(std::uint64_t first, int count) const {
   Proposed proposed;
   proposed.model.resize(static_cast<std::size_t>(count));
   proposed.column.resize(static_cast<std::size_t>(count));
-  std::vector<int> of_model(centres_.size());
+  std::vector<std::vector<Stream>> streams(centres_.size());
   for (int i = 0; i < count; ++i) {
     Stream stream({seed_, Purpose::particle, first + static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(last_.number + 1)});
     int const model = draw_model(stream);
     proposed.model[static_cast<std::size_t>(i)] = model;
-    proposed.column[static_cast<std::size_t>(i)] = of_model[static_cast<std::size_t>(model)]++;
+    std::vector<Stream>& of_model = streams[static_cast<std::size_t>(model)];
+    proposed.column[static_cast<std::size_t>(i)] = static_cast<int>(of_model.size());
+    of_model.push_back(stream);
   }
-  for (int m = 0; m < candidates_.size(); ++m)
-    proposed.x.emplace_back(candidates_.dimension(m), of_model[static_cast<std::size_t>(m)]);
+  for (std::size_t m = 0; m < streams.size(); ++m) {
+    proposed.x.emplace_back(candidates_.dimension(static_cast<int>(m)), static_cast<int>(streams[m].size()));
+    proposed.log_prior.emplace_back(streams[m].size());
+  }
   proposed.theta = proposed.x;
-  for (int const n : of_model) proposed.log_prior.emplace_back(static_cast<std::size_t>(n));
   if (last_.number == 0)
     draw_from_prior(first, proposed);
   else
-    move_particles(first, proposed);
+    move_particles(streams, proposed);
   rate(proposed);
   return proposed;
 }
@@ -121,21 +124,20 @@ void Proposals::draw_from_prior(std::uint64_t first, Proposed& proposed) const {
   }
 }
 
-void Proposals::move_particles(std::uint64_t first, Proposed& proposed) const {
-  int const count = static_cast<int>(proposed.model.size());
-  candidates_.parallel((count + chunk - 1) / chunk, [&](int task) {
-    std::vector<double> place;
-    for (int i = task * chunk; i < std::min(count, (task + 1) * chunk); ++i) {
-      auto const m = static_cast<std::size_t>(proposed.model[static_cast<std::size_t>(i)]);
-      Stream stream(
-          {seed_, Purpose::particle, first + static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(last_.number + 1)});
-      draw_model(stream);  // again, to come to the numbers behind it
-      int const ancestor = index_of(cumulative_[m], stream.uniform());
-      place.assign(static_cast<std::size_t>(centres_[m].rows()), 0);
-      kernels_[m]->perturb(ancestor, stream, place);
-      for (std::size_t d = 0; d < place.size(); ++d)
-        proposed.x[m](static_cast<int>(d), proposed.column[static_cast<std::size_t>(i)]) = place[d];
-    }
+void Proposals::move_particles(std::vector<std::vector<Stream>>& streams, Proposed& proposed) const {
+  struct Piece {
+    std::size_t model, first, count;
+  };
+  std::vector<Piece> pieces;
+  for (std::size_t m = 0; m < streams.size(); ++m)
+    for (std::size_t first = 0; first < streams[m].size(); first += chunk)
+      pieces.push_back({m, first, std::min<std::size_t>(chunk, streams[m].size() - first)});
+  candidates_.parallel(static_cast<int>(pieces.size()), [&](int task) {
+    auto const [m, first, count] = pieces[static_cast<std::size_t>(task)];
+    std::span<Stream> const own = std::span(streams[m]).subspan(first, count);
+    std::vector<int> ancestors;
+    for (Stream& stream : own) ancestors.push_back(index_of(cumulative_[m], stream.uniform()));
+    kernels_[m]->perturb(ancestors, own, proposed.x[m].view().columns(static_cast<int>(first), static_cast<int>(count)));
   });
   for (std::size_t m = 0; m < centres_.size(); ++m) walk_.to_theta(static_cast<int>(m), proposed.x[m], proposed.theta[m]);
 }

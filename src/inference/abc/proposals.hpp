@@ -41,7 +41,8 @@ class Proposals {
 
  private:
   void draw_from_prior(std::uint64_t first, Proposed& proposed) const;
-  void move_particles(std::uint64_t first, Proposed& proposed) const;
+  /// streams: by model and column, behind the number that drew the model.
+  void move_particles(std::vector<std::vector<Stream>>& streams, Proposed& proposed) const;
   int draw_model(Stream& stream) const;
   void rate(Proposed& proposed) const;
 

@@ -16,8 +16,10 @@ class Uniform : public Kernel {
     for (double const width : widths_) log_density_ -= elementary::log(width);
   }
 
-  void perturb(int centre, Stream& stream, std::span<double> out) const override {
-    for (int d = 0; d < at_.rows(); ++d) out[static_cast<std::size_t>(d)] = at_(d, centre) + widths_[d] * (stream.uniform() - 0.5);
+  void perturb(std::span<int const> centres, std::span<Stream> streams, Lanes out) const override {
+    for (int d = 0; d < at_.rows(); ++d)
+      for (std::size_t w = 0; w < centres.size(); ++w)
+        out.row(d)[w] = at_(d, centres[w]) + widths_[d] * (streams[w].uniform() - 0.5);
   }
 
   void log_density(ConstLanes x, std::span<double> out) const override {
