@@ -9,14 +9,11 @@
 #include <numeric>
 
 #include "core/elementary.hpp"
-#include "inference/laplace.hpp"
-#include "inference/refit.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr int starts = 8;
-constexpr double same_mode = 0.5;  // of the two modes' widths
 
 /// Rows of the target that the particles have, by name; -1: they do not.
 std::vector<int> rows_of(ModelTarget const& target, SelectedModel const& model) {
@@ -42,8 +39,9 @@ std::vector<Mode> only_point(ModelTarget const& target, Ledger& ledger) {
 
 }  // namespace
 
-std::vector<Mode> modes_near(ModelTarget const& target, SelectedModel const& model, std::uint64_t seed, Ledger& ledger) {
-  if (target.dimension() == 0) return only_point(target, ledger);
+LocalSearches modes_near(ModelTarget const& target, SelectedModel const& model, double least_log_mass, std::uint64_t seed,
+                         Ledger& ledger, std::function<bool()> const& stop) {
+  if (target.dimension() == 0) return {only_point(target, ledger), false};
   std::vector<int> order(model.distance.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -51,40 +49,15 @@ std::vector<Mode> modes_near(ModelTarget const& target, SelectedModel const& mod
   });
   std::vector<int> const rows = rows_of(target, model);
   int const count = order.empty() ? starts : std::min<int>(starts, static_cast<int>(order.size()));
-  LaneArray prior(target.dimension(), count);
-  target.sample_prior({seed, Purpose::start, 0, 3}, prior);
-  std::vector<Mode> from;
-  for (int s = 0; s < count; ++s) {
-    Mode start;
-    for (std::size_t p = 0; p < rows.size(); ++p) {
-      if (rows[p] < 0 || order.empty()) {
-        start.theta.push_back(prior(static_cast<int>(p), s));
-        continue;
-      }
-      // The nearest first, the others evenly over the nearer half.
-      int const particle = order[static_cast<std::size_t>(s) * (order.size() / 2) / static_cast<std::size_t>(count)];
-      start.theta.push_back(model.theta(rows[p], particle));
-    }
-    from.push_back(std::move(start));
+  LaneArray from(target.dimension(), count);
+  target.sample_prior({seed, Purpose::start, 0, 3}, from);  // what the particles do not have
+  for (int s = 0; s < count && !order.empty(); ++s) {
+    // The nearest first, the others evenly over the nearer half.
+    int const particle = order[static_cast<std::size_t>(s) * (order.size() / 2) / static_cast<std::size_t>(count)];
+    for (std::size_t p = 0; p < rows.size(); ++p)
+      if (rows[p] >= 0) from(static_cast<int>(p), s) = model.theta(rows[p], particle);
   }
-  std::vector<Mode> found = refit(target, Aim::posterior, from, seed, ledger);
-  std::erase_if(found, [](Mode const& mode) { return !std::isfinite(mode.log_density) || !std::isfinite(mode.log_mass); });
-  std::stable_sort(found.begin(), found.end(), [](Mode const& a, Mode const& b) { return a.log_density > b.log_density; });
-  std::vector<Mode> modes;
-  for (Mode& mode : found) {
-    auto const known =
-        std::find_if(modes.begin(), modes.end(), [&](Mode const& other) { return distance(other, mode) < same_mode; });
-    if (known == modes.end()) {
-      modes.push_back(std::move(mode));
-      modes.back().hits = 1;
-    } else {
-      ++known->hits;
-    }
-  }
-  double const total = log_evidence(modes);
-  for (Mode& mode : modes) mode.share = elementary::exp(mode.log_mass - total);
-  std::stable_sort(modes.begin(), modes.end(), [](Mode const& a, Mode const& b) { return a.share > b.share; });
-  return modes;
+  return modes_from(target, Aim::posterior, from, least_log_mass, seed, ledger, stop);
 }
 
 double log_evidence(std::vector<Mode> const& modes) {

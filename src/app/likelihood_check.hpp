@@ -1,8 +1,10 @@
 // Model probabilities by the likelihood, to set beside those of a selection without one.
 #pragma once
+#include <functional>
 #include <optional>
 #include <vector>
 
+#include "inference/local_searches.hpp"
 #include "inference/selector.hpp"
 #include "likelihood/model_target.hpp"
 
@@ -11,8 +13,10 @@ namespace sysid {
 /// The posterior mode of a model's likelihood, climbed to from the nearest of the particles (at most 8 of them, spread over the
 /// distances of the nearest half), noise parameters from their prior; from draws of its
 /// priors where it never had a particle; nothing when no climb ends at a finite density. Modes that
-/// are one are counted once; the first has the largest mass, shares are among those found.
-std::vector<Mode> modes_near(ModelTarget const& target, SelectedModel const& model, std::uint64_t seed, Ledger& ledger);
+/// are one are counted once; the first has the largest mass, shares are among those found. A model that cannot come to
+/// `least_log_mass` is not climbed to the end.
+LocalSearches modes_near(ModelTarget const& target, SelectedModel const& model, double least_log_mass, std::uint64_t seed,
+                         Ledger& ledger, std::function<bool()> const& stop = {});
 
 /// log of the sum of the masses: Laplace's evidence; -infinity without modes.
 double log_evidence(std::vector<Mode> const& modes);

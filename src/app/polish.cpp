@@ -10,9 +10,6 @@
 namespace sysid {
 namespace {
 
-/// A model that is less probable is not polished.
-constexpr double worth_polishing = 0.01;
-
 Settings settings_for(std::int64_t samples) {
   Settings settings(mh::settings());
   settings.set("samples", samples);
@@ -23,24 +20,25 @@ Settings settings_for(std::int64_t samples) {
 
 }  // namespace
 
-Polish polish_candidates(Session& session, std::vector<Candidate> const& candidates, std::vector<std::vector<Mode>> const& modes,
-                         std::int64_t samples, std::uint64_t seed, SelectionReport& selection) {
+Polish polish_candidates(Session& session, std::vector<Candidate> const& candidates,
+                         std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
+                         SelectionReport& selection) {
   Polish polish;
   selection.polished.resize(candidates.size());
   selection.polished_draws.resize(candidates.size());
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     SelectedModel const& model = selection.result.models[k];
-    if (model.probability < worth_polishing) continue;
+    if (model.probability < worth_a_look) continue;
     auto const missed = [&](std::string const& why) {
       polish.findings.push_back({Severity::warning, "not_polished", fmt::format("`{}` was not polished: {}", model.name, why), ""});
     };
-    if (modes[k].empty()) {
+    if (posteriors[k].modes.empty()) {
       missed("no climb from its particles ends at a finite likelihood");
       continue;
     }
-    auto const target = likelihood_target(session, candidates[k]);
+    auto const target = likelihood_target(session, candidates[k], posteriors[k].solver);
     Ledger extra;
-    RunContext context{seed, session.progress, extra, [&] { return session.interrupted(); }, {}, 60, {}, modes[k], {}};
+    RunContext context{seed, session.progress, extra, [&] { return session.interrupted(); }, {}, 60, {}, posteriors[k].modes, {}};
     FitResult chains = mh::run(*target, settings_for(samples), context);
     if (chains.interrupted) {
       polish.interrupted = true;

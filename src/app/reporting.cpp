@@ -117,15 +117,25 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   for (ast::ModelStatement const& statement : flat->statements) {
     if (auto const* equation = std::get_if<ast::Equation>(&statement))
       if (written == nullptr || !within(equation->span, flat->span)) add(*equation);
+  }
+  report.priors = declared_priors(session, model_index);
+  return report;
+}
+
+std::vector<PriorInfo> declared_priors(Session const& session, int model_index) {
+  Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
+  std::vector<PriorInfo> priors;
+  ast::Model const* flat = find_model(session.file.tree, model.name);
+  if (flat == nullptr) return priors;
+  for (ast::ModelStatement const& statement : flat->statements) {
     auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement);
     if (parameter == nullptr || !parameter->prior) continue;
     for (Parameter const& checked : model.parameters)
       if (checked.name == parameter->name.name.text)
-        report.priors.push_back({checked.name, checked.unit_text(),
-                                 unparse(ast::Expression{{}, ast::Box<ast::Call>(*parameter->prior)}),
-                                 prior_density(checked, model)});
+        priors.push_back({checked.name, checked.unit_text(), unparse(ast::Expression{{}, ast::Box<ast::Call>(*parameter->prior)}),
+                          prior_density(checked, model)});
   }
-  return report;
+  return priors;
 }
 
 Severity failure_severity(std::uint64_t failed, std::uint64_t solves) {

@@ -11,6 +11,9 @@ namespace sysid {
 /// A report with everything known before the task has run.
 Report begin_report(Session const& session, Task const& task, int model, std::string what, std::uint64_t seed);
 
+/// The priors of a model as they stand in its text, in the order of its declarations.
+std::vector<PriorInfo> declared_priors(Session const& session, int model);
+
 /// What failed solves mean for a result: an error from 20 % on, a warning from 1 %, a note below.
 Severity failure_severity(std::uint64_t failed, std::uint64_t solves);
 

@@ -42,9 +42,14 @@ std::string without_tasks(Session const& session) {
   return unparse(*tree);
 }
 
+// A method whose accuracy the run chooses, with its work budget alone.
+std::string without_accuracy(SolverSettings const& solver) {
+  return solver.fixed_step() ? solver.method : fmt::format("{}(steps = {})", solver.method, solver.steps);
+}
+
 // What a fit says of its simulations.
-std::string simulation_text(Model const& model, FitTask const& what, SolverSettings const& solver) {
-  return fmt::format("start = {}{}{}", start_text(what.start), model.integrated() ? ", solver = " + solver.text() : std::string(),
+std::string simulation_text(Model const& model, FitTask const& what, std::string const& solver) {
+  return fmt::format("start = {}{}{}", start_text(what.start), model.integrated() ? ", solver = " + solver : std::string(),
                      what.prediction == PredictionRule::as_written
                          ? std::string()
                          : fmt::format(", prediction = {}", prediction_name(what.prediction)));
@@ -59,7 +64,7 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
       "{}, seed = {}\n",
       task.name, without_tasks(session), task.name, model.name, data_names(session.file, what.experiments),
-      settings_text(what.backend, settings), simulation_text(model, what, solver), seed);
+      settings_text(what.backend, settings), simulation_text(model, what, solver.text()), seed);
 }
 
 std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed) {
@@ -72,7 +77,9 @@ std::string resolved_select(Session const& session, Task const& task, SelectTask
       "distance = {}, weights({}), {}, seed = {}\n",
       task.name, without_tasks(session), task.name, session.file.candidates[static_cast<std::size_t>(what.candidates)].name,
       data_names(session.file, first.experiments), settings_text(what.backend, what.settings), what.distance.text, weights,
-      simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first, first.solver), seed);
+      simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first,
+                      first.settle ? without_accuracy(first.solver) : first.solver.text()),
+      seed);
 }
 
 std::string resolved_discover(Session const& session, Task const& task, DiscoverTask const& what, std::uint64_t seed) {

@@ -7,8 +7,8 @@
 
 #include "app/bands.hpp"
 #include "app/candidate.hpp"
+#include "app/candidate_posterior.hpp"
 #include "app/fit_target.hpp"
-#include "app/likelihood_check.hpp"
 #include "app/polish.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
@@ -16,6 +16,7 @@
 #include "app/results.hpp"
 #include "app/selection_checks.hpp"
 #include "app/session.hpp"
+#include "app/shared_parameters.hpp"
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
 #include "core/diagnostic.hpp"
@@ -91,61 +92,8 @@ class Select {
     }
   }
 
-  // --- what the likelihood says
-  // -------------------------------------------------------------------------------------------------
-
-  /// Modes of each candidate's likelihood near its particles.
-  std::vector<std::vector<Mode>> find_modes(SelectionResult const& result) {
-    std::vector<std::vector<Mode>> modes;
-    Ledger extra;
-    session_.progress.begin("the likelihood's side", candidates_.size());
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      modes.push_back(modes_near(*likelihood_target(session_, candidates_[k]), result.models[k], seed_, extra));
-      session_.progress.advance(k + 1, result.models[k].name);
-    }
-    session_.progress.end();
-    return modes;
-  }
-
   // --- the end
   // --------------------------------------------------------------------------------------------------------------------
-
-  /// Rows of the models that a shared name stands for: itself, or one for each experiment.
-  std::vector<std::string> shared_rows() const {
-    std::vector<std::string> names;
-    for (std::string const& name : set_.shared)
-      for (Candidate const& each : candidates_)
-        for (ParameterInfo const& info : each.simulated->infos())
-          if ((info.name == name || info.name.starts_with(name + "[")) &&
-              std::find(names.begin(), names.end(), info.name) == names.end())
-            names.push_back(info.name);
-    return names;
-  }
-
-  /// Parameters that mean the same in all models, over the particles of all of them.
-  std::vector<WeightedSummary> shared(SelectionResult const& result) const {
-    std::vector<WeightedSummary> summaries;
-    for (std::string const& name : shared_rows()) {
-      std::vector<double> values, weights;
-      std::string unit;
-      double total = 0;
-      for (SelectedModel const& model : result.models) {
-        if (model.died_in > 0) continue;
-        for (std::size_t d = 0; d < model.parameters.size(); ++d) {
-          if (model.parameters[d].name != name) continue;
-          unit = model.parameters[d].unit;
-          for (std::size_t j = 0; j < model.weight.size(); ++j) {
-            values.push_back(model.declared(static_cast<int>(d), static_cast<int>(j)));
-            weights.push_back(model.weight[j] * model.probability);
-            total += weights.back();
-          }
-        }
-      }
-      for (double& w : weights) w /= total;
-      if (total > 0) summaries.push_back(summarise_weighted(name, unit, values, weights));
-    }
-    return summaries;
-  }
 
   /// Bands of the leading model's particles over the fitted rows.
   void add_predictions(SelectionReport const& selection, Report& report) const {
@@ -182,7 +130,7 @@ class Select {
     selection.distance = what_.distance.text.empty() ? "nmse" : what_.distance.text;
     selection.likelihoods.resize(candidates_.size());
     selection.resampling_seed = seed_;
-    selection.shared = shared(selection.result);
+    summarise_shared(session_, set_, candidates_, selection);
     Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
     Report report = begin_report(
         session_, task_, leading.fit->model,
@@ -190,19 +138,25 @@ class Select {
     for (ExperimentData const& each : first.data) report.data.push_back(describe_data(session_.file, each, first.compiled->model));
     report.priors = priors_of(*leading.space, report.priors);
     report.findings = selection.result.findings;
+    std::vector<CandidatePosterior> posteriors;
+    if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
+      auto found = candidate_posteriors(session_, candidates_, selection.result, seed_);
+      interrupted = !found;
+      if (found) posteriors = std::move(*found);
+    }
     bool const checked = !interrupted && what_.settings.flag("cross_check"),
                polished = !interrupted && what_.settings.flag("polish");
-    std::vector<std::vector<Mode>> modes;
-    if (checked || polished) modes = find_modes(selection.result);
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
-    if (checked) add_likelihoods(candidates_, modes, selection, report.findings);
+    if (checked) add_likelihoods(candidates_, posteriors, selection, report.findings);
     if (!interrupted) {
-      add(add_noise_floor(session_, candidates_, target, modes, selection));
+      add(solver_findings(candidates_, posteriors));
+      add(add_noise_floor(session_, candidates_, target, posteriors, selection));
       if (leading.compiled->model.integrated() && std::isfinite(selection.result.threshold))
         add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver));
     }
     if (polished) {
-      Polish polish = polish_candidates(session_, candidates_, modes, what_.settings.integer("polish_samples"), seed_, selection);
+      Polish polish =
+          polish_candidates(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
       add(polish.findings);
       interrupted = polish.interrupted;
     }

@@ -10,7 +10,6 @@
 
 #include "app/fit_target.hpp"
 #include "app/likelihood_check.hpp"
-#include "core/elementary.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/number.hpp"
 
@@ -22,24 +21,6 @@ constexpr double far_above_floor = 1.15;
 
 /// A finer solver may move the median distance by this part of the threshold.
 constexpr double tolerable_shift = 0.05;
-
-/// What a density of one candidate's declared units gains in those of the first candidate: the logarithm of the ratio of units, for
-/// every sample.
-double unit_term(Candidate const& candidate, Candidate const& first) {
-  double term = 0;
-  for (Channel const& channel : candidate.compiled->model.channels) {
-    auto const& others = first.compiled->model.channels;
-    auto const same = std::find_if(others.begin(), others.end(), [&](Channel const& each) { return each.name == channel.name; });
-    if (same == others.end() || !channel.unit || !same->unit || channel.unit->scale == same->unit->scale) continue;
-    auto const c = static_cast<std::size_t>(&channel - candidate.compiled->model.channels.data());
-    double samples = 0;
-    for (ExperimentData const& each : candidate.data)
-      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
-        samples += each.experiment.scored[i] != 0 && std::isfinite(each.experiment.measured[c][i]) ? 1 : 0;
-    term += samples * elementary::log(same->unit->scale / channel.unit->scale);
-  }
-  return term;
-}
 
 /// What noise leaves of a candidate's distance at one of its parameter vectors (declared); nothing but for normal noise.
 struct Floor {
@@ -90,32 +71,17 @@ void confirm_deaths(SelectionReport& selection, Findings& findings) {
 
 }  // namespace
 
-void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<std::vector<Mode>> const& modes,
+void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<CandidatePosterior> const& posteriors,
                      SelectionReport& selection, Findings& findings) {
-  std::vector<double> logs;
-  double highest = -std::numeric_limits<double>::infinity(), total = 0;
-  for (std::size_t k = 0; k < modes.size(); ++k) {
-    logs.push_back(log_evidence(modes[k]) + unit_term(candidates[k], candidates.front()));
-    highest = std::max(highest, logs[k] + elementary::log(selection.result.models[k].prior));
-  }
-  if (!std::isfinite(highest)) return;
-  std::vector<std::optional<double>> probabilities(logs.size());
-  for (std::size_t k = 0; k < logs.size(); ++k) {
-    if (!std::isfinite(logs[k])) continue;  // nothing was found, which says nothing
-    probabilities[k] = elementary::exp(logs[k] + elementary::log(selection.result.models[k].prior) - highest);
-    total += *probabilities[k];
-  }
-  for (std::size_t k = 0; k < logs.size(); ++k) {
-    if (!probabilities[k]) continue;
-    *probabilities[k] /= total;
-    selection.likelihoods[k] = LikelihoodCheck{logs[k], *probabilities[k]};
-  }
+  selection.likelihoods = evidences(candidates, posteriors, selection.result);
   confirm_deaths(selection, findings);
+  std::vector<std::optional<double>> probabilities;
+  for (auto const& check : selection.likelihoods) probabilities.push_back(check ? std::optional(check->probability) : std::nullopt);
   for (Finding& finding : compare_probabilities(selection.result, probabilities)) findings.push_back(std::move(finding));
 }
 
 Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
-                         std::vector<std::vector<Mode>> const& modes, SelectionReport& selection) {
+                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection) {
   auto const lead = static_cast<std::size_t>(selection.leader());
   bool const stated = candidates[lead].space->dimension() == candidates[lead].simulated->dimension();
   std::optional<Floor> lowest;
@@ -126,10 +92,10 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
     lowest = floor_at(session, candidates[lead], target.distance(static_cast<int>(lead)), declared);
   }
   // A model that cannot follow the data takes its misfit for noise: the one that needs the least is nearest to the truth.
-  for (std::size_t k = 0; !stated && k < modes.size(); ++k) {
-    if (modes[k].empty()) continue;
+  for (std::size_t k = 0; !stated && k < posteriors.size(); ++k) {
+    if (posteriors[k].modes.empty()) continue;
     LaneArray declared(candidates[k].space->dimension(), 1);
-    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = modes[k].front().declared[static_cast<std::size_t>(d)];
+    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = posteriors[k].modes.front().declared[static_cast<std::size_t>(d)];
     auto const floor = floor_at(session, candidates[k], target.distance(static_cast<int>(k)), declared);
     if (floor && (!lowest || floor->distance < lowest->distance)) lowest = floor;
   }

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "app/candidate.hpp"
+#include "app/candidate_posterior.hpp"
 #include "likelihood/model_selection_target.hpp"
 #include "report/selection.hpp"
 
@@ -11,13 +11,13 @@ namespace sysid {
 
 /// Laplace's model probabilities from the modes of each candidate's likelihood, densities in the units of the first candidate;
 /// names the worst difference from the particles', and takes back the warning of a death by chance that the likelihood confirms.
-void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<std::vector<Mode>> const& modes,
+void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<CandidatePosterior> const& posteriors,
                      SelectionReport& selection, Findings& findings);
 
 /// What noise leaves of the distance: the noise that the leading model states, or where a prior leaves that open the smallest one
 /// that any candidate's mode has found. Normal noise only.
 Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
-                         std::vector<std::vector<Mode>> const& modes, SelectionReport& selection);
+                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection);
 
 /// Particles of a model once more with the next finer solver: their distances must not be those of the integrator.
 Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver);

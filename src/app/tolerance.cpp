@@ -81,6 +81,18 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
   return result;
 }
 
+namespace {
+
+/// By the most that one of weight does.
+double largest_move(std::vector<Mode> const& modes, std::vector<Mode> const& finer) {
+  double most = 0;
+  for (std::size_t m = 0; m < finer.size(); ++m)
+    if (m == 0 || modes[m].share > of_weight) most = std::max(most, largest_move(finer[m], modes[m]).size);
+  return most;
+}
+
+}  // namespace
+
 SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
                             std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
   SettledSolver result;
@@ -88,11 +100,8 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
   result.modes = std::move(modes);
   while (!stop || !stop()) {
     std::vector<Mode> finer = refit(*make(result.solver.finer()), aim, result.modes, seed, ledger, stop);
-    double move = 0;
-    for (std::size_t m = 0; m < finer.size(); ++m)
-      if (m == 0 || result.modes[m].share > of_weight) move = std::max(move, largest_move(finer[m], result.modes[m]).size);
-    result.moves.push_back(move);
-    if (move <= tolerable_move) break;
+    result.moves.push_back(largest_move(result.modes, finer));
+    if (result.moves.back() <= tolerable_move) break;
     if (too_fine(result.solver.finer())) {
       result.settled = false;
       break;
@@ -101,6 +110,10 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
     result.modes = merged(finer);
   }
   return result;
+}
+
+double move_to_finer(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
+  return largest_move(modes, refit(fine, aim, modes, seed, ledger));
 }
 
 Findings check_modes(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver,

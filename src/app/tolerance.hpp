@@ -34,6 +34,9 @@ struct SettledSolver {
 SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
                             std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {});
 
+/// How far the weightiest of `modes` moves on `fine` [sd], infinite where it is not finite there.
+double move_to_finer(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger);
+
 /// The same question of a solver that the task states: do the modes keep place and width with the finer one, of which `fine` is
 /// made, and do they stay apart? Rough steps make false modes and false curvature.
 Findings check_modes(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver,

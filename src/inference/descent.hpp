@@ -15,6 +15,7 @@ struct Climber {
   double damping = 1e-2;
   Eigen::MatrixXd curvature;  // Gauss-Newton plus the prior's, at the point before the last step; empty before the first
   bool done = false;          // no further step is worth taking, or none is possible
+  int hits = 1;               // searches that it stands for
 };
 
 Climber climber_at(Eigen::VectorXd theta, double log_density);

@@ -75,11 +75,10 @@ Spectrum spectrum_of(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& sc
     if (curvature(i, i) > 0) unit(i) = std::min(scale(i), 1 / std::sqrt(curvature(i, i)));
   auto [values, vectors] = symmetric_eigen(unit.asDiagonal() * curvature * unit.asDiagonal());
   Spectrum spectrum{unit, std::move(values), std::move(vectors), {}};
-  constexpr double longest = 10;   // prior widths
   constexpr double noise = 1e-11;  // what rounding leaves in second differences
   for (Eigen::Index k = 0; k < unit.size(); ++k) {
     double const length = spectrum.vectors.col(k).cwiseProduct(unit).cwiseQuotient(scale).norm();
-    double const least = std::max(length * length / (longest * longest), noise);
+    double const least = std::max(length * length / (longest_width * longest_width), noise);
     if (spectrum.values(k) >= least) continue;
     spectrum.flat.push_back(k);
     spectrum.values(k) = std::max(std::fabs(spectrum.values(k)), least);

@@ -7,6 +7,9 @@
 
 namespace sysid {
 
+/// Prior widths: no direction of a mode is taken for longer.
+constexpr double longest_width = 10;
+
 /// Climbs the last step from `theta` and returns the mode with
 ///
 ///   log mass = log density + P/2 log 2 pi - 1/2 log det H,   H = -second derivatives of the log density          MacKay 2003, ch.

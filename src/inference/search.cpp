@@ -12,6 +12,7 @@
 #include "inference/descent.hpp"
 #include "inference/identifiability.hpp"
 #include "inference/laplace.hpp"
+#include "inference/local_searches.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
@@ -22,22 +23,10 @@ constexpr std::size_t likeliest = 96, others = 32;
 constexpr int early_rounds = 6, late_rounds = 100, usual_rounds = 15;
 constexpr std::size_t finalists = 16;
 constexpr int most_passes = 4;
-constexpr double near = 0.05;      // prior widths: finalists closer than this search the same basin
-constexpr double negligible = 30;  // nats below the best optimum
-constexpr std::size_t most_modes = 12;
 constexpr double notable_share = 0.01;
 
 // Steps of Purpose::start: streams of different uses never meet.
 constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_step = 1'000'000;
-
-double gap(Objective const& objective, Eigen::VectorXd const& a, Eigen::VectorXd const& b) {
-  return (a - b).cwiseQuotient(objective.scale).cwiseAbs().maxCoeff();
-}
-
-void sort_best_first(std::vector<Climber>& climbers) {
-  std::stable_sort(climbers.begin(), climbers.end(),
-                   [](Climber const& a, Climber const& b) { return a.log_density > b.log_density; });
-}
 
 /// The draws worth a local search: the likeliest, and the first of the rest.
 std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Ledger& ledger,
@@ -63,68 +52,13 @@ std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Cl
   sort_best_first(climbers);
   std::vector<Climber> chosen, rest;
   for (Climber& climber : climbers) {
-    bool const apart = std::none_of(chosen.begin(), chosen.end(),
-                                    [&](Climber const& other) { return gap(objective, climber.theta, other.theta) < near; });
+    bool const apart =
+        std::none_of(chosen.begin(), chosen.end(), [&](Climber const& other) { return in_one_basin(objective, climber, other); });
     (apart && chosen.size() < finalists ? chosen : rest).push_back(std::move(climber));
   }
   for (Climber& climber : rest)
     if (chosen.size() < finalists) chosen.push_back(std::move(climber));
   return chosen;
-}
-
-/// One local search stands for all that ended in the same place: near in prior widths, and within the Gauss-Newton ellipsoid, which
-/// alone may be far too wide where the likelihood is no sum of squares.
-struct Cluster {
-  Climber best;
-  int hits = 1;
-};
-
-std::vector<Cluster> cluster(Objective const& objective, std::vector<Climber> climbers) {
-  sort_best_first(climbers);
-  std::vector<Cluster> clusters;
-  for (Climber& climber : climbers) {
-    auto const same = [&](Cluster const& c) {
-      if (c.best.curvature.size() == 0 || gap(objective, climber.theta, c.best.theta) > near) return false;
-      Eigen::VectorXd const apart = climber.theta - c.best.theta;
-      return apart.dot(c.best.curvature * apart) < 1;
-    };
-    auto const found = std::find_if(clusters.begin(), clusters.end(), same);
-    if (found != clusters.end())
-      ++found->hits;
-    else
-      clusters.push_back({std::move(climber)});
-  }
-  return clusters;
-}
-
-std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, RunContext& context) {
-  std::vector<Mode> modes;
-  for (Cluster const& c : cluster(objective, std::move(climbers))) {
-    if (context.stop_requested() || modes.size() >= most_modes) break;
-    if (!modes.empty() && c.best.log_density < modes.front().log_density - negligible) break;
-    Eigen::MatrixXd const guess =
-        c.best.curvature.size() > 0 ? c.best.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
-    Mode mode = laplace_mode(objective, c.best.theta, guess, context.ledger);
-    mode.hits = c.hits;
-    auto const same = std::find_if(modes.begin(), modes.end(), [&](Mode const& other) { return distance(mode, other) < 0.5; });
-    if (same == modes.end()) {
-      modes.push_back(std::move(mode));
-    } else {
-      int const hits = same->hits + mode.hits;
-      if (mode.log_density > same->log_density) *same = std::move(mode);
-      same->hits = hits;
-    }
-  }
-  // What is asked for is the highest point, except by chains; how much lies around it is another question.
-  auto const rank = [&](Mode const& m) { return objective.aim == Aim::posterior ? m.log_mass : m.log_density; };
-  std::stable_sort(modes.begin(), modes.end(), [&](Mode const& a, Mode const& b) { return rank(a) > rank(b); });
-  // A likelihood has no mass.
-  auto const weight = [&](Mode const& m) { return objective.aim == Aim::likelihood ? m.log_density : m.log_mass; };
-  double heaviest = -std::numeric_limits<double>::infinity(), sum = 0;
-  for (Mode const& mode : modes) heaviest = std::max(heaviest, weight(mode));
-  for (Mode& mode : modes) sum += mode.share = elementary::exp(weight(mode) - heaviest);
-  for (Mode& mode : modes) mode.share /= sum;
-  return modes;
 }
 
 std::string describe(Target const& target, Mode const& mode) {
@@ -204,7 +138,7 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
     climb(*objective, last, late_rounds, context.ledger, stop);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
-    if (!ended.empty()) result.modes = modes_of(*objective, ended, context);
+    if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
     if (!result.modes.empty() && (result.modes.front().hits > 1 || ended.size() == 1)) break;
     expected = context.ledger.solves() - before + usual;
     context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, most_passes), expected);

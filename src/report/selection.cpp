@@ -63,9 +63,7 @@ ReportTable population_table(SelectionReport const& selection) {
   for (std::size_t t = 0; t < selection.result.populations.size(); ++t) {
     PopulationRecord const& record = selection.result.populations[t];
     table.rows.push_back({fmt::format("{}", t + 1), std::isfinite(record.threshold) ? significant(record.threshold, 4) : "none",
-                          fmt::format("{}", record.simulated),
-                          significant(static_cast<double>(record.accepted) / static_cast<double>(record.proposed), 2),
-                          significant(record.ess, 3)});
+                          fmt::format("{}", record.simulated), significant(record.acceptance(), 2), significant(record.ess, 3)});
     for (auto const& model : record.models)
       table.rows.back().push_back(model.particles == 0 ? "-" : probability_text(model.probability));
   }
@@ -90,6 +88,15 @@ ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
     add_row(table, as_summary(s, effective(model.weight)), polished ? "particles" : "");
   if (polished)
     for (Summary const& s : selection.polished[m]) add_row(table, s, "likelihood");
+  return table;
+}
+
+ReportTable shared_table(SelectionReport const& selection) {
+  ReportTable table{"shared parameters",
+                    "Averaged over the models that have them, by their probabilities.",
+                    {"", "unit", "mean", "sd", "q5", "median", "q95"},
+                    {}};
+  for (WeightedSummary const& s : selection.shared) add_row(table, as_summary(s, selection.result.populations.back().ess), "");
   return table;
 }
 
@@ -152,12 +159,10 @@ std::vector<ReportTable> selection_tables(SelectionReport const& selection) {
   for (std::size_t m = 0; m < selection.result.models.size(); ++m)
     if (selection.result.models[m].died_in == 0 && !selection.result.models[m].summaries.empty())
       tables.push_back(parameter_table(selection, m));
-  if (!selection.shared.empty()) {
-    ReportTable table{"shared parameters",
-                      "Averaged over the models that have them, by their probabilities.",
-                      {"", "unit", "mean", "sd", "q5", "median", "q95"},
-                      {}};
-    for (WeightedSummary const& s : selection.shared) add_row(table, as_summary(s, selection.result.populations.back().ess), "");
+  if (!selection.shared.empty()) tables.push_back(shared_table(selection));
+  if (!selection.shared_unmoved.empty()) {
+    ReportTable table{"shared parameters that stay at their priors", "", {"", "unit", "prior", "because"}, {}};
+    for (auto const& each : selection.shared_unmoved) table.rows.push_back({each.name, each.unit, each.prior, each.why});
     tables.push_back(std::move(table));
   }
   return tables;
@@ -173,9 +178,12 @@ nlohmann::ordered_json models_json(SelectionReport const& selection) {
              {"share", model.share},
              {"died_in_population", model.died_in > 0 ? Json(model.died_in) : Json(nullptr)}};
     if (model.died_in > 0) entry["died_by_chance"] = model.by_chance;
-    if (m < selection.likelihoods.size() && selection.likelihoods[m])
-      entry["laplace"] = {{"log_evidence", selection.likelihoods[m]->log_evidence},
-                          {"probability", selection.likelihoods[m]->probability}};
+    if (m < selection.likelihoods.size() && selection.likelihoods[m]) {
+      LikelihoodCheck const& check = *selection.likelihoods[m];
+      entry["laplace"] = {{"log_evidence", check.log_evidence}, {"probability", check.probability}};
+      if (!check.solver.empty()) entry["laplace"]["solver"] = check.solver;
+      if (check.given_up) entry["laplace"]["given_up"] = true;
+    }
     entry["parameters"] = Json::object();
     if (model.died_in > 0) continue;
     for (WeightedSummary const& s : model.summaries) entry["parameters"][s.name] = weighted_json(s);
@@ -202,6 +210,8 @@ nlohmann::ordered_json populations_json(SelectionReport const& selection) {
   out["stopped_by"] = selection.result.stopped_by;
   if (!selection.shared.empty())
     for (WeightedSummary const& s : selection.shared) out["shared"][s.name] = weighted_json(s);
+  for (auto const& each : selection.shared_unmoved)
+    out["shared"][each.name] = {{"unit", each.unit}, {"prior", each.prior}, {"because", each.why}};
   return out;
 }
 

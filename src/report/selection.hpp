@@ -17,6 +17,9 @@ struct ReportTable;
 struct LikelihoodCheck {
   double log_evidence = 0;  // Laplace's, all constants kept; -infinity: no finite optimum was found
   double probability = 0;   // among the models
+  std::string solver;       // "rk4(substeps = 2)": under which both are; empty where nothing is solved
+  bool given_up =
+      false;  // the climb to its mode, 30 nats and more below the most probable model: the evidence is where that was seen
 };
 
 struct SelectionReport {
@@ -28,6 +31,10 @@ struct SelectionReport {
   std::optional<double> floor;                              // what noise alone leaves of the distance
   std::string floor_words;                                  // of which noise
   std::vector<WeightedSummary> shared;                      // over all models that have them
+  struct Unmoved {
+    std::string name, unit, prior, why;  // "log_uniform(1e-7, 1e-3)"
+  };
+  std::vector<Unmoved> shared_unmoved;  // shared names that no particle has: their prior stands
   std::uint64_t resampling_seed = 0;
 
   /// The most probable model.

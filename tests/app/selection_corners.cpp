@@ -154,6 +154,84 @@ TEST_CASE("a model whose draws all diverge is named, and is not said to have a l
   CHECK(answer.model("boom").at("died_by_chance") == false);
   CHECK_FALSE(answer.model("boom").contains("laplace"));
   CHECK(answer.out.find("of the priors of `boom` did not stay finite") != std::string::npos);
+  // The first failures are traced to a place and a time; of the others nobody knows the time, and nobody reads a number for it.
+  json const& failures = answer.summary.at("ledger").at("failures");
+  int traced = 0, untold = 0;
+  for (json const& failure : failures) (failure.at("time").is_null() ? untold : traced) += failure.at("count").get<int>();
+  CHECK(traced == 8);
+  CHECK(untold > 8);
+  CHECK(answer.out.find("nan") == std::string::npos);
+  CHECK(read_file(line.results() / "answer/report.html").find("nan") == std::string::npos);
+}
+
+TEST_CASE("distances beyond the range of numbers are failed simulations: they set no threshold") {
+  // The mean of |r| 1e306 over 40 rows leaves the range for slopes above about 4.3, more than half of the prior.
+  Line const line(0.0, 0.0);
+  Answer const answer = line.run(
+      "model a { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
+      "answer = select a to line with abc_smc(particles = 200, populations = 5), distance = 1e306*abs(residual(d)), seed = 1");
+  CHECK(answer.has("failed_solves"));
+  CHECK(answer.summary.at("populations").at("count") == 5);
+  double const threshold = answer.summary.at("populations").at("threshold").get<double>();
+  CHECK(threshold < 1e306);
+  // |k - 2| mean(u) 1e306 within the threshold, mean(u) = 1.95: a uniform density about 2 with an sd of a 1/sqrt(3) of that.
+  json const& k = answer.model("a").at("parameters").at("k");
+  double const width = threshold / 1.95e306;
+  CHECK(std::abs(k.at("mean").get<double>() - 2) < width);
+  CHECK(k.at("sd").get<double>() == doctest::Approx(width / std::sqrt(3.0)).epsilon(0.2));
+}
+
+TEST_CASE("a model that fits exactly brings the threshold to zero, and the figure and the report bear it") {
+  Line const line(0.0, 0.0);
+  Answer const answer = line.run(
+      "model a { input u; parameter k = 2; observe d ~ normal(k*u, sd = 0.1) }\n"
+      "model b { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
+      "candidates both { a; b }\nanswer = select both to line with abc_smc(particles = 200), seed = 1");
+  CHECK(answer.summary.at("populations").at("threshold") == 0);
+  CHECK(answer.model("a").at("probability") == 1);
+  CHECK(answer.model("b").at("died_in_population").get<int>() == 2);
+  std::string const figure = read_file(line.results() / "answer/figures/populations.gnuplot");
+  CHECK(figure.find("$threshold") != std::string::npos);
+  CHECK(figure.find("inf") == std::string::npos);
+}
+
+TEST_CASE("the noise floor is that of the model that needs the least noise, whichever leads") {
+  // Stopped early, a constant leads: it has more of its prior within reach. It takes the slope for noise; the floor must not.
+  Line const line(0.1, 0.0);
+  auto const run = [&](std::string const& noise, std::string const& sd) {
+    return line.run(
+        "model constant { input u; parameter c ~ uniform(0, 8);" + noise + "; observe d ~ normal(c + 0*u, sd = " + sd +
+        ") }\nmodel sloped { input u; parameter c ~ uniform(-100, 100); parameter k ~ uniform(-50, 50);" + noise +
+        "; observe d ~ normal(c + k*u, sd = " + sd +
+        ") }\ncandidates both { constant; sloped }\nanswer = select both to line with abc_smc(particles = 300, target = "
+        "200), seed = 1");
+  };
+  // y = 2 t over 40 rows of 0.1: population variance 4 * 0.01 * (40^2 - 1)/12, plus the noise's.
+  double const floor = 100 * 0.01 / (0.04 * 1599 / 12 + 0.01);
+  Answer const open = run("parameter sigma ~ log_uniform(0.001, 100)", "sigma");
+  REQUIRE(open.model("constant").at("probability").get<double>() > 0.5);
+  // The variance of 40 samples' noise is known to sqrt(2/40).
+  double const found = open.summary.at("populations").at("noise_floor").get<double>();
+  CHECK(found == doctest::Approx(floor).epsilon(3 * std::sqrt(2.0 / 40)));
+  CHECK(open.has("threshold_above_noise"));
+  Answer const stated = run("parameter g ~ uniform(0, 1); derive h = g", "0.1");
+  REQUIRE(stated.model("constant").at("probability").get<double>() > 0.5);
+  CHECK(stated.summary.at("populations").at("noise_floor").get<double>() == doctest::Approx(floor).epsilon(0.05));
+}
+
+TEST_CASE("a shared parameter that only the noise reads is listed with its prior and the reason") {
+  Line const line(0.1, 0.5);
+  Answer const answer = line.run(
+      "model a { input u; parameter k ~ uniform(0, 10); parameter sigma ~ log_uniform(0.01, 0.5); observe d ~ normal(k*u, sd = "
+      "sigma) "
+      "}\nmodel b { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(0, 1); parameter sigma ~ log_uniform(0.01, 0.5)\n"
+      "observe d ~ normal(k*u + c, sd = sigma) }\ncandidates both { a; b; shared k, sigma }\n"
+      "answer = select both to line with abc_smc(particles = 200), seed = 1");
+  json const& shared = answer.summary.at("populations").at("shared");
+  CHECK(shared.at("k").contains("sd"));
+  CHECK(shared.at("sigma").at("prior") == "log_uniform(0.01, 0.5)");
+  CHECK(shared.at("sigma").at("because").get<std::string>().find("only the noise reads it") != std::string::npos);
+  CHECK(answer.out.find("log_uniform(0.01, 0.5)") != std::string::npos);
 }
 
 TEST_CASE("a derived quantity that reads the noise is left out, and said") {
@@ -209,4 +287,35 @@ TEST_CASE("what no setting reads, and a weight that no sample carries, are refus
   CHECK(code("answer = select a to line with abc_smc(neighbours = 7), seed = 1") == "E6203");
   CHECK(code("answer = select a to line with abc_smc(stay = 0.1), seed = 1") == "E6203");
   CHECK(code("answer = select a to two with abc_smc(particles = 50), weights(w = 3, d = 1), seed = 1") == "E6517");
+}
+
+TEST_CASE("without a cross-check nothing is said by likelihood, and with one the solver is named that it is said with") {
+  Line const line(0.1, 0.5);
+  std::string const text =
+      "model a { input u; state q; initial q = 0.5; parameter k ~ uniform(0, 10); q' = k; observe d ~ normal(q, sd = 0.1) }\n"
+      "answer = select a to line with abc_smc(particles = 200";
+  Answer const unchecked = line.run(text + ", cross_check = no), seed = 1");
+  CHECK_FALSE(unchecked.model("a").contains("laplace"));
+  CHECK(unchecked.model("a").at("probability") == 1);
+  // A straight line is exact in one step; nothing finer is taken.
+  Answer const checked = line.run(text + "), seed = 1");
+  CHECK(checked.model("a").at("laplace").at("solver") == "rk4(substeps = 1)");
+  CHECK_FALSE(checked.has("integration_step"));
+}
+
+TEST_CASE("a step that shapes the likelihood is made finer for it, and one that puts the particles off is named") {
+  // q'' = -w^2 q from 0 to 3.9 s in steps of 0.1 s: at w = 20 a step turns by 2 rad, far from what RK4 can follow.
+  Line const line(0.1, 0.0);
+  std::string const model =
+      "model a { input u; state q, v; initial q = 0, v = 0; parameter k ~ uniform(0, 10); parameter w ~ uniform(15, 25)\n"
+      "q' = v; v' = w^2*(k*u - q); observe d ~ normal(q, sd = 0.1) }\n"
+      "answer = select a to line with abc_smc(particles = 200)";
+  Answer const settled = line.run(model + ", seed = 1");
+  CHECK(settled.model("a").at("laplace").at("solver") != "rk4(substeps = 1)");
+  CHECK(settled.has("integration_step"));
+  Answer const stated = line.run(model + ", substeps = 1, seed = 1");
+  CHECK(stated.model("a").at("laplace").at("solver") == "rk4(substeps = 1)");
+  CHECK(stated.has("integration_step"));
+  Answer const fine = line.run(model + ", substeps = 32, seed = 1");
+  CHECK_FALSE(fine.has("integration_step"));
 }
