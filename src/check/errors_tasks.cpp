@@ -34,11 +34,11 @@ Diagnostic option_kind(Span span, std::string const& option, std::string const& 
 }
 
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most) {
-  std::string const range = most < 1e9      ? fmt::format("lie between {} and {}", least, most)
-                            : least > 1e-15 ? fmt::format("be at least {}", least)
-                            : least == 0    ? std::string("not be negative")
-                            : least > 0     ? std::string("be positive")
-                                            : std::string("be finite");
+  std::string const range = most < 1e9 || given > most ? fmt::format("lie between {} and {}", least, most)
+                            : least > 1e-15            ? fmt::format("be at least {}", least)
+                            : least == 0               ? std::string("not be negative")
+                            : least > 0                ? std::string("be positive")
+                                                       : std::string("be finite");
   return error("E6005", span, fmt::format("`{}` must {}, here it is {}", option, range, given), "correct the number");
 }
 
