@@ -9,8 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "inference/abc/settings.hpp"
-#include "inference/targets.hpp"
+#include "inference/selection_toys.hpp"
 
 using namespace sysid;
 
@@ -18,92 +17,11 @@ namespace {
 
 using testing::infinity;
 using testing::Prior;
+using testing::size_of_first;
+using testing::Toy;
+using testing::two_widths;
 
-/// Models of one or several parameters whose distance is a function of the declared values; NaN: the simulation failed.
-class Toy : public SelectionTarget {
- public:
-  using DistanceFunction = std::function<double(std::span<double const>)>;
-  struct OfModel {
-    std::string name;
-    double probability;
-    std::vector<Prior> priors;
-    DistanceFunction distance;
-  };
-  explicit Toy(std::vector<OfModel> models) : models_(std::move(models)) {
-    for (OfModel const& model : models_) {
-      infos_.emplace_back();
-      for (std::size_t p = 0; p < model.priors.size(); ++p)
-        infos_.back().push_back({"p" + std::to_string(p), "", -infinity, infinity});
-    }
-  }
-
-  int size() const override { return static_cast<int>(models_.size()); }
-  std::string const& name(int m) const override { return at(m).name; }
-  double prior_probability(int m) const override { return at(m).probability; }
-  std::span<ParameterInfo const> parameters(int m) const override { return infos_[static_cast<std::size_t>(m)]; }
-  void sample_prior(int m, StreamKey key, Lanes theta) const override {
-    for (int w = 0; w < theta.width(); ++w) {
-      Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
-      for (int p = 0; p < theta.rows(); ++p) theta(p, w) = prior(m, p).draw(stream);
-    }
-  }
-  void log_prior(int m, ConstLanes theta, std::span<double> out, bool jacobian) const override {
-    for (int w = 0; w < theta.width(); ++w) {
-      double sum = 0;
-      for (int p = 0; p < theta.rows(); ++p) {
-        sum += prior(m, p).log_density(prior(m, p).constrain(theta(p, w)));
-        if (jacobian) sum += prior(m, p).log_jacobian(theta(p, w));
-      }
-      out[static_cast<std::size_t>(w)] = sum;
-    }
-  }
-  void constrain(int m, ConstLanes theta, Lanes declared) const override {
-    for (int p = 0; p < theta.rows(); ++p)
-      for (int w = 0; w < theta.width(); ++w) declared(p, w) = prior(m, p).constrain(theta(p, w));
-  }
-  void unconstrain(int m, ConstLanes declared, Lanes theta) const override {
-    for (int p = 0; p < theta.rows(); ++p)
-      for (int w = 0; w < theta.width(); ++w) theta(p, w) = prior(m, p).unconstrain(declared(p, w));
-  }
-  void distances(std::span<Batch const> batches, double bound) const override {
-    for (Batch const& batch : batches) {
-      LaneArray declared(batch.theta.rows(), batch.theta.width());
-      constrain(batch.model, batch.theta, declared);
-      for (int w = 0; w < declared.width(); ++w) {
-        std::vector<double> values;
-        for (int p = 0; p < declared.rows(); ++p) values.push_back(declared(p, w));
-        double const distance = at(batch.model).distance(values);
-        auto const i = static_cast<std::size_t>(w);
-        batch.ending[i] = std::isnan(distance) ? Simulated::failed : distance <= bound ? Simulated::within : Simulated::beyond;
-        batch.distance[i] = batch.ending[i] == Simulated::within ? distance : infinity;
-      }
-    }
-  }
-  std::pair<std::string, double> failure(int, ConstLanes) const override { return {"the toy", 0.5}; }
-  void parallel(int tasks, std::function<void(int)> const& task) const override {
-    for (int t = tasks - 1; t >= 0; --t) task(t);  // their order must not matter
-  }
-
- private:
-  OfModel const& at(int m) const { return models_[static_cast<std::size_t>(m)]; }
-  Prior const& prior(int m, int p) const { return at(m).priors[static_cast<std::size_t>(p)]; }
-  std::vector<OfModel> models_;
-  std::vector<std::vector<ParameterInfo>> infos_;
-};
-
-double size_of_first(std::span<double const> values) { return std::fabs(values[0]); }
-
-/// theta ~ U(-1, 1) against theta ~ U(-10, 10), distance |theta|: below a threshold of 1 the first is ten times as probable, 10/11.
-Toy two_widths() {
-  return Toy(
-      {{"narrow", 0.5, {{Prior::uniform, -1, 1}}, size_of_first}, {"wide", 0.5, {{Prior::uniform, -10, 10}}, size_of_first}});
-}
-
-Settings with(std::initializer_list<std::pair<char const*, SettingValue>> values) {
-  Settings settings(abc::settings());
-  for (auto const& [name, value] : values) settings.set(name, value);
-  return settings;
-}
+Settings with(std::initializer_list<std::pair<char const*, SettingValue>> values) { return testing::abc_settings(values); }
 
 SelectionResult run(SelectionTarget const& toy, Settings const& settings, std::uint64_t seed = 1, Ledger* counts = nullptr) {
   SilentProgress silent;
@@ -338,6 +256,87 @@ TEST_CASE("an interrupted run goes on to the same bytes, within populations and 
   abc::run(toy, settings, first);
   RunContext other{6, silent, ledger, {}, {}, 60, stored, {}, {}};
   CHECK(abc::run(toy, settings, other).failure);
+}
+
+namespace {
+
+/// Knows what a run is doing: populations are announced, what lies between two of them is weighing.
+class Phase : public Progress {
+ public:
+  void begin(std::string_view, std::uint64_t) override { ++population, simulating = true; }
+  void advance(std::uint64_t, std::string_view) override {}
+  void end(bool) override { simulating = false; }
+  int population = 0;
+  bool simulating = false;
+};
+
+/// Stops a run at the first poll for which `now` says so, and goes on from what it leaves.
+struct Broken {
+  nlohmann::json checkpoint;
+  SelectionResult part, resumed;
+};
+Broken break_when(SelectionTarget const& toy, Settings const& settings, std::function<bool(Phase const&)> const& now) {
+  Broken broken;
+  Phase phase;
+  Ledger ledger;
+  RunContext first{
+      5,  phase, ledger, [&] { return now(phase); }, [&](nlohmann::json const& state) { broken.checkpoint = state; }, 1e9,
+      {}, {},    {}};
+  broken.part = abc::run(toy, settings, first);
+  SilentProgress silent;
+  Ledger again;
+  RunContext second{5, silent, again, {}, {}, 60, nlohmann::json::from_cbor(nlohmann::json::to_cbor(broken.checkpoint)), {}, {}};
+  broken.resumed = abc::run(toy, settings, second);
+  return broken;
+}
+
+void check_same(SelectionResult const& a, SelectionResult const& b) {
+  REQUIRE(a.populations.size() == b.populations.size());
+  CHECK(std::bit_cast<std::uint64_t>(a.threshold) == std::bit_cast<std::uint64_t>(b.threshold));
+  for (std::size_t m = 0; m < a.models.size(); ++m) {
+    CHECK(a.models[m].weight == b.models[m].weight);
+    CHECK(a.models[m].distance == b.models[m].distance);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a run interrupted while it weighs keeps the population that is full, and weighs it again") {
+  // One model, so that its 5000 particles are weighed in several pieces.
+  Toy const toy({{"narrow", 1, {{Prior::uniform, -1, 1}}, size_of_first}});
+  Settings const settings = with({{"particles", std::int64_t{5000}}, {"schedule", std::vector<double>{0.8, 0.3, 0.1}}});
+  SelectionResult const whole = run(toy, settings, 5);
+  Broken const broken = break_when(toy, settings, [](Phase const& phase) { return phase.population == 2 && !phase.simulating; });
+  CHECK(broken.part.interrupted);
+  CHECK(broken.part.populations.size() == 1);
+  REQUIRE(broken.checkpoint.is_object());
+  CHECK(broken.checkpoint.at("record").at("counts").at(3) == 5000);  // accepted of the second
+  check_same(broken.resumed, whole);
+}
+
+TEST_CASE("a run interrupted between populations keeps the last one") {
+  Toy const toy = two_widths();
+  Settings const settings = with({{"particles", std::int64_t{300}}, {"schedule", std::vector<double>{0.8, 0.3, 0.1}}});
+  SelectionResult const whole = run(toy, settings, 5);
+  Broken const broken = break_when(toy, settings, [](Phase const& phase) { return phase.population == 3; });
+  CHECK(broken.part.interrupted);
+  CHECK(broken.part.populations.size() == 2);
+  CHECK(broken.checkpoint.at("record").at("counts").at(3) == 0);
+  check_same(broken.resumed, whole);
+}
+
+TEST_CASE("a model that has died and then an interruption: its last particles and the reason come back") {
+  Toy const toy({{"near", 0.5, {{Prior::uniform, -1, 1}}, size_of_first},
+                 {"far", 0.5, {{Prior::uniform, -1, 1}}, [](std::span<double const> p) { return 0.5 + std::fabs(p[0]); }}});
+  Settings const settings = with({{"particles", std::int64_t{300}}, {"schedule", std::vector<double>{1, 0.4, 0.1}}});
+  SelectionResult const whole = run(toy, settings, 5);
+  REQUIRE(whole.models[1].died_in == 2);
+  REQUIRE(whole.models[1].weight.size() > 10);
+  Broken const broken = break_when(toy, settings, [](Phase const& phase) { return phase.population == 3; });
+  CHECK(broken.part.models[1].died_in == 2);
+  CHECK(broken.resumed.models[1].died_in == 2);
+  CHECK(broken.resumed.models[1].by_chance == whole.models[1].by_chance);
+  check_same(broken.resumed, whole);
 }
 
 TEST_CASE("systematic resampling gives each item its share, rounded up or down") {

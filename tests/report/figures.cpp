@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <regex>
 
 #include "example.hpp"
@@ -164,4 +165,39 @@ TEST_CASE("captions are prose: no names of our own stand in them") {
     CHECK_MESSAGE(figure.caption.find('_') == std::string::npos, figure.caption);
     CHECK_MESSAGE(figure.caption.ends_with('.'), figure.caption);
   }
+}
+
+TEST_CASE("thresholds of nothing and without end have no place on a logarithmic scale, the others keep theirs") {
+  SelectionReport selection;
+  selection.result.models.resize(2);
+  selection.result.models[0].name = "a";
+  selection.result.models[1].name = "b";
+  for (double const threshold : {std::numeric_limits<double>::infinity(), 10.0, 1.0, 0.0}) {
+    PopulationRecord record;
+    record.threshold = threshold;
+    record.models.resize(2);
+    record.models[0] = {10, 0, 5, 0.5, 0};
+    record.models[1] = {10, 0, 5, 0.5, 0};
+    selection.result.populations.push_back(record);
+  }
+  selection.floor = 0;
+  auto const block = [](std::string const& script) {
+    std::size_t const begin = script.find("$threshold << EOD\n") + 18;
+    std::string const rows = script.substr(begin, script.find("EOD", begin) - begin);
+    return std::count(rows.begin(), rows.end(), '\n');
+  };
+  plot::Figure const figure = population_figure(selection);
+  CHECK(block(figure.script) == 2);
+  for (char const* word : {"inf", "nan", "Dashed"}) {
+    CHECK(figure.script.find(word) == std::string::npos);
+    CHECK(figure.caption.find(word) == std::string::npos);
+  }
+  // The floor is drawn where there is one.
+  selection.floor = 0.5;
+  CHECK(population_figure(selection).caption.find("Dashed") != std::string::npos);
+  // Nothing but an exact fit: still a figure.
+  selection.result.populations.resize(1);
+  selection.result.populations[0].threshold = 0;
+  selection.floor.reset();
+  CHECK(population_figure(selection).script.find("inf") == std::string::npos);
 }
