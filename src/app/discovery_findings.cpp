@@ -34,6 +34,8 @@ constexpr Row rows[] = {
      "`candidates = yes` writes a model for each; a record of other amplitude may tell them apart"},
     {Kind::unexplained, Severity::warning, "unexplained_residual",
      "look for an input that was not recorded, a state that is missing, or add terms"},
+    {Kind::correlated, Severity::warning, "residual_correlated",
+     "take sds as too small and probabilities as too sure; a longer record, or the terms that are missing, may tell more"},
     {Kind::smoothed, Severity::note, "derivative_smoothed", "measure that derivative, or leave the term out, if it matters"},
     {Kind::missing, Severity::note, "windows_missing", ""},
     {Kind::no_convergence, Severity::warning, "selection_not_settled", "the dictionary may hold terms that stand for each other"},

@@ -15,6 +15,9 @@ class BandMatrix {
   double& operator()(int row, int column) { return entries_(row - column, column); }
   double operator()(int row, int column) const { return entries_(row - column, column); }
 
+  /// A += factor * other, of the same size and band.
+  void add(double factor, BandMatrix const& other) { entries_ += factor * other.entries_; }
+
   /// Replaces A by its Cholesky factor L, A = L L^T; false (and a spoilt matrix) when A is not positive definite.
   bool factor();
   /// L^-1 b in place, for each column; of a factored matrix.

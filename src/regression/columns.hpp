@@ -27,8 +27,12 @@ class Projection {
   /// As projected, in units of known side and terms; rows that the equation cannot use are left out.
   virtual Columns const& columns(int equation) const = 0;
   /// Rows multiplied so that their errors, at these coefficients [J], are independent and of sd 1 if the noise of the channels is
-  /// what it is taken to be; where a form knows no covariance, the columns themselves.
-  virtual Columns whitened(int equation, Eigen::VectorXd const& coefficients) const = 0;
+  /// what it is taken to be and the equation itself is off by white noise of sd `own` at a sample (in units of the known side);
+  /// where a form knows no covariance, the columns themselves.
+  virtual Columns whitened(int equation, Eigen::VectorXd const& coefficients, double own) const = 0;
+  /// By how much the equation itself is off beside the noise of the channels, as `own` above, by what is left at these
+  /// coefficients; 0 where the data do not ask for it or the form cannot say.
+  virtual double own_noise(int equation, Eigen::VectorXd const& coefficients) const = 0;
   /// How often whitening depends on coefficients and is worth repeating; 0: never.
   virtual int reweightings() const = 0;
   /// Whether the residual of `whitened` has sd 1 when the equation is right.

@@ -23,6 +23,7 @@ struct Concern {
     nearly_collinear,  // terms of a group that the data barely tell apart; value: condition index (Belsley et al. 1980)
     interchangeable,   // terms of which one is needed, but not which; value: probability that at least one is in
     unexplained,       // value: residual sd over that expected of the measurement noise: a forcing or a term is missing
+    correlated,        // value: how many rows are worth one independent one
     smoothed,          // terms that needed a smoothed derivative inside the weak form
     missing,           // value: share of windows lost to missing samples
     no_convergence,    // value: iterations

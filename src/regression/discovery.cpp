@@ -17,6 +17,9 @@ constexpr int most_choices = 5;
 /// Residual against noise from which on something is missing in the dictionary, and the least share that makes it worth a word.
 constexpr double unexplained_above = 2;
 constexpr double unexplained_share = 1e-3;
+/// Whitened residuals: over so many lags; chi^2 of as many degrees exceeds this once in a million; a row is worth less than half.
+constexpr Eigen::Index lags = 20;
+constexpr double far_from_white = 66, correlated_above = 2;
 
 LinearProblem problem_of(Equation const& equation, Columns const& columns, std::vector<int> const& usable) {
   LinearProblem problem;
@@ -126,15 +129,29 @@ class Finder {
     whitened_ = columns;
     if (projection_.reweightings() == 0) return select();
     // First with all terms, whose sum is well determined where single coefficients are not; then with those chosen.
-    whitened_ = projection_.whitened(index_, fitted(columns));
-    whitened_ = projection_.whitened(index_, fitted(whitened_));
-    Choice choice = select();
+    whitened_ = projection_.whitened(index_, fitted(columns), 0);
+    whitened_ = projection_.whitened(index_, fitted(whitened_), 0);
+    Choice choice = settled(select(), select, 0);
+    // What the channels' noise leaves over is asked of good coefficients: at poor ones all of the motion looks like an error.
+    double const own = projection_.own_noise(index_, weights_);
+    if (own > 0) {
+      whitened_ = projection_.whitened(index_, weights_, own);
+      choice = settled(select(), select, own);
+    }
+    found_.own_noise = own * choice.chosen.noise_sd;
+    return choice;
+  }
+
+  /// Choices and whitenings in turns until a support repeats.
+  template <class Select>
+  Choice settled(Choice choice, Select const& select, double own) {
+    auto const count = static_cast<Eigen::Index>(equation_.terms.size());
     for (int round = 0; round < most_choices; ++round) {
       std::vector<int> const before = choice.chosen.terms;
-      Eigen::VectorXd weights = spread(choice.chosen, usable_, count);
+      weights_ = spread(choice.chosen, usable_, count);
       for (int k = 0; k < projection_.reweightings(); ++k) {
-        whitened_ = projection_.whitened(index_, weights);
-        weights = spread(least_squares(problem_of(equation_, whitened_, usable_), before), usable_, count);
+        whitened_ = projection_.whitened(index_, weights_, own);
+        weights_ = spread(least_squares(problem_of(equation_, whitened_, usable_), before), usable_, count);
       }
       choice = select();
       if (choice.chosen.terms == before) break;
@@ -184,7 +201,14 @@ class Finder {
     }
     Concerns const near = near_dependence(equation_, whitened_, found_.chosen.terms);
     found_.concerns.insert(found_.concerns.end(), near.begin(), near.end());
-    if (projection_.calibrated()) judge_residual(whitened_residual, residual.norm() / known);
+    if (projection_.calibrated()) {
+      Columns const by_channels = found_.own_noise > 0 ? projection_.whitened(index_, weights_, 0) : whitened_;
+      Eigen::VectorXd against_noise = by_channels.known;
+      for (int const j : found_.chosen.terms)
+        against_noise -= found_.terms[static_cast<std::size_t>(j)].coefficient * by_channels.terms.col(j);
+      judge_residual(against_noise, residual.norm() / known);
+      judge_independence(whitened_residual);
+    }
     if (!choice.converged) {
       Concern concern{.kind = Concern::Kind::no_convergence, .value = static_cast<double>(choice.iterations)};
       concern.clause = fmt::format("the choice of terms had not settled after {} iterations", choice.iterations);
@@ -198,9 +222,28 @@ class Finder {
     if (found_.noise_ratio < unexplained_above || share < unexplained_share) return;
     Concern concern{.kind = Concern::Kind::unexplained, .value = found_.noise_ratio};
     concern.clause = fmt::format(
-        "what the terms leave unexplained is {:.3g} times what the measurement noise accounts for: a forcing or "
-        "a term is missing",
-        found_.noise_ratio);
+        "what the terms leave unexplained is {:.3g} times what the measurement noise accounts for: a forcing or a term is "
+        "missing{}",
+        found_.noise_ratio, found_.own_noise > 0 ? ", or a recorded input is noisy itself" : "");
+    found_.concerns.push_back(std::move(concern));
+  }
+
+  // Independent rows are what sds and probabilities count on.
+  void judge_independence(Eigen::VectorXd const& residual) {
+    Eigen::Index const rows = residual.size();
+    double const squares = residual.squaredNorm();
+    if (rows < 4 * lags || !(squares > 0)) return;
+    double sum = 0, portmanteau = 0;  // Ljung and Box 1978
+    for (Eigen::Index lag = 1; lag <= lags; ++lag) {
+      double const r = residual.head(rows - lag).dot(residual.tail(rows - lag)) / squares;
+      sum += r;
+      portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
+    }
+    double const worth = 1 + 2 * sum;
+    if (portmanteau < far_from_white || worth < correlated_above) return;
+    Concern concern{.kind = Concern::Kind::correlated, .value = worth};
+    concern.clause = fmt::format("what the terms leave is correlated from window to window: {} windows are worth about {:.0f}",
+                                 rows, static_cast<double>(rows) / worth);
     found_.concerns.push_back(std::move(concern));
   }
 
@@ -211,6 +254,7 @@ class Finder {
   FoundEquation found_;
   std::vector<int> usable_;
   Columns whitened_;
+  Eigen::VectorXd weights_;  // [J], those that whitened_ was last whitened with
 };
 
 }  // namespace

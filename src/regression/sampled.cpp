@@ -38,7 +38,8 @@ class SampledProjection : public Projection {
   }
 
   Columns const& columns(int equation) const override { return columns_[static_cast<std::size_t>(equation)]; }
-  Columns whitened(int equation, Eigen::VectorXd const&) const override { return columns(equation); }
+  Columns whitened(int equation, Eigen::VectorXd const&, double) const override { return columns(equation); }
+  double own_noise(int, Eigen::VectorXd const&) const override { return 0; }
   int reweightings() const override { return 0; }
   bool calibrated() const override { return false; }
   std::vector<double> const& noise_sd() const override { return noise_sd_; }

@@ -86,6 +86,26 @@ double fastest_period(std::span<double const> samples, double step) {
   return spectrum.length / static_cast<double>(std::max<std::size_t>(k, 1));
 }
 
+namespace {
+
+/// sd of white noise as the quietest band of the spectrum has it; infinite where there are too few samples for bands.
+double noise_of_quietest_band(std::span<double const> samples) {
+  constexpr std::size_t most_bands = 16, least_bands = 4, least_of_band = 64;  // a band's power is known to a sixth
+  Spectrum const of = spectrum_of(samples, 1);
+  std::size_t const bins = of.power.empty() ? 0 : of.power.size() - 1, bands = std::min(most_bands, bins / least_of_band);
+  double least = std::numeric_limits<double>::infinity();
+  if (bands < least_bands) return least;
+  std::size_t const width = bins / bands;
+  for (std::size_t b = 0; b < bands; ++b) {
+    double mean = 0;
+    for (std::size_t k = 0; k < width; ++k) mean += of.power[1 + b * width + k] / static_cast<double>(width);
+    least = std::min(least, mean);
+  }
+  return std::sqrt(least / (1.5 * static_cast<double>(samples.size())));  // 1.5: the mean square of the taper
+}
+
+}  // namespace
+
 std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Experiment const> experiments) {
   std::vector<double> sds;
   for (std::size_t c = 0; c < dictionary.channels.size(); ++c) {
@@ -99,7 +119,12 @@ std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Ex
         if (std::isfinite(value)) squares += value * value, ++count;
     }
     double const rms = count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
-    double const sd = dictionary.channels[c].noise_sd.value_or(differences.sd());
+    double estimated = differences.sd();
+    double quietest = std::numeric_limits<double>::infinity();
+    for (Experiment const& experiment : experiments) quietest = std::min(quietest, noise_of_quietest_band(experiment.measured[c]));
+    // Differences take fast motion for noise. The least of noisy estimates is low itself, so it must be far below to count.
+    if (quietest < estimated / 2) estimated = quietest;
+    double const sd = dictionary.channels[c].noise_sd.value_or(estimated);
     double const least = std::max(1e-9 * rms, std::numeric_limits<double>::min());
     sds.push_back(std::max(sd, least));
   }

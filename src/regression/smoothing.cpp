@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/elementary.hpp"
 #include "linear_algebra/decompositions.hpp"
@@ -13,7 +14,10 @@
 namespace sysid::regression {
 namespace {
 
-constexpr int reach = 2;  // a quintic B-spline is zero at integers three and more from its middle
+constexpr int most_degrees = 13;           // above the derivative
+constexpr double clear_of_noise = 8;       // a frequency without motion is above it by chance once in three thousand
+constexpr double distorted_at_most = 0.1;  // of the root mean square of a derivative
+constexpr int reach = 2;                   // a quintic B-spline is zero at integers three and more from its middle
 
 /// Derivatives of the cardinal quintic B-spline at -2..2.
 constexpr double b_spline[4][5] = {{1.0 / 120, 26.0 / 120, 66.0 / 120, 26.0 / 120, 1.0 / 120},
@@ -45,6 +49,37 @@ std::vector<double> savitzky_golay_weights(int half, int degree, int derivative)
   std::vector<double> weights;
   for (int i = 0; i < count; ++i) weights.push_back(factor * inverse(derivative, i));
   return weights;
+}
+
+int smoother_degree(Spectrum const& record, int half, int derivative, double noise_sd) {
+  double const noise_share = 2 * noise_sd * noise_sd / static_cast<double>(std::max<std::size_t>(record.size, 1));
+  int best = derivative + 2;
+  double least = std::numeric_limits<double>::infinity();
+  // A degree of the derivative's own parity adds nothing at the middle of a symmetric window.
+  for (int degree = derivative + 2; degree < 2 * half && degree <= derivative + most_degrees; degree += 2) {
+    std::vector<double> const weights = savitzky_golay_weights(half, degree, derivative);
+    double noise = 0, off = 0, motion = 0;
+    for (double const weight : weights) noise += noise_sd * noise_sd * weight * weight;
+    for (std::size_t k = 1; k < record.power.size(); ++k) {
+      double const power = record.power[k] - noise_share;
+      if (power < clear_of_noise * noise_share) continue;
+      double const angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(record.size);
+      // Even derivatives: real parts; odd ones: imaginary parts, i left out.
+      double gain = derivative % 2 == 0 ? weights[static_cast<std::size_t>(half)] : 0, ideal = 1;
+      for (int j = 1; j <= half; ++j)
+        gain += 2 * weights[static_cast<std::size_t>(half + j)] *
+                (derivative % 2 == 0 ? elementary::cos(angle * j) : elementary::sin(angle * j));
+      for (int d = 0; d < derivative; ++d) ideal *= angle;
+      if (derivative % 4 >= 2) ideal = -ideal;
+      off += power * (gain - ideal) * (gain - ideal);
+      motion += power * ideal * ideal;
+    }
+    if (off <= distorted_at_most * distorted_at_most * motion) return degree;
+    if (!(off + noise < least)) continue;
+    best = degree;
+    least = off + noise;
+  }
+  return best;
 }
 
 std::vector<double> filtered(std::span<double const> samples, std::span<double const> weights, double scale) {

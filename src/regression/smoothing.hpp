@@ -3,11 +3,19 @@
 #include <span>
 #include <vector>
 
+#include "regression/signals.hpp"
+
 namespace sysid::regression {
 
 /// Weights of samples -half..half for the derivative of given order, at the middle, of the polynomial of degree `degree` fitted to
 /// them by least squares (Savitzky and Golay 1964), for a step of 1. derivative <= degree <= 2 half.
 std::vector<double> savitzky_golay_weights(int half, int degree, int derivative);
+
+/// Degree of the local polynomial on 2 half + 1 samples for a derivative of a record: the lowest, from derivative + 2, that
+/// distorts it by no more than a tenth of its root mean square, distortion being the sum over frequencies clear of the noise of
+/// their power times |W(f) - (2 pi i f)^derivative|^2; where none does, the one off least, with the noise that it lets through,
+/// noise_sd^2 sum w^2.
+int smoother_degree(Spectrum const& record, int half, int derivative, double noise_sd);
 
 /// samples [N] under weights [2 half + 1], divided by `scale`; NaN within half of an end or of a NaN.
 std::vector<double> filtered(std::span<double const> samples, std::span<double const> weights, double scale);

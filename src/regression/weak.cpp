@@ -1,4 +1,4 @@
-// Windows, integrals per record, and their covariance.
+// Windows and integrals per record.
 #include "regression/weak.hpp"
 
 #include <fmt/format.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "regression/band_matrix.hpp"
 #include "regression/signals.hpp"
-#include "regression/weak_integrals.hpp"
+#include "regression/smoothing.hpp"
+#include "regression/weak_covariance.hpp"
 
 namespace sysid::regression::weak {
 namespace {
@@ -25,58 +25,12 @@ constexpr SettingRow rows[] = {
 
 constexpr int least_half_width = 10;
 
-/// One equation on one record.
-struct Block {
-  WeakIntegrals integrals;
-  Integrals known;
-  std::vector<Integrals> terms;
-};
-
 struct ProjectedEquation {
   Columns columns;
-  std::vector<Block> blocks;
+  std::vector<WeakBlock> blocks;
   std::vector<int> channels;  // that carry noise into it
   Concerns concerns;
 };
-
-/// C(w) of one block, factored; nothing when no sample enters it.
-std::optional<BandMatrix> factored_covariance(Block const& block, std::vector<int> const& channels,
-                                              std::vector<double> const& noise_sd, Eigen::VectorXd const& coefficients) {
-  Sensitivities sum = block.known.sensitivities;
-  for (std::size_t j = 0; j < block.terms.size(); ++j) {
-    double const w = coefficients(static_cast<Eigen::Index>(j));
-    if (w == 0) continue;  // a term left out may not be finite
-    for (auto const& [key, values] : block.terms[j].sensitivities) {
-      auto const [place, fresh] = sum.try_emplace(key, -w * values);
-      if (!fresh) place->second -= w * values;
-    }
-  }
-  std::vector<int> const& centres = block.integrals.windows().centres;
-  int const count = static_cast<int>(centres.size()), reach = block.integrals.reach();
-  int band = 0;
-  for (int k = 0, first = 0; k < count; ++k) {
-    while (centres[static_cast<std::size_t>(k)] - centres[static_cast<std::size_t>(first)] > 2 * reach) ++first;
-    band = std::max(band, k - first);
-  }
-  BandMatrix covariance(count, band);
-  for (int const channel : channels) {
-    Eigen::MatrixXd const gradient = noise_sd[static_cast<std::size_t>(channel)] * block.integrals.gradient(sum, channel);
-    for (int k = 0; k < count; ++k)
-      for (int l = std::max(0, k - band); l <= k; ++l) {
-        int const shift = centres[static_cast<std::size_t>(k)] - centres[static_cast<std::size_t>(l)];
-        int const common = 2 * reach + 1 - shift;
-        if (common > 0) covariance(k, l) += gradient.col(k).head(common).dot(gradient.col(l).tail(common));
-      }
-  }
-  double trace = 0;
-  for (int k = 0; k < count; ++k) trace += covariance(k, k);
-  if (!(trace > 0) || !std::isfinite(trace)) return std::nullopt;
-  for (double nugget = 1e-10;; nugget *= 100) {
-    BandMatrix factor = covariance;
-    for (int k = 0; k < count; ++k) factor(k, k) += nugget * trace / count;
-    if (factor.factor()) return factor;
-  }
-}
 
 class WeakProjection : public Projection {
  public:
@@ -96,22 +50,19 @@ class WeakProjection : public Projection {
   int half_width() const override { return half_width_; }
   Concerns const& concerns(int equation) const override { return equations_[static_cast<std::size_t>(equation)].concerns; }
 
-  Columns whitened(int equation, Eigen::VectorXd const& coefficients) const override {
-    ProjectedEquation const& projected = equations_[static_cast<std::size_t>(equation)];
-    Columns columns = projected.columns;
-    Eigen::Index first = 0;
-    for (Block const& block : projected.blocks) {
-      auto const count = static_cast<Eigen::Index>(block.integrals.windows().centres.size());
-      if (auto const factor = factored_covariance(block, projected.channels, noise_sd_, coefficients)) {
-        factor->solve_lower(columns.known.middleRows(first, count));
-        factor->solve_lower(columns.terms.middleRows(first, count));
-      }
-      first += count;
-    }
-    return columns;
+  Columns whitened(int equation, Eigen::VectorXd const& coefficients, double own) const override {
+    return covariance(equation, coefficients).whitened(columns(equation), own);
+  }
+  double own_noise(int equation, Eigen::VectorXd const& coefficients) const override {
+    return covariance(equation, coefficients).own_noise(columns(equation));
   }
 
  private:
+  WeakCovariance covariance(int equation, Eigen::VectorXd const& coefficients) const {
+    ProjectedEquation const& projected = equations_[static_cast<std::size_t>(equation)];
+    return {projected.blocks, projected.channels, noise_sd_, coefficients};
+  }
+
   int half_width(Experiment const& experiment, Settings const& settings, std::vector<int> const& channels, double step) {
     if (settings.integer("half_width") > 0) return static_cast<int>(settings.integer("half_width"));
     double period = std::numeric_limits<double>::infinity();
@@ -175,7 +126,9 @@ class WeakProjection : public Projection {
     windows.half = half_width(experiment, settings, projected.channels, windows.step);
     windows.smoother_half = smoothed ? std::max(4, windows.half / 2) : 0;
     half_width_ = std::max(half_width_, windows.half);
-    int const stride = settings.integer("step") > 0 ? static_cast<int>(settings.integer("step")) : std::max(1, windows.half / 6);
+    if (smoothed) choose_smoothers(experiment, projected.channels, windows);
+    int const stride =
+        settings.integer("step") > 0 ? static_cast<int>(settings.integer("step")) : std::max(1, (windows.half + 3) / 6);
     int const reach = windows.half + windows.smoother_half, count = static_cast<int>(experiment.time.size());
     // A window is lost when it touches a missing sample; rows kept aside are no loss.
     std::vector<int> const nothing;
@@ -202,13 +155,26 @@ class WeakProjection : public Projection {
     projected.blocks.push_back({std::move(integrals), std::move(known), std::move(terms)});
   }
 
+  void choose_smoothers(Experiment const& experiment, std::vector<int> const& channels, Windows& windows) const {
+    for (int const channel : channels) {
+      auto const c = static_cast<std::size_t>(channel);
+      int most = 0;
+      for (Symbol const& symbol : dictionary_.symbols)
+        if (symbol.kind == Symbol::Kind::state && base_channel(dictionary_, symbol.index, symbol.order) == channel)
+          most = std::max(most, symbol.order - dictionary_.channels[c].order);
+      Spectrum const record = spectrum(experiment.measured[c]);
+      for (int derivative = 1; derivative <= most; ++derivative)
+        windows.smoother_degree[{channel, derivative}] = smoother_degree(record, windows.smoother_half, derivative, noise_sd_[c]);
+    }
+  }
+
   void stack(Equation const& equation, ProjectedEquation& projected) {
     Eigen::Index count = 0;
-    for (Block const& block : projected.blocks) count += block.known.rows.size();
+    for (WeakBlock const& block : projected.blocks) count += block.known.rows.size();
     projected.columns.known.resize(count);
     projected.columns.terms.resize(count, static_cast<Eigen::Index>(equation.terms.size()));
     Eigen::Index first = 0;
-    for (Block const& block : projected.blocks) {
+    for (WeakBlock const& block : projected.blocks) {
       Eigen::Index const size = block.known.rows.size();
       projected.columns.known.segment(first, size) = block.known.rows;
       for (std::size_t j = 0; j < block.terms.size(); ++j)

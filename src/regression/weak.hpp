@@ -12,12 +12,8 @@ std::string refuse(Settings const& settings);
 
 /// Row k of an equation is integral phi_k (known - sum_j w_j term_j) dt with phi_k the bump of TestFunction, of integral 1, around
 /// a sample. Only measured samples enter a moved or potential piece (weak_pieces.hpp), so their noise passes linearly to first
-/// order, and the covariance of the rows is (Bortz, Messenger, Dukic 2023)
-///
-///   C(w) = sum_c sigma_c^2 G_c(w) G_c(w)^T,     G_c [K x N] = d residual / d sample of channel c
-///
-/// banded, since windows overlap; whitening multiplies by the inverse of its Cholesky factor. 1e-10 of its mean diagonal is added
-/// to the diagonal: what rounding and quadrature leave undecided.
+/// order, and the covariance of the rows is known (Bortz, Messenger, Dukic 2023): weak_covariance.hpp. It is banded, since windows
+/// overlap; whitening multiplies by the inverse of its Cholesky factor.
 std::unique_ptr<Projection> project(Dictionary const& dictionary, std::span<Experiment const> experiments,
                                     Settings const& settings);
 

@@ -26,7 +26,9 @@ WeakIntegrals::WeakIntegrals(Dictionary& dictionary, Experiment const& experimen
       experiment_(experiment),
       test_(test),
       windows_(std::move(windows)),
-      rows_(static_cast<int>(experiment.time.size())) {}
+      rows_(static_cast<int>(experiment.time.size())) {
+  test_weights(0);
+}
 
 std::vector<double> const& WeakIntegrals::samples(int channel) const {
   return experiment_.measured[static_cast<std::size_t>(channel)];
@@ -53,8 +55,8 @@ void WeakIntegrals::integrate(int order, Eigen::VectorXd const& values, Eigen::V
   }
 }
 
-std::vector<double> WeakIntegrals::smoother(int derivative) const {
-  return savitzky_golay_weights(windows_.smoother_half, derivative + 2, derivative);
+std::vector<double> WeakIntegrals::smoother(int channel, int derivative) const {
+  return savitzky_golay_weights(windows_.smoother_half, windows_.smoother_degree.at({channel, derivative}), derivative);
 }
 
 std::vector<double> const& WeakIntegrals::smoothed(int channel, int derivative) {
@@ -62,7 +64,7 @@ std::vector<double> const& WeakIntegrals::smoothed(int channel, int derivative) 
   if (values.empty()) {
     double scale = 1;
     for (int k = 0; k < derivative; ++k) scale *= windows_.step;
-    values = filtered(samples(channel), smoother(derivative), scale);
+    values = filtered(samples(channel), smoother(channel, derivative), scale);
   }
   return values;
 }
@@ -220,6 +222,13 @@ Integrals WeakIntegrals::of(std::vector<Piece> const& pieces) {
   return integrals;
 }
 
+Eigen::MatrixXd WeakIntegrals::known_gradient() const {
+  std::vector<double> const& weights = weights_.at(0);
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(2 * reach() + 1);
+  for (int i = -windows_.half; i <= windows_.half; ++i) column(i + reach()) = weights[static_cast<std::size_t>(i + windows_.half)];
+  return column.replicate(1, static_cast<Eigen::Index>(windows_.centres.size()));
+}
+
 Eigen::MatrixXd WeakIntegrals::gradient(Sensitivities const& sensitivities, int channel) const {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(2 * reach() + 1, static_cast<Eigen::Index>(windows_.centres.size()));
   for (auto const& [key, values] : sensitivities) {
@@ -227,7 +236,7 @@ Eigen::MatrixXd WeakIntegrals::gradient(Sensitivities const& sensitivities, int 
     std::vector<double> const& weights = weights_.at(key.order);
     std::vector<double> filter = {1.0};
     if (key.smoothed > 0) {
-      filter = smoother(key.smoothed);
+      filter = smoother(channel, key.smoothed);
       for (int k = 0; k < key.smoothed; ++k)
         for (double& weight : filter) weight /= windows_.step;
     }

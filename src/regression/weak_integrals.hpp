@@ -15,10 +15,11 @@ namespace sysid::regression {
 
 /// Where the test functions stand on a record, and what reads its samples.
 struct Windows {
-  std::vector<int> centres;  // [K] rows of the record, rising
-  int half = 0;              // samples
-  int smoother_half = 0;     // of the local polynomial behind smoothed derivatives; 0: none needed
-  double step = 0;           // s
+  std::vector<int> centres;                            // [K] rows of the record, rising
+  int half = 0;                                        // samples
+  int smoother_half = 0;                               // of the local polynomial behind smoothed derivatives; 0: none needed
+  std::map<std::pair<int, int>, int> smoother_degree;  // of it, by channel and derivative
+  double step = 0;                                     // s
 };
 
 /// d residual_k / d sample l = sum_i phi_k^(order)(t_i) s(i) dt * (i == l, or the smoother's weight of l for derivative
@@ -43,6 +44,8 @@ class WeakIntegrals {
   Integrals of(std::vector<Piece> const& pieces);
   /// G_c [2 reach + 1 x K] of combined sensitivities: column k holds samples centre - reach .. centre + reach.
   Eigen::MatrixXd gradient(Sensitivities const& sensitivities, int channel) const;
+  /// Likewise d known side / d its own value at the samples.
+  Eigen::MatrixXd known_gradient() const;
   /// half + smoother_half.
   int reach() const { return windows_.half + windows_.smoother_half; }
   Windows const& windows() const { return windows_; }
@@ -52,7 +55,7 @@ class WeakIntegrals {
   std::vector<double> const& test_weights(int order);
   void integrate(int order, Eigen::VectorXd const& values, Eigen::VectorXd& rows);
   std::vector<double> const& smoothed(int channel, int derivative);
-  std::vector<double> smoother(int derivative) const;
+  std::vector<double> smoother(int channel, int derivative) const;
   /// roots at the samples, inputs read from one side.
   Eigen::MatrixXd at_samples(std::span<NodeId const> roots, bool after);
   void add_inputs(Piece const& piece, Integrals& integrals);

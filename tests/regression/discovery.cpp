@@ -281,3 +281,37 @@ TEST_CASE("two terms of which one is needed, and no saying which, are a pair") {
   CHECK(pair.value > 0.99);
   CHECK(either.terms[2].measure + either.terms[11].measure == doctest::Approx(1).epsilon(0.05));
 }
+
+TEST_CASE("noise of the recorded force is told from noise of the displacement, and brings in no term") {
+  // Duffing's oscillator driven by one force, recorded with noise of 3 % of it.
+  int exact = 0;
+  double own = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Experiment experiment = duffing_record(seed, 2000, 0.002);
+    Stream noise({seed, Purpose::test, 0, 0});
+    std::vector<double> force;
+    for (int i = 0; i < 2000; ++i) force.push_back(experiment.inputs[0].sample(std::min(i, 1998)) + 0.3 * noise.normal());
+    experiment.inputs = {InputSignal(InputRule::zero_order, experiment.time, force)};
+    FoundEquation const found = duffing(experiment, method());
+    exact += kept(found) == Names{"y''", "y'", "y", "y^3"};
+    own += found.own_noise / 10;
+    CHECK_FALSE(has(found, Concern::Kind::correlated));
+  }
+  CHECK(exact >= 9);
+  // The force is held: what acts at a sample is the mean of two.
+  CHECK(own == doctest::Approx(0.3).epsilon(0.1));
+}
+
+TEST_CASE("an equation without an error of its own has none") {
+  int none = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) none += duffing(duffing_record(seed, 500, 0.01), method()).own_noise == 0;
+  CHECK(none >= 18);
+}
+
+TEST_CASE("what is left and is no noise is said to be worth fewer rows") {
+  // A slow force that nothing recorded, small against the noise of one sample.
+  Experiment experiment = duffing_record(1, 2000, 0.01);
+  for (std::size_t i = 0; i < experiment.time.size(); ++i) experiment.measured[0][i] += 2e-6 * std::sin(15 * experiment.time[i]);
+  CHECK(has(duffing(experiment, method()), Concern::Kind::correlated));
+  CHECK_FALSE(has(duffing(duffing_record(1, 2000, 0.01), method()), Concern::Kind::correlated));
+}
