@@ -170,6 +170,8 @@ class Discover {
     if (!found.found) return out;
     out.explained = found.explained;
     out.noise_ratio = found.noise_ratio;
+    out.unit = equation.unit ? equation.unit->text : "";
+    out.own_noise = found.own_noise / (equation.unit ? equation.unit->scale : 1);
     out.rows = found.rows;
     out.exact = found.exact;
     out.converged = found.converged;

@@ -18,6 +18,9 @@ using Json = nlohmann::ordered_json;
 ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation const& equation) {
   std::string title = fmt::format("terms of {}: {} {}", equation.target, equation.rows, discovery.windows ? "windows" : "samples");
   if (equation.noise_ratio > 0) title += fmt::format(", residual {} times the noise", significant(equation.noise_ratio, 3));
+  if (equation.own_noise > 0)
+    title += fmt::format(", off by {}{} at a sample by itself", significant(equation.own_noise, 3),
+                         equation.unit.empty() ? "" : " " + equation.unit);
   ReportTable table{std::move(title),
                     "Contribution: root mean square of the term with its coefficient over that of what is explained, as projected.",
                     {"term", "", "coefficient", "sd", "unit", discovery.measure, "contribution"},
@@ -116,6 +119,7 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
                                 {"rows", equation.rows},
                                 {"explained_of_projections", equation.explained},
                                 {"noise_ratio", equation.noise_ratio},
+                                {"own_noise", equation.own_noise},
                                 {"exact", equation.exact},
                                 {"converged", equation.converged},
                                 {"terms", std::move(terms)},

@@ -39,6 +39,8 @@ struct DiscoveredEquation {
   std::vector<DiscoveredSupport> supports;
   double explained = 0;    // share of the projections, not of the motion
   double noise_ratio = 0;  // residual over measurement noise; 0: not known
+  double own_noise = 0;    // sd, at a sample, of what the equation is off by itself; 0: none was found
+  std::string unit;        // of the target, in which own_noise is
   int rows = 0;
   bool exact = true, converged = true;
 };
