@@ -66,13 +66,14 @@ int size_of(Dimension const& dimension) {
 }
 
 // "N s/m" from a named unit above or below the bar and what is left.
-std::string joined(std::string_view symbol, int power, Dimension const& rest) {
+std::string joined(std::string_view name, int power, Dimension const& rest) {
+  std::string const symbol = std::string(name) + (std::abs(power) > 1 ? "^" + std::to_string(std::abs(power)) : "");
   std::string const base = format_dimension(rest);
   std::string above = base.substr(0, base.find('/')),
               below = base.find('/') == std::string::npos ? "" : base.substr(base.find('/') + 1);
-  if (power > 0) return std::string(symbol) + (above == "1" ? "" : " " + above) + (below.empty() ? "" : "/" + below);
+  if (power > 0) return symbol + (above == "1" ? "" : " " + above) + (below.empty() ? "" : "/" + below);
   if (!below.empty() && below.front() == '(') below = below.substr(1, below.size() - 2);
-  return above + "/" + (below.empty() ? std::string(symbol) : "(" + std::string(symbol) + " " + below + ")");
+  return above + "/" + (below.empty() ? symbol : "(" + symbol + " " + below + ")");
 }
 
 std::string short_dimension(Dimension const& dimension, UnitNames const& in_use) {
@@ -82,14 +83,16 @@ std::string short_dimension(Dimension const& dimension, UnitNames const& in_use)
   // Who writes newtons reads "N s/m" more easily than "kg/s".
   int size = size_of(dimension) + (in_use.contains("N") && dimension[second].numerator != 0 ? 3 : 0);
   for (Named const& named : named_units)
-    for (int const power : {1, -1}) {
+    for (int const power : {1, -1, 2, -2, 3, -3, 4, -4}) {
       if (!named.in_products || !in_use.contains(named.symbol)) continue;
-      Dimension const unit = power > 0 ? named.exponents.dimension() : inverse(named.exponents.dimension());
-      Dimension const rest = quotient(dimension, unit);
+      Dimension rest = dimension;
+      for (int k = 0; k < std::abs(power); ++k)
+        rest = quotient(rest, power > 0 ? named.exponents.dimension() : inverse(named.exponents.dimension()));
       // A newton stands for the kilogram in it: m/s^2 is not N/kg.
       bool const brings_mass = std::abs(rest[kilogram].numerator) > std::abs(dimension[kilogram].numerator);
-      if (brings_mass || 2 + size_of(rest) >= size) continue;
-      size = 2 + size_of(rest);
+      int const length = 1 + std::abs(power) + size_of(rest);
+      if (brings_mass || length >= size) continue;
+      size = length;
       text = joined(named.symbol, power, rest);
     }
   return text;
