@@ -29,7 +29,7 @@ std::optional<double> uniform_step(Experiment const& experiment);
 /// weights is 924); 0 when there is no such run. A signal that moves from sample to sample counts as noise.
 double estimated_noise(std::span<double const> samples);
 
-/// The period [s] below which 95 % of the power about the mean lies;
+/// The period [s] below which 95 % of the power about the mean lies (Hann taper; missing samples bridged by straight lines);
 /// infinite for a constant.
 double fastest_period(std::span<double const> samples, double step);
 
