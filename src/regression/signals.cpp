@@ -101,7 +101,7 @@ double noise_of_quietest_band(std::span<double const> samples) {
     for (std::size_t k = 0; k < width; ++k) mean += of.power[1 + b * width + k] / static_cast<double>(width);
     least = std::min(least, mean);
   }
-  return std::sqrt(least / (1.5 * static_cast<double>(samples.size())));  // 1.5: the mean square of the taper
+  return std::sqrt(least * static_cast<double>(of.size) / 2);
 }
 
 }  // namespace

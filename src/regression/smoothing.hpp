@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "regression/signals.hpp"
+#include "regression/spectrum.hpp"
 
 namespace sysid::regression {
 

@@ -39,11 +39,12 @@ Spectrum spectrum_of(std::span<double const> samples, double step) {
   }
   Fourier(size).to_reversed(re, im);
   int const bits = std::countr_zero(size);
-  Spectrum out{std::vector<double>(size / 2 + 1), static_cast<double>(size) * step};
+  Spectrum out{std::vector<double>(size / 2 + 1), size, static_cast<double>(size) * step};
+  double const share = 2 / (1.5 * static_cast<double>(size) * static_cast<double>(n));  // 1.5: the mean square of the taper
   for (std::size_t k = 0; k < out.power.size(); ++k) {
     std::size_t reversed = 0;
     for (int b = 0; b < bits; ++b) reversed |= ((k >> b) & 1) << (bits - 1 - b);
-    out.power[k] = re[reversed] * re[reversed] + im[reversed] * im[reversed];
+    out.power[k] = share * (re[reversed] * re[reversed] + im[reversed] * im[reversed]);
   }
   return out;
 }

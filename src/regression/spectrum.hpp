@@ -5,9 +5,11 @@
 
 namespace sysid::regression {
 
-/// Power about the mean under a Hann taper, missing samples bridged by straight lines.
+/// Mean squares about the mean by frequency, under a Hann taper, missing samples bridged by straight lines; white noise of sd s has
+/// 2 s^2/size at each.
 struct Spectrum {
   std::vector<double> power;  // at k/length, k = 0, 1, ...; empty for a constant
+  std::size_t size = 0;       // samples, zeros behind the record counted
   double length = 0;          // [s], the record's with zeros behind it
 };
 /// samples: [N], equal steps [s].

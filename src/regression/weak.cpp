@@ -162,7 +162,7 @@ class WeakProjection : public Projection {
       for (Symbol const& symbol : dictionary_.symbols)
         if (symbol.kind == Symbol::Kind::state && base_channel(dictionary_, symbol.index, symbol.order) == channel)
           most = std::max(most, symbol.order - dictionary_.channels[c].order);
-      Spectrum const record = spectrum(experiment.measured[c]);
+      Spectrum const record = spectrum_of(experiment.measured[c], 1);
       for (int derivative = 1; derivative <= most; ++derivative)
         windows.smoother_degree[{channel, derivative}] = smoother_degree(record, windows.smoother_half, derivative, noise_sd_[c]);
     }
