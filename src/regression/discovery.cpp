@@ -78,7 +78,8 @@ class Finder {
     if (any_fatal(found_.concerns)) return std::move(found_);
     Columns const& columns = projection_.columns(index_);
     found_.rows = static_cast<int>(columns.known.size());
-    if (found_.rows > 0) {
+    // Columns with fewer rows than there are terms always depend on each other, which says nothing of the terms.
+    if (found_.rows >= static_cast<int>(equation_.terms.size())) {
       Usable usable = independent_terms(equation_, columns);
       usable_ = std::move(usable.terms);
       found_.concerns.insert(found_.concerns.end(), usable.concerns.begin(), usable.concerns.end());
@@ -93,9 +94,9 @@ class Finder {
  private:
   bool enough(Columns const& columns) {
     Concern concern;
-    if (found_.rows <= 2 * static_cast<int>(usable_.size()) || found_.rows == 0) {
-      // Without rows nothing is known of the terms: all of them count.
-      std::size_t const terms = found_.rows == 0 ? equation_.terms.size() : usable_.size();
+    bool const looked_at = found_.rows >= static_cast<int>(equation_.terms.size());
+    std::size_t const terms = looked_at ? usable_.size() : equation_.terms.size();
+    if (found_.rows <= 2 * static_cast<int>(terms)) {
       int const half = projection_.half_width();
       concern.kind = Concern::Kind::too_few_rows;
       concern.value = found_.rows;
