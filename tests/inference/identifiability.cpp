@@ -1,8 +1,8 @@
 // Slopes of functions whose derivatives are known, and null spaces of matrices made to have them.
 #include "inference/identifiability.hpp"
 
-#include <Eigen/Dense>
 #include <doctest/doctest.h>
+#include <Eigen/Dense>
 
 #include <cmath>
 
