@@ -54,6 +54,12 @@ void settle(Session& session, Candidate const& candidate, std::uint64_t seed, Ca
   SettledSolver settled = settle_solver(make, Aim::posterior, candidate.fit->solver, std::move(posterior.modes), seed, extra,
                                         [&] { return session.interrupted(); });
   posterior.modes = std::move(settled.modes);
+  // A place that only a coarse solver could reach is none; what is left is weighed as the finer one has it.
+  std::erase_if(posterior.modes, [](Mode const& mode) { return !std::isfinite(mode.log_density); });
+  std::stable_sort(posterior.modes.begin(), posterior.modes.end(),
+                   [](Mode const& a, Mode const& b) { return a.log_mass > b.log_mass; });
+  double const evidence = log_evidence(posterior.modes);
+  for (Mode& mode : posterior.modes) mode.share = elementary::exp(mode.log_mass - evidence);
   posterior.solver = settled.solver;
   posterior.settled = settled.settled;
   if (!settled.moves.empty()) posterior.move = settled.moves.front();
@@ -88,7 +94,8 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
   for (std::size_t k = 0; k < candidates.size();) {
     auto const checks = evidences(candidates, posteriors, result);
     bool const worth = result.models[k].probability >= worth_a_look || (checks[k] && checks[k]->probability >= worth_a_look);
-    if (looked_at[k] || !worth) {
+    // What was given up lies too far below for a finer solver to matter, and has no mode to follow.
+    if (looked_at[k] || !worth || posteriors[k].given_up) {
       ++k;
       continue;
     }
