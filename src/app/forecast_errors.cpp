@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "likelihood/shooting.hpp"
+#include "likelihood/segment_starts.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {

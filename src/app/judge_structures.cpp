@@ -1,7 +1,6 @@
 // Fits, ranks, scores, describes.
 #include "app/judge_structures.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,12 +14,20 @@
 #include "app/structure_fits.hpp"
 #include "core/elementary.hpp"
 #include "core/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr int draws = 50;
+
+/// R of R R^T = covariance: by eigenvalues where rounding has left one below zero.
+Eigen::MatrixXd root_of(Eigen::MatrixXd const& covariance) {
+  if (auto lower = cholesky(covariance)) return std::move(*lower);
+  auto const [values, vectors] = symmetric_eigen(covariance);
+  return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
 
 class Judge {
  public:
@@ -125,7 +132,7 @@ class Judge {
     JudgedModel const& model = models_[m];
     Eigen::Index const k = fit.point.coefficients.size();
     auto const parameters = static_cast<int>(model.others.size());
-    Eigen::MatrixXd const root = fit.covariance.llt().matrixL();
+    Eigen::MatrixXd const root = root_of(fit.covariance);
     LaneArray out(model.compiled->parameter_rows(), draws);
     for (int w = 0; w < draws; ++w) {
       Stream stream({source_.seed, Purpose::selection, static_cast<std::uint64_t>(w), 0});

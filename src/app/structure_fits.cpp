@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "likelihood/segment_starts.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {

@@ -1,10 +1,10 @@
 #include "gaussian_process/linear_mean.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
 #include "core/elementary.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::gaussian_process {
 namespace {
@@ -38,8 +38,8 @@ LinearMean::LinearMean(Observations const& observations, Eigen::MatrixXd const& 
       } else {
         sum += 0.5 * elementary::log(2 * std::numbers::pi);
       }
-    Eigen::HouseholderQR<Eigen::MatrixXd> const factored(over);
-    triangle = factored.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+    OrthogonalTriangular const factored(over);
+    triangle = factored.triangle();
     for (Eigen::Index j = 0; j < count; ++j) {
       double const own = std::fabs(triangle(j, j));
       if (!(own > dependence * over.col(j).norm())) {
@@ -50,7 +50,7 @@ LinearMean::LinearMean(Observations const& observations, Eigen::MatrixXd const& 
     }
     Eigen::VectorXd response = Eigen::VectorXd::Zero(rows + count);
     response.head(rows) = residual;
-    Eigen::VectorXd const turned = (factored.householderQ().adjoint() * response).head(count);
+    Eigen::VectorXd const turned = factored.turned(response).topRows(count);
     shift = triangle.triangularView<Eigen::Upper>().solve(turned);
     basis = triangle.transpose().triangularView<Eigen::Lower>().solve(whitened.rightCols(count).transpose()).transpose();
     residual -= whitened.rightCols(count) * shift;
@@ -65,8 +65,7 @@ LinearMean::LinearMean(Observations const& observations, Eigen::MatrixXd const& 
 
 Coefficients LinearMean::coefficients(Observations const& observations) const {
   if (shift.size() == 0) return {};
-  Eigen::MatrixXd const inverse =
-      triangle.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
+  Eigen::MatrixXd const inverse = solve_upper(triangle, Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
   return {observations.prior_mean + shift, inverse * inverse.transpose()};
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "likelihood/segments.hpp"
@@ -44,10 +43,5 @@ struct ShootingFit {
 /// the outputs by 1e-6 of their sd (1e-4 with adaptive solvers). Start states are eliminated segment by segment by QR, damping
 /// after Marquardt (1963).
 ShootingFit fit_by_shooting(SegmentSimulation const& simulation, ShootingPoint from, ShootingOptions const& options = {});
-
-/// Start states alone, coefficients as they are, each segment for itself: its own damping, its own end. A segment from whose start
-/// nothing finite comes keeps it.
-void fit_starts(SegmentSimulation const& simulation, ShootingPoint& point, std::span<double const> noise_sd,
-                std::function<bool()> const& interrupted = {});
 
 }  // namespace sysid

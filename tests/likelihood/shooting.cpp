@@ -10,6 +10,7 @@
 
 #include "check/checking.hpp"
 #include "core/random.hpp"
+#include "likelihood/segment_starts.hpp"
 #include "simulate/thread_pool.hpp"
 
 using namespace sysid;
