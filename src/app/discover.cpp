@@ -11,6 +11,7 @@
 #include "app/found_model.hpp"
 #include "app/found_source.hpp"
 #include "app/judge_structures.hpp"
+#include "app/judged_findings.hpp"
 #include "app/kept_aside.hpp"
 #include "app/left_out.hpp"
 #include "app/pipeline.hpp"
@@ -99,6 +100,7 @@ class Discover {
     DiscoveryReport discovery = described(found, selector);
     add_findings(found, report.findings);
     if (judgement) {
+      temper_by_simulation(judgement->report, report.findings);
       report.findings.insert(report.findings.end(), judgement->findings.begin(), judgement->findings.end());
       discovery.judged = std::move(judgement->report);
     }
@@ -221,20 +223,33 @@ class Discover {
       }
   }
 
-  // Written only when the program takes it: a structure may be no model that can be simulated.
+  // Written are structures that the program takes, one after the other: one may be no model that can be simulated.
   void add_source(FoundSource const& source, std::vector<FoundStructure> const& structures, DiscoveryReport& discovery,
                   Findings& findings) const {
-    if (structures.empty()) return;
-    std::string text = source.text(structures);
-    Source read((session_.result_folder(task_) / "found.sysid").string(), text);
-    Diagnostics diagnostics;
-    if (load(read, diagnostics)) {
-      discovery.source = std::move(text);
-      return;
+    std::vector<FoundStructure> written;
+    std::vector<std::string> left_out;
+    for (FoundStructure const& each : structures) {
+      written.push_back(each);
+      std::string text = source.text(written);
+      Source read((session_.result_folder(task_) / "found.sysid").string(), text);
+      Diagnostics diagnostics;
+      if (load(read, diagnostics)) {
+        discovery.source = std::move(text);
+        continue;
+      }
+      written.pop_back();
+      left_out.push_back(fmt::format("`{}` ({})", structure_text(dictionary_, each), diagnostics.all().front().message));
     }
-    findings.push_back({Severity::warning, "equation_no_model",
-                        fmt::format("what was found is no model that can be simulated: {}", diagnostics.all().front().message),
-                        "a model needs as many equations as states, each with a derivative in it"});
+    if (left_out.empty()) return;
+    std::string const help = "a model needs as many equations as states, each with a derivative in it";
+    if (written.empty())
+      findings.push_back(
+          {Severity::warning, "equation_no_model", "what was found is no model that can be simulated: " + left_out.front(), help});
+    else
+      findings.push_back({Severity::warning, "candidates_left_out",
+                          fmt::format("`found.sysid` holds {} of {} structures; no model that can be simulated: {}", written.size(),
+                                      structures.size(), fmt::join(left_out, ", ")),
+                          help});
   }
 
   Session& session_;

@@ -11,7 +11,6 @@
 namespace sysid {
 namespace {
 
-constexpr int most_origins = 200;    // of an experiment
 constexpr double lost = 0.4;         // of the sd
 constexpr double bound_factor = 10;  // half ranges
 
@@ -61,6 +60,20 @@ class Forecasts {
   std::vector<SegmentSlopes> runs_;
 };
 
+/// Whether the `window` rows from `first` on hold half as many samples of each channel as such windows hold on average: a start may
+/// be read off them.
+bool shows_start(Experiment const& experiment, int first, int window) {
+  for (std::vector<double> const& channel : experiment.measured) {
+    auto const samples = [](auto from, auto to) {
+      return static_cast<double>(std::count_if(from, to, [](double y) { return std::isfinite(y); }));
+    };
+    if (channel.empty()) continue;
+    double const average = samples(channel.begin(), channel.end()) * window / static_cast<double>(channel.size());
+    if (samples(channel.begin() + first, channel.begin() + first + window) < average / 2) return false;
+  }
+  return true;
+}
+
 std::vector<double> sds_of(std::span<Experiment const> experiments, std::size_t channels) {
   std::vector<double> sds;
   for (std::size_t c = 0; c < channels; ++c) {
@@ -84,13 +97,16 @@ ForecastErrors forecast_errors(JudgedModel const& model, Eigen::VectorXd const& 
   int const window = settings.window, horizon = settings.horizon;
   std::vector<Segment> segments, whole;
   for (int e = 0; e < static_cast<int>(experiments.size()); ++e) {
-    int const rows = static_cast<int>(experiments[static_cast<std::size_t>(e)].time.size());
-    int const places = rows - window - horizon + 1, origins = std::min(places, most_origins);
+    Experiment const& experiment = experiments[static_cast<std::size_t>(e)];
+    int const rows = static_cast<int>(experiment.time.size());
+    int const places = rows - window - horizon + 1, origins = std::min(places, settings.origins);
     for (int o = 0; o < origins; ++o) {
       int const first = origins == 1 ? 0 : static_cast<int>(static_cast<std::int64_t>(o) * (places - 1) / (origins - 1));
-      segments.push_back({e, first, window + horizon});
+      if (shows_start(experiment, first, window)) segments.push_back({e, first, window + horizon});
     }
-    whole.push_back({e, 0, rows});
+    int begin = 0;
+    while (begin < places && !shows_start(experiment, begin, window)) ++begin;
+    if (begin < places) whole.push_back({e, begin, rows - begin});
   }
   ForecastErrors out;
   out.sd = sds_of(experiments, channels);
@@ -106,7 +122,8 @@ ForecastErrors forecast_errors(JudgedModel const& model, Eigen::VectorXd const& 
     }
   Forecasts const free_runs(model, coefficients, noise_sd, experiments, guess, settings, whole);
   for (std::size_t s = 0; s < whole.size(); ++s) {
-    std::vector<double> const& time = experiments[s].time;
+    std::span<double const> const time = std::span(experiments[static_cast<std::size_t>(whole[s].experiment)].time)
+                                             .subspan(static_cast<std::size_t>(whole[s].first));
     bool followed = true;
     for (int i = window; i < whole[s].count; ++i)
       for (std::size_t c = 0; c < channels; ++c) {

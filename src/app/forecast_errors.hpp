@@ -12,6 +12,7 @@ namespace sysid {
 struct ForecastSettings {
   int window = 0;   // rows from which a start is estimated, coefficients held
   int horizon = 0;  // k
+  int origins = 0;  // rows of each experiment that forecasts begin at, at most
   SolverSettings solver;
   ExecutionOptions execution;
   std::shared_ptr<ThreadPool> pool;
@@ -26,9 +27,9 @@ struct ForecastErrors {
                        // length where none is
 };
 
-/// From at most 200 rows of each experiment, evenly spread, whose start is estimated from the window that ends there; the free run
-/// from the end of the first window to the last row. experiments: as the model reads them, each with more rows than window +
-/// horizon; guess: of the same ones.
+/// From `origins` rows of each experiment, evenly spread, whose start is estimated from the window that ends there; the free run
+/// from the end of the first window to the last row. Windows that hold less than half their share of samples show no start and are
+/// left out. experiments: as the model reads them, each with more rows than window + horizon; guess: of the same ones.
 ForecastErrors forecast_errors(JudgedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
                                std::span<Experiment const> experiments, StartGuess& guess, ForecastSettings const& settings);
 

@@ -20,8 +20,8 @@ namespace {
 constexpr double prior_width = 10;
 /// And never narrower than this part of the coefficient: what the form of derivatives may be wrong by.
 constexpr double least_width = 0.1;
-/// Either way from the noise that the regression took.
-constexpr double noise_factor = 10;
+/// Either way from the noise that the regression took; upwards as many times what the equation leaves at least, where that is more.
+constexpr double noise_factor = 10, residual_factor = 3;
 
 // "4.979e9".
 std::string plain(std::string text) {
@@ -293,6 +293,12 @@ class ModelText {
     return out;
   }
 
+  double residual_over_noise() const {
+    double most = 0;
+    for (regression::FoundEquation const& each : source_.discovery.equations) most = std::max(most, each.noise_ratio);
+    return most;
+  }
+
   std::string observations() {
     std::string parameters, observed;
     for (std::size_t c = 0; c < dictionary().measured.channels.size(); ++c) {
@@ -303,7 +309,7 @@ class ModelText {
       std::string const name = fresh("noise_" + identifier(channel.name), taken_);
       double sd = source_.discovery.noise_sd.size() > c ? source_.discovery.noise_sd[c] : 0;
       double const size = motion_of(source_.data, c, 0).size[0];
-      double low = sd / noise_factor, high = sd * noise_factor;
+      double low = sd / noise_factor, high = sd * std::max(noise_factor, residual_factor * residual_over_noise());
       if (!(sd > 1e-9 * size)) low = 1e-9 * size, high = size;
       parameters += fmt::format("parameter {}{} ~ log_uniform({}, {})\n", name, in_brackets(channel.unit_text()),
                                 rounded(from_si(channel.unit, low)), rounded(from_si(channel.unit, high)));

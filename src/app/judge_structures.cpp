@@ -20,7 +20,8 @@
 namespace sysid {
 namespace {
 
-constexpr int draws = 50;
+constexpr int draws = 50, draws_one_by_one = 10;
+constexpr int origins = 200, origins_one_by_one = 20;  // of forecasts, in each experiment
 
 /// R of R R^T = covariance: by eigenvalues where rounding has left one below zero.
 Eigen::MatrixXd root_of(Eigen::MatrixXd const& covariance) {
@@ -111,7 +112,10 @@ class Judge {
     return own;
   }
 
-  ForecastSettings forecast(std::size_t m) const { return {rows_.window, rows_.horizon, fits_->solver(m), execution_, pool_}; }
+  int draws_of(std::size_t m) const { return fits_->one_by_one(m) ? draws_one_by_one : draws; }
+  ForecastSettings forecast(std::size_t m) const {
+    return {rows_.window, rows_.horizon, fits_->one_by_one(m) ? origins_one_by_one : origins, fits_->solver(m), execution_, pool_};
+  }
 
   // With coefficients of rows that are not scored.
   void score() {
@@ -133,8 +137,8 @@ class Judge {
     Eigen::Index const k = fit.point.coefficients.size();
     auto const parameters = static_cast<int>(model.others.size());
     Eigen::MatrixXd const root = root_of(fit.covariance);
-    LaneArray out(model.compiled->parameter_rows(), draws);
-    for (int w = 0; w < draws; ++w) {
+    LaneArray out(model.compiled->parameter_rows(), draws_of(m));
+    for (int w = 0; w < out.width(); ++w) {
       Stream stream({source_.seed, Purpose::selection, static_cast<std::uint64_t>(w), 0});
       Eigen::VectorXd normal(k);
       for (Eigen::Index j = 0; j < k; ++j) normal(j) = stream.normal();
@@ -170,13 +174,14 @@ class Judge {
     out.terms = structure_text(dictionary_, structures_[m]);
     out.of_regression = static_cast<int>(m) + 1;
     out.failure = fits_ ? fits_->failure(m) : models_[m].failure;
+    out.given_up = fits_ && fits_->given_up(m);
     if (!out.failure.empty()) return out;
     ShootingFit const& fit = fits_->fit(m);
     Scored const& scored = scored_[m];
     out.log_evidence = fit.log_evidence;
     out.log_prior = log_prior(m);
     out.probability = scored.probability;
-    out.draws = draws;
+    out.draws = draws_of(m);
     out.bounded = scored.bounded;
     out.follows = scored.errors.follows;
     std::vector<std::vector<PrintedTerm>> printed(dictionary_.equations.size());

@@ -14,9 +14,19 @@ namespace {
 constexpr int least_rows = 12;     // of a window or segment
 constexpr int rows_per_state = 4;  // the same
 constexpr int most_window = 200;
-constexpr int windows_aside = 3;  // that rows must hold to be scored
+constexpr int windows_aside = 3;   // that rows must hold to be scored
+constexpr int least_origins = 10;  // that forecasts of the horizon begin at
 
 int rows_in(Experiment const& experiment) { return static_cast<int>(experiment.time.size()); }
+
+/// Samples of the channel that has most of them in the last `last` rows.
+int samples_in(Experiment const& experiment, int last) {
+  std::ptrdiff_t most = 0;
+  for (std::vector<double> const& channel : experiment.measured)
+    if (!channel.empty())
+      most = std::max(most, std::count_if(channel.end() - last, channel.end(), [](double y) { return std::isfinite(y); }));
+  return static_cast<int>(most);
+}
 
 double dominant_period_of(std::vector<Experiment> const& records, double step) {
   std::vector<std::vector<double>> signals;
@@ -38,13 +48,14 @@ JudgedRows judged_rows(std::vector<ExperimentData> const& task, std::vector<Expe
   int const least_window = std::max(least_rows, rows_per_state * states), needed = windows_aside * least_window;
   rows.least = std::max({2 * half_width, rows.horizon / 4, least_window});
   for (ExperimentData const& each : unused)
-    if (rows_in(each.experiment) >= needed) rows.aside.push_back(each.experiment);
-  rows.cut = rows.aside.empty() && std::all_of(rows.records.begin(), rows.records.end(),
-                                               [&](Experiment const& each) { return rows_in(each) / 5 >= needed; });
+    if (samples_in(each.experiment, rows_in(each.experiment)) >= needed) rows.aside.push_back(each.experiment);
+  bool const unseen = !rows.aside.empty();
   for (Experiment const& each : rows.records) {
-    int const count = rows_in(each), last = rows.cut ? count / 5 : 0;
-    rows.ends.push_back(count - last);
-    if (rows.cut) rows.aside.push_back(rows_of(each, count - last, last));
+    int const count = rows_in(each), last = count / 5;
+    bool const cut = !unseen && samples_in(each, last) >= needed;
+    rows.ends.push_back(cut ? count - last : count);
+    if (cut) rows.aside.push_back(rows_of(each, count - last, last));
+    rows.cut = rows.cut || cut;
   }
   int shortest = std::numeric_limits<int>::max();
   for (Experiment const& each : rows.aside) {
@@ -53,7 +64,7 @@ JudgedRows judged_rows(std::vector<ExperimentData> const& task, std::vector<Expe
   }
   if (rows.aside.empty()) return rows;
   rows.window = std::clamp(rows.horizon, least_window, std::max(least_window, std::min(most_window, shortest / 4)));
-  rows.horizon = std::min(rows.horizon, shortest - rows.window - 1);
+  rows.horizon = std::min(rows.horizon, std::max(1, shortest - rows.window - least_origins));
   return rows;
 }
 

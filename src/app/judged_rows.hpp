@@ -13,7 +13,7 @@ struct JudgedRows {
   std::vector<Experiment> records;  // those of the task
   std::vector<Experiment> aside;    // those that are scored; may be empty
   std::vector<int> ends;            // of each record: its rows before those that are scored
-  bool cut = false;                 // those that are scored are the last fifths of the records
+  bool cut = false;                 // those that are scored are the last fifths of records, where these hold samples enough
   std::string aside_name;           // "bench.test", "the last fifth of bench"
   double step = 0;                  // [s] between rows
   int horizon = 1;                  // rows of one dominant period, as far as the scored rows allow

@@ -19,6 +19,12 @@ constexpr double enough_on_the_way = 1e-2;
 /// A finer solver is taken where it moves a coefficient by more than this many of its sds.
 constexpr double tolerable_move = 0.1;
 constexpr int most_refinements = 4;
+/// What solvers that take one simulation after the other may simulate, all structures together: 15 to 60 µs a row.
+constexpr double most_rows_one_by_one = 400'000;
+/// Steps of such a solver between two samples: a trial that needs more is lost, near values that do not solve the equation.
+constexpr int most_steps_one_by_one = 200;
+/// No refit takes fewer rounds.
+constexpr double least_rounds = 15;
 
 bool follows(ShootingFit const& before, ShootingFit const& after) {
   if (!after.finite || !after.converged) return false;
@@ -34,6 +40,10 @@ StructureFits::StructureFits(std::vector<JudgedModel> const& models, StartGuess&
   for (Experiment const& each : settings_.records)
     most_halvings_ = std::max(most_halvings_, halvings(static_cast<int>(each.time.size()), settings_.least));
   halved_ = most_halvings_;
+  spent_.assign(models_.size(), 0);
+  int sharing = 0;
+  for (std::size_t m = 0; m < models_.size(); ++m) sharing += one_by_one(m) ? 1 : 0;
+  allowance_ = most_rows_one_by_one / std::max(1, sharing);
 }
 
 void StructureFits::run() {
@@ -42,6 +52,8 @@ void StructureFits::run() {
 }
 
 std::string const& StructureFits::failure(std::size_t m) const {
+  static std::string const costs = "given up: an implicit equation, whose refit takes more simulations than are spent on such";
+  if (given_up(m)) return costs;
   return models_[m].failure.empty() ? fits_[m].failure : models_[m].failure;
 }
 
@@ -52,21 +64,50 @@ double StructureFits::log_posterior(std::size_t m) const {
 SolverSettings StructureFits::solver(std::size_t m) const {
   SolverSettings out = models_[m].solver;
   if (out.fixed_step()) out.substeps = std::max(out.substeps, substeps_);
+  if (one_by_one(m)) out.steps = std::min(out.steps, most_steps_one_by_one);
   return out;
 }
 
-SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> const& segments) const {
+// starts_alone: coefficients are held at the regression's.
+SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> const& segments, bool starts_alone) const {
+  JudgedModel const& model = models_[m];
   std::vector<Experiment> own;
-  for (Experiment const& each : settings_.records) own.push_back(models_[m].view(each));
-  return SegmentSimulation(
-      models_[m].compiled, own, segments,
-      {models_[m].fitted(), models_[m].others, 0, solver(m), settings_.execution, settings_.pool, models_[m].centres});
+  for (Experiment const& each : settings_.records) own.push_back(model.view(each));
+  SegmentSimulation::Settings settings{{}, model.others, 0, solver(m), settings_.execution, settings_.pool, model.centres};
+  if (starts_alone)
+    for (JudgedModel::Coefficient const& each : model.coefficients)
+      settings.others[static_cast<std::size_t>(each.parameter)] = each.value;
+  else
+    settings.fitted = model.fitted();
+  return SegmentSimulation(model.compiled, own, segments, std::move(settings));
 }
 
-ShootingOptions StructureFits::options(bool last) const {
+bool StructureFits::one_by_one(std::size_t m) const {
+  if (!models_[m].failure.empty()) return false;
+  Stepping const stepping = models_[m].solver.row().stepping;
+  return stepping == Stepping::cvode || stepping == Stepping::ida;
+}
+
+// The point and each perturbation simulate all rows.
+double StructureFits::rows_of_round(std::size_t m) const {
+  double rows = 0;
+  for (Experiment const& each : settings_.records) rows += static_cast<double>(each.time.size());
+  return rows * static_cast<double>(1 + models_[m].coefficients.size() + models_[m].states.size());
+}
+
+// Asked once a round.
+std::function<bool()> StructureFits::stop(std::size_t m) {
+  if (!one_by_one(m)) return settings_.interrupted;
+  return [this, m, rows = rows_of_round(m)] {
+    spent_[m] += rows;
+    return settings_.interrupted() || given_up(m);
+  };
+}
+
+ShootingOptions StructureFits::options(std::size_t m, bool last) {
   ShootingOptions out;
   if (!last) out.gain = enough_on_the_way;
-  out.interrupted = settings_.interrupted;
+  out.interrupted = stop(m);
   return out;
 }
 
@@ -82,18 +123,20 @@ ShootingFit StructureFits::fit_before(std::size_t m, std::vector<int> const& end
     parts.push_back(part);
   }
   point.starts.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(parts.size()));
-  return fit_by_shooting(simulation(m, parts), std::move(point), options(true));
+  return fit_by_shooting(simulation(m, parts), std::move(point), {.interrupted = settings_.interrupted});
 }
 
 // The shortest segments, from the regression's coefficients.
 void StructureFits::begin(std::size_t m) {
+  if (one_by_one(m) && least_rounds * rows_of_round(m) > allowance_) spent_[m] = 2 * allowance_;
+  if (given_up(m)) return;
   std::vector<Segment> const parts = segments(most_halvings_);
-  SegmentSimulation const simulated = simulation(m, parts);
-  ShootingPoint point{models_[m].of_regression(), models_[m].starts(parts, guess_)};
+  ShootingPoint point{Eigen::VectorXd(), models_[m].starts(parts, guess_)};
   std::vector<double> noise;
   for (std::size_t const c : models_[m].channels) noise.push_back(settings_.noise_sd[c]);
-  fit_starts(simulated, point, noise, settings_.interrupted);
-  fits_[m] = {most_halvings_, fit_by_shooting(simulated, std::move(point), options(most_halvings_ == 0)), {}};
+  fit_starts(simulation(m, parts, true), point, noise, stop(m));
+  point.coefficients = models_[m].of_regression();
+  fits_[m] = {most_halvings_, fit_by_shooting(simulation(m, parts), std::move(point), options(m, most_halvings_ == 0)), {}};
   if (!fits_[m].fit.finite) fits_[m].failure = "does not stay finite";
 }
 
@@ -109,11 +152,11 @@ ShootingPoint StructureFits::longer(Fitted const& from, std::vector<Segment> con
   return point;
 }
 
-StructureFits::Fitted StructureFits::at(std::size_t m, Fitted const& from, int halved, bool last) const {
+StructureFits::Fitted StructureFits::at(std::size_t m, Fitted const& from, int halved, bool last) {
   std::vector<Segment> const parts = segments(halved);
   Fitted out = from;
   out.halved = halved;
-  out.fit = fit_by_shooting(simulation(m, parts), longer(from, parts), options(last));
+  out.fit = fit_by_shooting(simulation(m, parts), longer(from, parts), options(m, last));
   return out;
 }
 
@@ -128,7 +171,7 @@ void StructureFits::climb_alone(std::size_t m) {
 
 /// To segments of that length, whether it follows or not.
 void StructureFits::climb_to(std::size_t m, int halved) {
-  while (fits_[m].failure.empty() && fits_[m].halved > halved && !settings_.interrupted()) {
+  while (judged(m) && fits_[m].halved > halved && !settings_.interrupted()) {
     Fitted next = at(m, fits_[m], fits_[m].halved - 1, false);
     if (!next.fit.finite)
       fits_[m].failure = "does not stay finite over segments of this length";

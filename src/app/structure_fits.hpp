@@ -22,7 +22,8 @@ struct StructureFitSettings {
 
 /// From the regression's coefficients over the shortest segments; then neighbours are joined as long as the structure that leads
 /// follows: its fit converges and no channel's residual sd grows by more than half. The first one leads, then the best by log
-/// posterior; the others are taken along. At the end each is fitted to the last digits.
+/// posterior; the others are taken along. At the end each is fitted to the last digits. Structures whose solver takes one
+/// simulation after the other share an allowance of simulated rows, so that the same are given up on any machine.
 class StructureFits {
  public:
   /// models: those with a failure are left alone; must outlive this.
@@ -39,6 +40,10 @@ class StructureFits {
   /// No record could be cut less.
   bool whole() const { return halved_ == 0; }
   SolverSettings solver(std::size_t m) const;
+  /// Its solver takes one simulation after the other: hundreds of times what lanes cost.
+  bool one_by_one(std::size_t m) const;
+  /// It is not judged because its allowance was spent.
+  bool given_up(std::size_t m) const { return one_by_one(m) && spent_[m] > allowance_; }
   /// Coefficients by the rows of each record before `ends` alone.
   ShootingFit fit_before(std::size_t m, std::vector<int> const& ends) const;
 
@@ -50,12 +55,14 @@ class StructureFits {
   };
 
   std::vector<Segment> segments(int halved) const { return cut_into_segments(settings_.records, settings_.least, halved); }
-  SegmentSimulation simulation(std::size_t m, std::vector<Segment> const& segments) const;
-  ShootingOptions options(bool last) const;
+  SegmentSimulation simulation(std::size_t m, std::vector<Segment> const& segments, bool starts_alone = false) const;
+  double rows_of_round(std::size_t m) const;
+  std::function<bool()> stop(std::size_t m);
+  ShootingOptions options(std::size_t m, bool last);
   bool judged(std::size_t m) const { return failure(m).empty(); }
   void begin(std::size_t m);
   ShootingPoint longer(Fitted const& from, std::vector<Segment> const& parts) const;
-  Fitted at(std::size_t m, Fitted const& from, int halved, bool last) const;
+  Fitted at(std::size_t m, Fitted const& from, int halved, bool last);
   void climb_alone(std::size_t m);
   void climb_to(std::size_t m, int halved);
   void climb();
@@ -68,6 +75,8 @@ class StructureFits {
   std::vector<Fitted> fits_;
   int most_halvings_ = 0, halved_ = 0;
   int substeps_ = 1;
+  double allowance_ = 0;       // rows that each of those that are taken one by one may simulate
+  std::vector<double> spent_;  // of it, per structure
 };
 
 }  // namespace sysid

@@ -17,6 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Errors of more sds than this are not worth their digits.
+constexpr int lost_sds = 100;
+
 std::string percent_text(std::optional<double> percent) {
   if (!percent) return "";
   return *percent > 1e4 ? "> 1e4" : significant(*percent, 3);
@@ -93,7 +96,10 @@ ReportTable channel_table(JudgedReport const& judged, JudgedStructure const& bes
       {"channel", "unit", "sd", "noise", "residual", "1 row ahead", fmt::format("{} rows", judged.horizon_rows), "free run"},
       {}};
   for (JudgedChannel const& each : best.channels) {
-    auto const shown = [](std::optional<double> value) { return value ? significant(*value, 3) : std::string(); };
+    auto const shown = [&](std::optional<double> value) {
+      if (value && each.sd > 0 && !(*value <= lost_sds * each.sd)) return fmt::format("> {} sd", lost_sds);
+      return value ? significant(*value, 3) : std::string();
+    };
     table.rows.push_back({each.channel, each.unit, significant(each.sd, 3), each.noise > 0 ? significant(each.noise, 3) : "",
                           significant(each.residual, 3), shown(each.one_step), shown(each.horizon), shown(each.free_run)});
   }

@@ -34,6 +34,7 @@ struct JudgedStructure {
   std::vector<std::string> equations;  // with the refit's coefficients
   int of_regression = 0;               // its place there, from 1
   std::string failure;                 // why it was not judged; empty: it was
+  bool given_up = false;               // it was not, because that costs too much
   double log_evidence = 0, log_prior = 0;
   double probability = 0;          // among the structures tried
   double residual_over_noise = 0;  // of the worst channel; 0: noise not known

@@ -8,110 +8,17 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "app/readiness.hpp"
-#include "app/running.hpp"
-#include "core/random.hpp"
+#include "app/discovering.hpp"
 
 using namespace sysid;
+using namespace sysid::test;
 using json = nlohmann::json;
 
 namespace {
 
-constexpr double step = 0.01;
-
-/// An oscillator y'' = u - 0.8 y' - 25 y - 60 y^3 under a held random force, with noise of 0.5 %; Runge and Kutta's steps of 1 ms.
-struct Made {
-  std::vector<double> t, u, y;
-
-  explicit Made(int rows, double offset = 0, double noise = 0.005) {
-    Stream force({4, Purpose::input, 0, 0}), error({4, Purpose::noise, 0, 0});
-    double position = 0, speed = 0, held = 0;
-    for (int i = 0; i < rows; ++i) {
-      if (i % 5 == 0) held = 8 * force.normal();
-      t.push_back(step * i);
-      u.push_back(held);
-      y.push_back(offset + position + noise * 0.35 * error.normal());
-      auto const rate = [&](double at, double moving) { return held - 0.8 * moving - 25 * at - 60 * at * at * at; };
-      double const h = step / 10;
-      for (int k = 0; k < 10; ++k) {
-        double const p1 = speed, v1 = rate(position, speed);
-        double const p2 = speed + h / 2 * v1, v2 = rate(position + h / 2 * p1, p2);
-        double const p3 = speed + h / 2 * v2, v3 = rate(position + h / 2 * p2, p3);
-        double const p4 = speed + h * v3, v4 = rate(position + h * p3, p4);
-        position += h / 6 * (p1 + 2 * p2 + 2 * p3 + p4);
-        speed += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
-      }
-    }
-  }
-  std::string csv() const {
-    std::string text = "t,u,y\n";
-    for (std::size_t i = 0; i < t.size(); ++i) text += fmt::format("{:.12g},{:.12g},{:.12g}\n", t[i], u[i], y[i]);
-    return text;
-  }
-};
-
 std::string const record = Made(900).csv();
 
-std::string file(std::string const& statements, std::string const& options = "seed = 1",
-                 std::string const& input = "input u = u [N] hold zero_order; ") {
-  return "dictionary terms {\ninput u [N]\nstate y [m] = displacement\n" + statements +
-         "\n}\ndata bench { file \"bench.csv\"; time t [s]; " + input +
-         "measure displacement = y [m] }\nfound = discover terms from bench with " + options + "\n";
-}
-
-struct Answer {
-  int exit = 0;
-  std::string said;  // standard output, or the message that ended it
-  json summary;
-
-  json finding(std::string const& code) const {
-    if (summary.contains("findings"))
-      for (json const& each : summary.at("findings"))
-        if (each.at("code") == code) return each;
-    return {};
-  }
-  std::vector<std::string> kept() const {
-    std::vector<std::string> all;
-    for (json const& term : summary.at("discovery").at("equations").at(0).at("terms"))
-      if (term.at("kept").get<bool>()) all.push_back(term.at("term"));
-    return all;
-  }
-  std::vector<std::string> codes() const {
-    std::vector<std::string> all;
-    for (json const& each : summary.at("findings")) all.push_back(each.at("code"));
-    return all;
-  }
-};
-using Texts = std::vector<std::string>;
-
-/// As the command line would: messages of the text and of the data end it with 65.
-Answer run(std::string const& text, std::string const& csv = record) {
-  TemporaryFolder folder;
-  write_file(folder.path() / "bench.csv", csv);
-  RunOptions options;
-  options.output = folder.path() / "results";
-  options.figures = false;
-  Source source((folder.path() / "case.sysid").string(), text);
-  Diagnostics diagnostics;
-  auto const checked = load(source, diagnostics);
-  Answer answer;
-  answer.said = render(diagnostics, source);
-  answer.exit = 65;
-  if (!checked) return answer;
-  SilentProgress silent;
-  std::ostringstream out, notices;
-  try {
-    answer.exit = static_cast<int>(run_tasks(source, *checked, {}, options, silent, out, notices));
-  } catch (UnusableData const& error) {
-    answer.said += render(error.diagnostics(), source);
-    return answer;
-  }
-  answer.said += out.str();
-  answer.summary = json::parse(read_file(options.output / "found/summary.json"));
-  return answer;
-}
-
-bool contains(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+Answer run(std::string const& text, std::string const& csv = record) { return run_with(text, {{"bench.csv", csv}}); }
 
 std::string const oscillator = "target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1";
 
@@ -175,7 +82,7 @@ TEST_CASE("terms that are one on this record are named, and the first stays") {
 TEST_CASE("terms that are nearly one are named") {
   // Around a displacement of 20 the powers of y say nearly the same.
   Answer const near = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1", "threshold(share = 1e-9), seed = 1"),
-                           Made(900, 20).csv());
+                          Made(900, {.offset = 20}).csv());
   REQUIRE_FALSE(near.finding("terms_nearly_collinear").is_null());
   CHECK(contains(near.finding("terms_nearly_collinear").at("message"), "barely told apart"));
   CHECK(near.exit == 0);
@@ -325,7 +232,7 @@ TEST_CASE("functions of modules serve in dictionaries, and come with the model t
   RunResult const result = run_text(folder.path() / "case.sysid", text, options);
   CHECK(result.exit == 0);
   json const summary = json::parse(read_file(options.output / "found/summary.json"));
-  Answer const answer{result.exit, result.out, summary};
+  Answer const answer{result.exit, result.out, summary, {}};
   CHECK(answer.kept() == Texts{"y'", "inner(y)", "cube(y)"});
   std::string const source = read_file(options.output / "found/found.sysid");
   CHECK(contains(source, "powers_inner(z) = z*z"));
