@@ -5,9 +5,11 @@
 #include <fstream>
 #include <functional>
 #include <numbers>
+#include <set>
 
 #include "app/markdown.hpp"
 #include "app/module_page.hpp"
+#include "app/modules.hpp"
 #include "check/checking.hpp"
 
 using namespace sysid;
@@ -210,6 +212,71 @@ TEST_CASE("damping forces oppose the velocity") {
     CHECK(force("damping", "stribeck(velocity = drive)", p, v) ==
           doctest::Approx((3 + 1 * std::exp(-100 * v * v)) * sign + 5 * v).epsilon(1e-12));
   }
+}
+
+TEST_CASE("the families `damping` and `friction` of dictionaries are the laws of the module, coefficient by coefficient") {
+  struct Term {
+    CheckedDictionary const* of;
+    std::size_t index;
+    double times;
+  };
+  struct Law {
+    std::string part;
+    std::vector<std::pair<std::string, std::vector<Term>>> coefficients;  // each with the terms that it stands before
+  };
+  auto const family = [](std::string const& terms) {
+    return checked("dictionary d {\nstate y [m] = displacement\ntarget = y''\nterms = " + terms + "\n}\n").dictionaries.at(0);
+  };
+  CheckedDictionary const damping = family("damping(y')"), friction = family("friction(y', stribeck = 0.2 [m/s])");
+  std::vector<Law> const laws = {
+      {"viscous", {{"c", {{&damping, 0, 1}}}}},
+      {"quadratic_damper", {{"c2", {{&damping, 1, 1}}}}},
+      {"coulomb", {{"friction", {{&friction, 0, 1}}}}},
+      {"stribeck",
+       {{"friction", {{&friction, 0, 1}, {&friction, 2, -1}}}, {"static", {{&friction, 2, 1}}}, {"c", {{&friction, 1, 1}}}}}};
+  // A law that joins the module joins this table, and the families where they can hold it.
+  std::vector<std::string> names, models;
+  for (Law const& law : laws) names.push_back(law.part);
+  for (LibraryModule const& module : library_modules())
+    if (module.name == "damping")
+      for (Model const& model : checked(std::string(module.text)).models) models.push_back(model.name);
+  CHECK(names == models);
+  std::map<CheckedDictionary const*, std::set<std::size_t>> used;
+  for (double const v : {-1.7, -0.3, -0.05, 0.0, 0.08, 0.4, 2.0}) {
+    auto const value = [&](Term const& term) {
+      return term.times * term.of->numbers.graph.evaluate(term.of->numbers.equations.at(0).terms.at(term.index).expression,
+                                                          [&](NodeId) { return v; });
+    };
+    for (Law const& law : laws) {
+      CAPTURE(law.part);
+      CAPTURE(v);
+      Values p = {{"law.v_stribeck", 0.2}};
+      for (auto const& [coefficient, terms] : law.coefficients) p["law." + coefficient] = 0;
+      double sum = 0, all = 0, next = 3;
+      Values together = p;
+      for (auto const& [coefficient, terms] : law.coefficients) {
+        CAPTURE(coefficient);
+        Values alone = p;
+        alone["law." + coefficient] = 1;
+        sum = 0;
+        for (Term const& term : terms) {
+          sum += value(term);
+          used[term.of].insert(term.index);
+        }
+        CHECK(force("damping", law.part + "(velocity = drive)", alone, v) == doctest::Approx(sum).epsilon(1e-14));
+        together["law." + coefficient] = next;
+        all += next * sum;
+        next += 2;
+      }
+      CHECK(force("damping", law.part + "(velocity = drive)", together, v) == doctest::Approx(all).epsilon(1e-14));
+    }
+  }
+  // All that the families hold comes from a law, but the cube, which damping adds.
+  CHECK(used[&damping] == std::set<std::size_t>{0, 1});
+  CHECK(damping.equations.at(0).terms.size() == 3);
+  CHECK(damping.equations.at(0).terms.at(2).text == "y'^3");
+  CHECK(used[&friction] == std::set<std::size_t>{0, 1, 2});
+  CHECK(friction.equations.at(0).terms.size() == 3);
 }
 
 TEST_CASE("morison: drag and inertia of a unit length") {
