@@ -298,6 +298,7 @@ TEST_CASE("noise of the recorded force is told from noise of the displacement, a
     CHECK_FALSE(has(found, Concern::Kind::correlated));
   }
   CHECK(exact >= 9);
+  MESSAGE("noise of the force " << own / 0.3 << " of what it is; " << exact << " of 10 exact");
   // The force is held: what acts at a sample is the mean of two.
   CHECK(own == doctest::Approx(0.3).epsilon(0.1));
 }
