@@ -118,6 +118,8 @@ Diagnostic unknown_option(Span span, std::string const& option, std::string cons
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
 Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example);
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most);
+/// Of an option whose 0 stands for something else.
+Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most);
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices);
 Diagnostic backend_missing(ast::Task const& task, Names const& known);
 Diagnostic unknown_backend(ast::Name const& name, Names const& known);

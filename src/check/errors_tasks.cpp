@@ -42,6 +42,11 @@ Diagnostic option_range(Span span, std::string const& option, double given, doub
   return error("E6005", span, fmt::format("`{}` must {}, here it is {}", option, range, given), "correct the number");
 }
 
+Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most) {
+  return error("E6005", span, fmt::format("`{}` must be 0 or lie between {} and {}, here it is {}", option, least, most, given),
+               "correct the number");
+}
+
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {
   return error("E6006", span, fmt::format("`{}` cannot be {}", option, given.empty() ? "this" : "`" + given + "`"),
                guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or"))));

@@ -50,7 +50,11 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
         values.set(name, static_cast<std::int64_t>(*value));
       break;
     case SettingKind::real:
-      if (auto const value = number(argument.value, name, Unit{}, row.minimum, row.maximum)) values.set(name, *value);
+      if (auto const value = number(argument.value, name, Unit{}, row.minimum, row.maximum)) {
+        if (*value > 0 && *value < row.least_positive)
+          diagnostics_.add(errors::option_range_or_zero(argument.value.span, name, *value, row.least_positive, row.maximum));
+        values.set(name, *value);
+      }
       break;
     case SettingKind::flag:
       if (auto const value = yes_or_no(argument.value, name)) values.set(name, *value);

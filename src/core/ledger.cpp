@@ -3,8 +3,8 @@
 
 namespace sysid {
 
-void Ledger::add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example,
-                         std::uint64_t count) {
+void Ledger::add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example, std::uint64_t count,
+                         std::vector<std::string> names) {
   if (count == 0) return;
   for (Failure& known : failures_) {
     if (known.kind == kind && known.where == where) {
@@ -12,14 +12,15 @@ void Ledger::add_failure(FailureClass kind, std::string const& where, double tim
       return;
     }
   }
-  failures_.push_back({kind, where, count, time, std::move(example)});
+  failures_.push_back({kind, where, count, time, std::move(example), std::move(names)});
 }
 
 void Ledger::merge(Ledger const& other) {
   add_solves(other.solves_);
   // A copy, so that a ledger may be merged with itself.
   std::vector<Failure> const added = other.failures_;
-  for (Failure const& failure : added) add_failure(failure.kind, failure.where, failure.time, failure.example, failure.count);
+  for (Failure const& failure : added)
+    add_failure(failure.kind, failure.where, failure.time, failure.example, failure.count, failure.names);
 }
 
 std::uint64_t Ledger::failed() const {

@@ -17,8 +17,9 @@ struct Failure {
   FailureClass kind = FailureClass::non_finite;
   std::string where;  // the sub-expression in the user's words, e.g. "k3*y^3 at duffing.sysid:12"
   std::uint64_t count = 0;
-  double time = 0;              // of the first example [s]; NaN: not looked into
-  std::vector<double> example;  // its parameters, declared units, in the order of Target::names
+  double time = 0;                      // of the first example [s]; NaN: not looked into
+  std::vector<double> example;          // its parameters, declared units
+  std::vector<std::string> names = {};  // of them; empty: those of the target, in its order
 };
 
 class Ledger {
@@ -26,8 +27,9 @@ class Ledger {
   /// Where the failures lie that are counted without a look at each.
   static constexpr char const* untraced = "not looked into, as the first eight were";
   void add_solves(std::uint64_t count) { solves_ += count; }
-  /// Counts a failure; `example` and `time` are kept for the first one of its (kind, where).
-  void add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example, std::uint64_t count = 1);
+  /// Counts a failure; `example`, its `names` and `time` are kept for the first one of its (kind, where).
+  void add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example, std::uint64_t count = 1,
+                   std::vector<std::string> names = {});
   /// Adds another ledger's counts; merging in a fixed order gives the same ledger for any number of threads.
   void merge(Ledger const& other);
 

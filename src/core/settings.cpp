@@ -53,6 +53,7 @@ bool is_choice(std::string_view choices, std::string_view word) {
 std::string allowed_range(SettingRow const& row) {
   bool const above = row.minimum > -std::numeric_limits<double>::infinity();
   bool const below = row.maximum < std::numeric_limits<double>::infinity();
+  if (row.least_positive > 0) return fmt::format(", 0 or from {} to {}", row.least_positive, row.maximum);
   if (above && below) return fmt::format(" from {} to {}", row.minimum, row.maximum);
   if (above) return fmt::format(" of at least {}", row.minimum);
   if (below) return fmt::format(" of at most {}", row.maximum);
@@ -78,7 +79,7 @@ std::string setting_text(SettingValue const& value) {
 SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_view name) { return row_named(rows, name); }
 
 std::string refuse(SettingRow const& row, SettingValue const& value) {
-  auto const inside = [&](double x) { return x >= row.minimum && x <= row.maximum; };
+  auto const inside = [&](double x) { return x >= row.minimum && x <= row.maximum && (x <= 0 || x >= row.least_positive); };
   auto const* const whole = std::get_if<std::int64_t>(&value);
   auto const* const number = std::get_if<double>(&value);
   auto const* const word = std::get_if<std::string>(&value);

@@ -27,6 +27,7 @@ struct SettingRow {
   double maximum;             // largest allowed number, inclusive
   std::string_view choices;   // for a word: "adaptive spherical", separated by blanks
   std::string_view summary;   // one line for `sysid list` and the docs
+  double least_positive = 0;  // of a real whose 0 stands for something else: no smaller number above 0
 };
 
 using SettingValue = std::variant<std::int64_t, double, std::string, bool, std::vector<double>>;

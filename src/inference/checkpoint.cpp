@@ -84,7 +84,8 @@ nlohmann::json encode(Ledger const& ledger) {
                         {"where", failure.where},
                         {"count", failure.count},
                         {"time", encode(std::span<double const>{&failure.time, 1})},
-                        {"example", encode(std::span<double const>{failure.example})}});
+                        {"example", encode(std::span<double const>{failure.example})},
+                        {"names", failure.names}});
   return {{"solves", ledger.solves()}, {"failures", failures}};
 }
 
@@ -93,7 +94,8 @@ Ledger decode_ledger(nlohmann::json const& stored) {
   ledger.add_solves(stored.at("solves").get<std::uint64_t>());
   for (nlohmann::json const& failure : stored.at("failures"))
     ledger.add_failure(static_cast<FailureClass>(failure.at("kind").get<int>()), failure.at("where").get<std::string>(),
-                       decode(failure.at("time")).at(0), decode(failure.at("example")), failure.at("count").get<std::uint64_t>());
+                       decode(failure.at("time")).at(0), decode(failure.at("example")), failure.at("count").get<std::uint64_t>(),
+                       failure.value("names", std::vector<std::string>{}));
   return ledger;
 }
 

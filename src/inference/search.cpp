@@ -219,7 +219,7 @@ LaneArray overdispersed_starts(Target const& target, std::vector<Mode> const& mo
         {context.seed, Purpose::start, static_cast<std::uint64_t>(chain), dispersal_step + static_cast<std::uint64_t>(attempt)});
     Eigen::VectorXd z(target.dimension());
     for (double& v : z) v = stream.normal();
-    Eigen::VectorXd const move = cholesky(covariance_of(mode)).value() * z;
+    Eigen::VectorXd const move = cholesky_or_diagonal(covariance_of(mode)) * z;
     return theta_of(mode) + inflation * move;
   };
   for (int const chain : settle(target, starts, 100, context.ledger, redraw))

@@ -28,6 +28,11 @@ std::optional<Eigen::MatrixXd> cholesky(Eigen::MatrixXd const& symmetric) {
   return factored.matrixL();
 }
 
+Eigen::MatrixXd cholesky_or_diagonal(Eigen::MatrixXd const& symmetric) {
+  if (auto factor = cholesky(symmetric)) return *std::move(factor);
+  return symmetric.diagonal().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
 Eigen::MatrixXd solve_cholesky(Eigen::MatrixXd const& lower, Eigen::MatrixXd const& right) {
   Eigen::MatrixXd const half = lower.triangularView<Eigen::Lower>().solve(right);
   return lower.transpose().triangularView<Eigen::Upper>().solve(half);

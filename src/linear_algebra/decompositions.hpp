@@ -23,6 +23,8 @@ SingularValues singular_values(Eigen::MatrixXd const& matrix);
 
 /// Lower L with L L^T = matrix; nothing where it is not positive definite.
 std::optional<Eigen::MatrixXd> cholesky(Eigen::MatrixXd const& symmetric);
+/// The same, and where rounding leaves the matrix not positive definite the roots of its diagonal, 0 for what is not above 0.
+Eigen::MatrixXd cholesky_or_diagonal(Eigen::MatrixXd const& symmetric);
 /// x of L L^T x = right.
 Eigen::MatrixXd solve_cholesky(Eigen::MatrixXd const& lower, Eigen::MatrixXd const& right);
 

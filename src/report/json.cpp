@@ -52,7 +52,7 @@ Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
                         {"where", failure.where},
                         {"count", failure.count},
                         {"time", std::isnan(failure.time) ? Json(nullptr) : Json(failure.time)},
-                        {"example", named_values(failure.example, names)}});
+                        {"example", named_values(failure.example, failure.names.empty() ? names : failure.names)}});
   return {{"solves", ledger.solves()}, {"failed", ledger.failed()}, {"failures", failures}};
 }
 

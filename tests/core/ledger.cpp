@@ -24,7 +24,7 @@ TEST_CASE("merging ledgers adds their counts and keeps the order of first sight"
   a.add_solves(3);
   a.add_failure(FailureClass::step_limit, "solver", 1.0, {1});
   b.add_solves(4);
-  b.add_failure(FailureClass::convergence, "sqrt(k)", 2.0, {2});
+  b.add_failure(FailureClass::convergence, "sqrt(k)", 2.0, {2}, 1, {"k"});
   b.add_failure(FailureClass::step_limit, "solver", 3.0, {3}, 5);
   a.merge(b);
   CHECK(a.solves() == 7);
@@ -33,6 +33,7 @@ TEST_CASE("merging ledgers adds their counts and keeps the order of first sight"
   CHECK(a.failures()[0].count == 6);
   CHECK(a.failures()[0].time == 1.0);
   CHECK(a.failures()[1].where == "sqrt(k)");
+  CHECK(a.failures()[1].names == std::vector<std::string>{"k"});
   a.merge(a);
   CHECK(a.failed() == 14);
 }

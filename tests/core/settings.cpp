@@ -16,6 +16,8 @@ constexpr SettingRow rows[] = {
     {"stop", SettingKind::real, "1e-4", 0, 1, "", "threshold"},
     {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive spherical", "moves"},
     {"polish", SettingKind::flag, "true", 0, 0, "", "polish"},
+    {"scale", SettingKind::real, "0", 0, 1e3, "", "0: chosen", 1e-3},
+    {"place", SettingKind::real, "0", -1, 1, "", ""},
 };
 }  // namespace
 
@@ -26,7 +28,7 @@ TEST_CASE("settings start at the defaults of their table") {
   CHECK(settings.real("stop") == 1e-4);
   CHECK(settings.word("proposal") == "adaptive");
   CHECK(settings.flag("polish"));
-  CHECK(settings.all().size() == 4);
+  CHECK(settings.all().size() == 6);
 }
 
 TEST_CASE("a setting that is given replaces its default") {
@@ -58,6 +60,10 @@ TEST_CASE("values outside a setting's range, kind or choices are refused with th
   CHECK(refuse(rows[2], std::string("spheric")) == "it must be one of: adaptive spherical");
   CHECK_FALSE(refuse(rows[2], std::string()).empty());
   CHECK(refuse(rows[3], true).empty());
+  CHECK(refuse(rows[4], 0.0).empty());
+  CHECK(refuse(rows[4], 1e-3).empty());
+  CHECK(refuse(rows[4], 1e-4) == "it must be a number, 0 or from 0.001 to 1000");
+  CHECK(refuse(rows[5], -0.5).empty());
   CHECK_FALSE(refuse(rows[3], std::string("true")).empty());
 }
 

@@ -187,6 +187,20 @@ TEST_CASE("degenerate cases end in words") {
     REQUIRE(result.failure);
     CHECK(result.failure->code == "no_population");
     CHECK(result.failure->message.find("0 of 1000") != std::string::npos);
+    CHECK(result.failure->message.find("within the first threshold 1 after 20000 simulations: `simulations = 20000`") !=
+          std::string::npos);
+    CHECK(result.failure->help.find("raise the first threshold") == 0);
+    // The first of a schedule is one as well.
+    SelectionResult const scheduled = run(toy, with({{"schedule", std::vector<double>{2, 1}}, {"simulations", 20000.0}}));
+    REQUIRE(scheduled.failure);
+    CHECK(scheduled.failure->message.find("within the first threshold 2 ") != std::string::npos);
+  }
+  SUBCASE("a budget ends before the first population does") {
+    SelectionResult const result = run(two_widths(), with({{"simulations", 10.0}}));
+    REQUIRE(result.failure);
+    CHECK(result.failure->message ==
+          "10 of 1000 draws from the priors could be simulated after 10 simulations: `simulations = 10` are spent");
+    CHECK(result.failure->help == "allow more, or take fewer `particles`");
   }
   SUBCASE("nothing can be simulated") {
     Toy const toy({{"broken", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return std::nan(""); }}});
@@ -195,6 +209,35 @@ TEST_CASE("degenerate cases end in words") {
     REQUIRE(result.failure);
     CHECK(ledger.failed() == ledger.solves());
     CHECK(ledger.failures().front().where == "the toy of `broken`");
+    CHECK(ledger.failures().front().names == std::vector<std::string>{"p0"});
+    CHECK(result.failure->help.find("the priors lie where the models do not stay finite") == 0);
+  }
+  SUBCASE("a kernel whose moves leave the range of numbers") {
+    // A covariance of 1e-12 times 1e-320 is 0, and so is a width of 1e-6 times that.
+    Toy const toy({{"small", 1, {{Prior::uniform, -1e-6, 1e-6}, {Prior::uniform, -1e-6, 1e-6}}, size_of_first}});
+    for (std::string const kernel : {"gaussian", "component_gaussian", "uniform", "nearest_neighbours"}) {
+      CAPTURE(kernel);
+      SelectionResult const result = run(
+          toy,
+          with({{"particles", std::int64_t{100}}, {"kernel", kernel}, {"kernel_scale", 1e-320}, {"populations", std::int64_t{4}}}));
+      CHECK_FALSE(result.failure);
+      CHECK_FALSE(result.stopped_by.empty());
+      CHECK(std::isfinite(result.populations.back().ess));
+      CHECK(result.models[0].probability == doctest::Approx(1));
+    }
+    SelectionResult const lost = run(toy, with({{"kernel", std::string("uniform")}, {"kernel_scale", 1e-320}}));
+    CHECK(lost.ran_out);
+    CHECK(lost.stopped_by.find("lost in rounding") != std::string::npos);
+  }
+  SUBCASE("a box no wider than rounding: its edges are within") {
+    // Around 1e9 numbers are 1.2e-7 apart, a box of a hundredth of the range of 1e-5 is as wide as one gap.
+    Toy const toy({{"far", 1, {{Prior::uniform, 1e9, 1e9 + 1e-5}}, [](std::span<double const> p) { return p[0] - 1e9; }}});
+    SelectionResult const result = run(toy, with({{"kernel", std::string("uniform")},
+                                                  {"kernel_scale", 0.01},
+                                                  {"coordinates", std::string("declared")},
+                                                  {"schedule", std::vector<double>{1, 8e-6, 6e-6, 4e-6}}}));
+    CHECK(result.populations.size() == 4);
+    CHECK(std::isfinite(result.populations.back().ess));
   }
   SUBCASE("all distances are equal") {
     Toy const toy({{"flat", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return 0.25; }}});
@@ -274,6 +317,7 @@ class Phase : public Progress {
 struct Broken {
   nlohmann::json checkpoint;
   SelectionResult part, resumed;
+  Ledger ledger;  // of the resumed
 };
 Broken break_when(SelectionTarget const& toy, Settings const& settings, std::function<bool(Phase const&)> const& now) {
   Broken broken;
@@ -284,59 +328,88 @@ Broken break_when(SelectionTarget const& toy, Settings const& settings, std::fun
       {}, {},    {}};
   broken.part = abc::run(toy, settings, first);
   SilentProgress silent;
-  Ledger again;
-  RunContext second{5, silent, again, {}, {}, 60, nlohmann::json::from_cbor(nlohmann::json::to_cbor(broken.checkpoint)), {}, {}};
+  RunContext second{5,  silent, broken.ledger, {}, {}, 60, nlohmann::json::from_cbor(nlohmann::json::to_cbor(broken.checkpoint)),
+                    {}, {}};
   broken.resumed = abc::run(toy, settings, second);
   return broken;
 }
 
-void check_same(SelectionResult const& a, SelectionResult const& b) {
+/// [D x W] by row; numbers are compared by `==`: none of them is NaN.
+std::vector<double> numbers(LaneArray const& lanes) {
+  std::vector<double> all;
+  for (int d = 0; d < lanes.rows(); ++d) all.insert(all.end(), lanes.row(d).begin(), lanes.row(d).end());
+  return all;
+}
+
+void check_same(SelectionResult const& a, Ledger const& of_a, SelectionResult const& b, Ledger const& of_b) {
   REQUIRE(a.populations.size() == b.populations.size());
   CHECK(std::bit_cast<std::uint64_t>(a.threshold) == std::bit_cast<std::uint64_t>(b.threshold));
+  REQUIRE(a.models.size() == b.models.size());
   for (std::size_t m = 0; m < a.models.size(); ++m) {
     CHECK(a.models[m].weight == b.models[m].weight);
     CHECK(a.models[m].distance == b.models[m].distance);
+    REQUIRE_FALSE(a.models[m].weight.empty());
+    CHECK(numbers(a.models[m].theta) == numbers(b.models[m].theta));
+    CHECK(numbers(a.models[m].declared) == numbers(b.models[m].declared));
+  }
+  CHECK(of_a.solves() == of_b.solves());
+  REQUIRE(of_a.failures().size() == of_b.failures().size());
+  for (std::size_t f = 0; f < of_a.failures().size(); ++f) {
+    Failure const &mine = of_a.failures()[f], &other = of_b.failures()[f];
+    CHECK(mine.where == other.where);
+    CHECK(mine.count == other.count);
+    CHECK(mine.example == other.example);
+    CHECK(mine.names == other.names);
   }
 }
+
+/// |p|, and nothing for a twentieth of the prior: so that a run has failures to remember.
+double fails_at_the_edge(std::span<double const> values) { return values[0] > 0.9 ? std::nan("") : std::fabs(values[0]); }
 
 }  // namespace
 
 TEST_CASE("a run interrupted while it weighs keeps the population that is full, and weighs it again") {
   // One model, so that its 5000 particles are weighed in several pieces.
-  Toy const toy({{"narrow", 1, {{Prior::uniform, -1, 1}}, size_of_first}});
+  Toy const toy({{"narrow", 1, {{Prior::uniform, -1, 1}}, fails_at_the_edge}});
   Settings const settings = with({{"particles", std::int64_t{5000}}, {"schedule", std::vector<double>{0.8, 0.3, 0.1}}});
-  SelectionResult const whole = run(toy, settings, 5);
+  Ledger ledger;
+  SelectionResult const whole = run(toy, settings, 5, &ledger);
+  REQUIRE(ledger.failed() > 8);
   Broken const broken = break_when(toy, settings, [](Phase const& phase) { return phase.population == 2 && !phase.simulating; });
   CHECK(broken.part.interrupted);
   CHECK(broken.part.populations.size() == 1);
   REQUIRE(broken.checkpoint.is_object());
   CHECK(broken.checkpoint.at("record").at("counts").at(3) == 5000);  // accepted of the second
-  check_same(broken.resumed, whole);
+  check_same(broken.resumed, broken.ledger, whole, ledger);
 }
 
 TEST_CASE("a run interrupted between populations keeps the last one") {
-  Toy const toy = two_widths();
+  Toy const toy({{"narrow", 0.5, {{Prior::uniform, -1, 1}}, fails_at_the_edge},
+                 {"wide", 0.5, {{Prior::uniform, -10, 10}}, fails_at_the_edge}});
   Settings const settings = with({{"particles", std::int64_t{300}}, {"schedule", std::vector<double>{0.8, 0.3, 0.1}}});
-  SelectionResult const whole = run(toy, settings, 5);
+  Ledger ledger;
+  SelectionResult const whole = run(toy, settings, 5, &ledger);
+  REQUIRE(ledger.failures().size() > 2);
   Broken const broken = break_when(toy, settings, [](Phase const& phase) { return phase.population == 3; });
   CHECK(broken.part.interrupted);
   CHECK(broken.part.populations.size() == 2);
   CHECK(broken.checkpoint.at("record").at("counts").at(3) == 0);
-  check_same(broken.resumed, whole);
+  check_same(broken.resumed, broken.ledger, whole, ledger);
 }
 
 TEST_CASE("a model that has died and then an interruption: its last particles and the reason come back") {
   Toy const toy({{"near", 0.5, {{Prior::uniform, -1, 1}}, size_of_first},
                  {"far", 0.5, {{Prior::uniform, -1, 1}}, [](std::span<double const> p) { return 0.5 + std::fabs(p[0]); }}});
   Settings const settings = with({{"particles", std::int64_t{300}}, {"schedule", std::vector<double>{1, 0.4, 0.1}}});
-  SelectionResult const whole = run(toy, settings, 5);
+  Ledger ledger;
+  SelectionResult const whole = run(toy, settings, 5, &ledger);
   REQUIRE(whole.models[1].died_in == 2);
   REQUIRE(whole.models[1].weight.size() > 10);
   Broken const broken = break_when(toy, settings, [](Phase const& phase) { return phase.population == 3; });
   CHECK(broken.part.models[1].died_in == 2);
   CHECK(broken.resumed.models[1].died_in == 2);
   CHECK(broken.resumed.models[1].by_chance == whole.models[1].by_chance);
-  check_same(broken.resumed, whole);
+  check_same(broken.resumed, broken.ledger, whole, ledger);
 }
 
 TEST_CASE("systematic resampling gives each item its share, rounded up or down") {

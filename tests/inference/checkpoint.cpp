@@ -36,7 +36,7 @@ TEST_CASE("damaged numbers are refused, not guessed") {
 TEST_CASE("ledgers and modes survive storing") {
   Ledger ledger;
   ledger.add_solves(12345678901234ULL);
-  ledger.add_failure(FailureClass::step_limit, "k3*y^3", infinity, {1, -0.0}, 7);
+  ledger.add_failure(FailureClass::step_limit, "k3*y^3", infinity, {1, -0.0}, 7, {"k", "c"});
   Ledger const back = checkpoint::decode_ledger(checkpoint::encode(ledger));
   CHECK(back.solves() == ledger.solves());
   REQUIRE(back.failures().size() == 1);
@@ -44,6 +44,7 @@ TEST_CASE("ledgers and modes survive storing") {
   CHECK(back.failures()[0].kind == FailureClass::step_limit);
   CHECK(back.failures()[0].count == 7);
   CHECK(back.failures()[0].time == infinity);
+  CHECK(back.failures()[0].names == std::vector<std::string>{"k", "c"});
 
   Mode const mode{{1, 2}, {3, 4}, {5, 6}, {7, 8, 9, 10}, -1.5, 2.5, 0.125, 3, {0.5, -0.5}};
   Mode const read = checkpoint::decode_mode(checkpoint::encode(mode));

@@ -234,3 +234,19 @@ TEST_CASE("starts are wider than the posterior and differ from each other") {
   CHECK(distinct.size() == chains);
   CHECK(std::sqrt(square) == doctest::Approx(1.5).epsilon(0.15));  // three sds; standard error 3.5 %
 }
+
+TEST_CASE("a mode whose covariance rounding leaves without volume gives starts all the same, along its axes") {
+  TestTarget const target({"a", "b"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
+                          [](std::vector<double> const& p, std::vector<double>& rows) { rows[0] = p[0] - p[1]; });
+  Mode mode;
+  mode.theta = mode.declared = {0.5, 0.5};
+  mode.covariance = {1, 1, 1, 1 - 1e-12};  // not positive definite
+  mode.share = 1;
+  Bench bench;
+  LaneArray const starts = overdispersed_starts(target, {mode}, std::vector<int>(100, 0), bench.context);
+  for (int p = 0; p < 2; ++p) {
+    double square = 0;
+    for (double const x : starts.row(p)) square += (x - 0.5) * (x - 0.5) / 100;
+    CHECK(std::sqrt(square) == doctest::Approx(3).epsilon(0.3));  // three sds of 1; standard error 7 %
+  }
+}

@@ -142,14 +142,18 @@ class Run {
     LaneArray declared(theta.rows(), 1);
     candidates_.constrain(model, theta, declared);
     std::vector<double> example;
-    for (int d = 0; d < declared.rows(); ++d) example.push_back(declared(d, 0));
+    std::vector<std::string> names;
+    for (int d = 0; d < declared.rows(); ++d) {
+      example.push_back(declared(d, 0));
+      names.push_back(candidates_.parameters(model)[static_cast<std::size_t>(d)].name);
+    }
     if (context_.ledger.failed() < traced_failures) {
       auto const [where, time] = candidates_.failure(model, theta);
       context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", where, candidates_.name(model)), time,
-                                  std::move(example));
+                                  std::move(example), 1, std::move(names));
     } else {
       context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`, not looked into", candidates_.name(model)),
-                                  not_a_number, std::move(example));
+                                  not_a_number, std::move(example), 1, std::move(names));
     }
   }
 
@@ -157,17 +161,23 @@ class Run {
   bool weigh(Proposals const& proposals) {
     std::vector<std::vector<double>> logs;
     double highest = -infinity;
-    auto const stop = [&] { return result_.interrupted = result_.interrupted || context_.stop_requested(); };
+    auto const asked = [&] { return result_.interrupted = result_.interrupted || context_.stop_requested(); };
     for (std::size_t m = 0; m < next_.models.size(); ++m) {
       Particles const& particles = next_.models[m];
       LaneArray const x = particles.lanes(candidates_.dimension(static_cast<int>(m)));
       // Drawn from the prior, all weigh the same.
       logs.push_back(last_.number == 0 || particles.count() == 0
                          ? std::vector<double>(particles.distance.size(), 0.0)
-                         : proposals.log_weights(static_cast<int>(m), x, particles.log_prior, stop));
+                         : proposals.log_weights(static_cast<int>(m), x, particles.log_prior, asked));
       if (result_.interrupted) return false;
-      for (double const log : logs.back()) highest = std::max(highest, log);
+      for (double& log : logs.back()) {
+        if (!(log < infinity)) log = -infinity;  // the kernel's density there is lost in rounding, and so is the weight
+        highest = std::max(highest, log);
+      }
     }
+    if (highest == -infinity)
+      return !stop(
+          Stop{fmt::format("the moves of population {} are lost in rounding: its particles have no weights", next_.number), true});
     double total = 0;
     for (std::size_t m = 0; m < logs.size(); ++m)
       for (std::size_t j = 0; j < logs[m].size(); ++j) total += next_.models[m].weight[j] = elementary::exp(logs[m][j] - highest);
@@ -243,7 +253,7 @@ class Run {
   void finish() {
     if (result_.interrupted && context_.checkpoint) save();
     if (last_.number == 0) {
-      if (!result_.interrupted) result_.failure = no_population(record_, plan_.first_threshold, plan_.particles);
+      if (!result_.interrupted) result_.failure = no_population(record_, next_.threshold, plan_.particles, result_.stopped_by);
       return;
     }
     result_.populations = state_.records;

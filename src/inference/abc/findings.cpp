@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace sysid::abc {
 namespace {
@@ -46,18 +47,51 @@ void add_failures(SelectionResult const& result, Findings& findings) {
   }
 }
 
+/// The threshold cannot fall: so many particles are at this very distance. Those of models without parameters have no other.
+std::optional<Finding> equal_distances(SelectionResult const& result) {
+  std::string fixed;
+  bool others = false, elsewhere = false;
+  for (SelectedModel const& model : result.models) {
+    if (model.died_in > 0) continue;
+    bool const here = std::count(model.distance.begin(), model.distance.end(), result.threshold) > 0;
+    if (!model.parameters.empty())
+      (here ? others : elsewhere) = true;
+    else if (here)
+      fixed += fmt::format("{}`{}`", fixed.empty() ? "" : ", ", model.name);
+  }
+  if (!others && !elsewhere) return std::nullopt;  // nothing could lie at another distance
+  if (others || fixed.empty())
+    return Finding{
+        Severity::warning, "distances_equal",
+        fmt::format("the threshold cannot fall below {:.6g}: so many particles have this very distance", result.threshold),
+        "look whether the simulation reads the parameters at all"};
+  return Finding{
+      Severity::warning, "distances_equal",
+      fmt::format("the threshold cannot fall below {:.6g}: all particles of {} have this very distance, for no parameter "
+                  "takes part in the simulation",
+                  result.threshold, fixed),
+      "how much nearer the others come counts no more: the likelihood tells that, or a smaller threshold by `schedule`"};
+}
+
 }  // namespace
 
-Finding no_population(PopulationRecord const& record, double threshold, int particles) {
+Finding no_population(PopulationRecord const& record, double threshold, int particles, std::string const& stopped_by) {
+  bool const bounded = std::isfinite(threshold);
+  std::uint64_t const beyond = record.simulated - record.failed - static_cast<std::uint64_t>(record.accepted);
   std::string const failed = record.failed == 0 ? std::string() : fmt::format(", {} of which did not stay finite", record.failed);
+  std::string const what =
+      bounded ? fmt::format("came within the first threshold {}", threshold) : std::string("could be simulated");
+  std::string help = "allow more, or take fewer `particles`";
+  if (record.simulated == 0 && record.proposed > 0)
+    help = "the densities of the priors are not finite at their own draws: give them widths that numbers can hold";
+  else if (beyond > record.failed && bounded)
+    help = "raise the first threshold, or look at priors, units and the input rule with `sysid check`";
+  else if (record.failed > 0)
+    help = "the priors lie where the models do not stay finite: narrow them, or take a finer solver";
   return {Severity::error, "no_population",
-          std::isfinite(threshold)
-              ? fmt::format("{} of {} draws from the priors came within the first threshold {} after {} simulations{}",
-                            record.accepted, particles, threshold, record.simulated, failed)
-              : fmt::format("{} of {} draws from the priors could be simulated after {} attempts{}", record.accepted, particles,
-                            record.simulated, failed),
-          std::isfinite(threshold) ? "raise `first_threshold`, or look at priors, units and the input rule with `sysid check`"
-                                   : "the priors lie where the models do not stay finite: narrow them, or take a finer solver"};
+          fmt::format("{} of {} draws from the priors {} after {} simulations{}: {}", record.accepted, particles, what,
+                      record.simulated, failed, stopped_by),
+          help};
 }
 
 Findings judge_populations(SelectionResult const& result, Plan const& plan) {
@@ -72,10 +106,7 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
   bool const equal = result.populations.size() > 1 && result.threshold == result.next_threshold &&
                      result.threshold != plan.target && plan.schedule.empty();
   if (equal)
-    findings.push_back(
-        {Severity::warning, "distances_equal",
-         fmt::format("the threshold cannot fall below {:.6g}: so many particles have this very distance", result.threshold),
-         "look whether the simulation reads the parameters at all"});
+    if (auto finding = equal_distances(result)) findings.push_back(std::move(*finding));
   add_failures(result, findings);
   if (result.ran_out || !std::isfinite(result.threshold))
     findings.push_back({Severity::warning, "budget_spent",

@@ -5,8 +5,9 @@
 
 namespace sysid::abc {
 
-/// The failure of a run that never filled its first population.
-Finding no_population(PopulationRecord const& record, double threshold, int particles);
+/// The failure of a run that never filled its first population: how many draws came how far, what ended the run (in words), and
+/// which of threshold, priors and budget to change.
+Finding no_population(PopulationRecord const& record, double threshold, int particles, std::string const& stopped_by);
 
 /// Models that died by chance, populations that stand on few particles, thresholds that cannot fall, failed simulations, budgets
 /// that ended the run, and what its spread means.

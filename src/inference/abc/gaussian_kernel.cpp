@@ -5,7 +5,6 @@
 #include "core/normals.hpp"
 #include "inference/abc/kernel.hpp"
 #include "inference/abc/kernel_numerics.hpp"
-#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::abc {
 namespace {
@@ -13,10 +12,10 @@ namespace {
 /// One covariance for all centres: distances are Euclidean once both are multiplied by L^-1.
 class Gaussian : public Kernel {
  public:
-  Gaussian(ConstLanes at, std::span<double const> weight, Eigen::MatrixXd const& covariance)
+  Gaussian(ConstLanes at, std::span<double const> weight, double scale, Eigen::MatrixXd const& covariance)
       : at_(at),
         weight_(weight),
-        factor_(cholesky(covariance).value()),
+        factor_(scaled_factor(scale, covariance)),
         log_normaliser_(log_normaliser(factor_)),
         white_(whiten(at)) {}
 
@@ -61,12 +60,12 @@ class Gaussian : public Kernel {
 }  // namespace
 
 std::unique_ptr<Kernel> make_gaussian(Plan const& plan, ConstLanes at, std::span<double const> weight, Width const& width) {
-  return std::make_unique<Gaussian>(at, weight, plan.scale * width.covariance);
+  return std::make_unique<Gaussian>(at, weight, plan.scale, width.covariance);
 }
 
 std::unique_ptr<Kernel> make_component_gaussian(Plan const& plan, ConstLanes at, std::span<double const> weight,
                                                 Width const& width) {
-  return std::make_unique<Gaussian>(at, weight, plan.scale * Eigen::MatrixXd(width.covariance.diagonal().asDiagonal()));
+  return std::make_unique<Gaussian>(at, weight, plan.scale, width.covariance.diagonal().asDiagonal());
 }
 
 }  // namespace sysid::abc

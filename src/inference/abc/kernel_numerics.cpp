@@ -1,9 +1,11 @@
 // Exponentials in lanes, sums in the centres' order.
 #include "inference/abc/kernel_numerics.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include "core/elementary.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::abc {
 
@@ -13,6 +15,11 @@ double weighted_exponentials(std::span<double> square, std::span<double const> w
   double part[4] = {0, 0, 0, 0};
   for (std::size_t j = 0; j < square.size(); ++j) part[j % 4] += weight[j] * square[j];
   return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+Eigen::MatrixXd scaled_factor(double scale, Eigen::MatrixXd const& covariance) {
+  if (auto factor = cholesky(scale * covariance)) return *std::move(factor);
+  return std::sqrt(scale) * cholesky_or_diagonal(covariance);
 }
 
 double log_normaliser(Eigen::MatrixXd const& factor) {

@@ -45,7 +45,7 @@ class NearestNeighbours : public Kernel {
       covariance =
           scale * (count < at.rows() + 1 ? width.covariance : Eigen::MatrixXd(covariance / total + 1e-6 * width.covariance));
       auto factor = cholesky(covariance);
-      factors_.push_back(factor ? std::move(*factor) : cholesky(width.covariance).value());
+      factors_.push_back(factor ? std::move(*factor) : scaled_factor(scale, width.covariance));
       log_normalisers_.push_back(log_normaliser(factors_.back()));
     }
     log_scale_ = *std::max_element(log_normalisers_.begin(), log_normalisers_.end());

@@ -20,8 +20,8 @@ constexpr SettingRow rows[] = {
     {"kernel", SettingKind::word, "gaussian", 0, 0, "gaussian component_gaussian uniform nearest_neighbours",
      "how a particle moves: normal with the population's covariance, its diagonal, a box of its range, or normal with the "
      "covariance of the nearest neighbours"},
-    {"kernel_scale", SettingKind::real, "0", 0, infinity, "",
-     "factor on that covariance, or on the range; 0: 2 for the population's covariance, else 1"},
+    {"kernel_scale", SettingKind::real, "0", 0, 1e12, "",
+     "factor on that covariance, or on the range; 0: 2 for the population's covariance, else 1", 1e-6},
     {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "that shape the kernel `nearest_neighbours`"},
     {"coordinates", SettingKind::word, "natural", 0, 0, "natural declared unconstrained",
      "the kernel moves logarithms of parameters whose prior spans decades and declared values of the others, declared values, or "

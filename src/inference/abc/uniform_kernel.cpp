@@ -1,5 +1,6 @@
 // Moves within a box about the centre.
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -8,6 +9,9 @@
 
 namespace sysid::abc {
 namespace {
+
+/// Of a place: a move to the box's edge must not end outside of it.
+constexpr double rounding = std::numeric_limits<double>::epsilon();
 
 class Uniform : public Kernel {
  public:
@@ -27,7 +31,7 @@ class Uniform : public Kernel {
     for (int w = 0; w < x.width(); ++w) {
       std::copy(weight_.begin(), weight_.end(), inside.begin());
       for (int d = 0; d < at_.rows(); ++d) {
-        double const place = x(d, w), half = 0.5 * widths_[d];
+        double const place = x(d, w), half = 0.5 * widths_[d] + rounding * std::abs(place);
         double const* const row = at_.row(d).data();
         for (std::size_t j = 0; j < inside.size(); ++j) inside[j] = std::abs(row[j] - place) <= half ? inside[j] : 0;
       }
