@@ -54,8 +54,8 @@ void settle(Session& session, Candidate const& candidate, std::uint64_t seed, Ca
   SettledSolver settled = settle_solver(make, Aim::posterior, candidate.fit->solver, std::move(posterior.modes), seed, extra,
                                         [&] { return session.interrupted(); });
   posterior.modes = std::move(settled.modes);
-  // A place that only a coarse solver could reach is none; what is left is weighed as the finer one has it.
-  std::erase_if(posterior.modes, [](Mode const& mode) { return !std::isfinite(mode.log_density); });
+  if (settled.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none
+  // What is left is weighed as the finer one has it.
   std::stable_sort(posterior.modes.begin(), posterior.modes.end(),
                    [](Mode const& a, Mode const& b) { return a.log_mass > b.log_mass; });
   double const evidence = log_evidence(posterior.modes);
@@ -71,6 +71,11 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
                                                                     SelectionResult const& result, std::uint64_t seed) {
   std::vector<CandidatePosterior> posteriors(candidates.size());
   Ledger extra;
+  auto const stopped = [&] {
+    bool const asked = session.interrupted();
+    if (asked) session.progress.end(false);
+    return asked;
+  };
   session.progress.begin("the likelihood's side", candidates.size());
   // The most probable one first: it says how much is little.
   std::vector<std::size_t> order(candidates.size());
@@ -84,13 +89,14 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     double const per_mass = unit_term(candidates[k], candidates.front()) + elementary::log(result.models[k].prior);
     LocalSearches found = modes_near(*likelihood_target(session, candidates[k], solver), result.models[k],
                                      best - per_mass - negligible, seed, extra, [&] { return session.interrupted(); });
-    if (session.interrupted()) return std::nullopt;
+    if (stopped()) return std::nullopt;
     best = std::max(best, log_evidence(found.modes) + per_mass);
     posteriors[k] = {std::move(found.modes), found.given_up, solver, {}, true};
     session.progress.advance(i + 1, result.models[k].name);
   }
   // What a finer solver does to one may make another one worth a look.
   std::vector<bool> looked_at(candidates.size());
+  std::string finer;  // told once the progress line is closed
   for (std::size_t k = 0; k < candidates.size();) {
     auto const checks = evidences(candidates, posteriors, result);
     bool const worth = result.models[k].probability >= worth_a_look || (checks[k] && checks[k]->probability >= worth_a_look);
@@ -102,13 +108,14 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     looked_at[k] = true;
     settle(session, candidates[k], seed, posteriors[k]);
     if (posteriors[k].solver != candidates[k].fit->solver)
-      session.notices << fmt::format("the likelihood of `{}` with {}: with {} its parameters move by up to {:.2g} sd with {}\n",
-                                     candidates[k].what->name, posteriors[k].solver.text(), candidates[k].fit->solver.text(),
-                                     *posteriors[k].move, candidates[k].fit->solver.finer_words());
-    if (session.interrupted()) return std::nullopt;
+      finer +=
+          fmt::format("the likelihood of `{}` with {}: with {} {} with {}\n", candidates[k].what->name, posteriors[k].solver.text(),
+                      candidates[k].fit->solver.text(), moved(*posteriors[k].move), candidates[k].fit->solver.finer_words());
+    if (stopped()) return std::nullopt;
     k = 0;
   }
   session.progress.end();
+  session.notices << finer;
   return posteriors;
 }
 
@@ -147,11 +154,14 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
                                       *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
                           fmt::format("select again with `{}`", finer)});
     }
-    if (!posterior.settled)
-      findings.push_back(
-          {Severity::warning, "step_not_settled",
-           fmt::format("even {} does not settle the likelihood of `{}`", posterior.solver.text(), candidates[k].what->name),
-           "where the model is stiff, take `solver = cvode`; it may be chaotic on this record"});
+    if (posterior.settled) continue;
+    std::string const what =
+        posterior.modes.empty()
+            ? fmt::format("with a finer solver than {} the likelihood of `{}` is not finite at any mode near its particles",
+                          posterior.solver.text(), candidates[k].what->name)
+            : fmt::format("even {} does not settle the likelihood of `{}`", posterior.solver.text(), candidates[k].what->name);
+    findings.push_back({Severity::warning, "step_not_settled", what,
+                        "where the model is stiff, take `solver = cvode`; it may be chaotic on this record"});
   }
   return findings;
 }

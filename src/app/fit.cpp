@@ -154,9 +154,8 @@ class Fit {
     if (std::count_if(preparation_.modes.begin(), preparation_.modes.end(), [](Mode const& each) { return each.share > 0.01; }) < 2)
       std::erase_if(preparation_.findings, [](Finding const& each) { return each.code == "second_mode"; });
     if (settled.solver != what_.solver)
-      session_.notices << fmt::format("{}: {} (with {}, parameters move by up to {:.2g} sd with {})\n", task_.name,
-                                      accuracy(settled.solver), accuracy(what_.solver), preparation_.moves.front(),
-                                      what_.solver.finer_words());
+      session_.notices << fmt::format("{}: {} (with {}, {} with {})\n", task_.name, accuracy(settled.solver),
+                                      accuracy(what_.solver), moved(preparation_.moves.front()), what_.solver.finer_words());
     if (!settled.settled)
       preparation_.findings.push_back({Severity::error, "step_not_settled",
                                        fmt::format("even {} do not settle the result", accuracy(settled.solver)),

@@ -70,21 +70,28 @@ double log_evidence(std::vector<Mode> const& modes) {
 }
 
 Findings compare_probabilities(SelectionResult const& result, std::vector<std::optional<double>> const& by_likelihood) {
-  std::size_t worst = 0;
-  double most = 0;
+  struct Difference {
+    std::size_t model;
+    double size;  // of the tolerable one
+  };
+  std::vector<Difference> differences;
   for (std::size_t m = 0; m < by_likelihood.size(); ++m) {
     if (!by_likelihood[m]) continue;
     double const tolerable = result.models[m].died_in > 0 ? tolerable_loss : tolerable_difference;
-    double const difference = std::abs(result.models[m].probability - *by_likelihood[m]) / tolerable;
-    if (difference > most) most = difference, worst = m;
+    double const size = std::abs(result.models[m].probability - *by_likelihood[m]) / tolerable;
+    if (size > 1) differences.push_back({m, size});
   }
-  if (most <= 1) return {};
-  SelectedModel const& model = result.models[worst];
+  if (differences.empty()) return {};
+  std::stable_sort(differences.begin(), differences.end(), [](auto const& a, auto const& b) { return a.size > b.size; });
+  std::string each;
+  for (Difference const& difference : differences) {
+    SelectedModel const& model = result.models[difference.model];
+    each += fmt::format("{}`{}` has probability {:.2f} by the particles and {:.2f} by the likelihood", each.empty() ? "" : "; ",
+                        model.name, model.probability, *by_likelihood[difference.model]);
+    if (model.died_in > 0) each += fmt::format(", it died in population {}", model.died_in);
+  }
   return {
-      {Severity::warning, "probabilities_disagree",
-       fmt::format("`{}` has probability {:.2f} by the particles and {:.2f} by the likelihood{}", model.name, model.probability,
-                   *by_likelihood[worst],
-                   model.died_in > 0 ? fmt::format("; it died in population {}", model.died_in) : std::string()),
+      {Severity::warning, "probabilities_disagree", each,
        "the threshold is what the data may differ by: stop at a smaller change, take more `particles`, or believe the likelihood "
        "where its noise is the right one"}};
 }

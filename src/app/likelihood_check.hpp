@@ -24,7 +24,8 @@ double log_evidence(std::vector<Mode> const& modes);
 /// Where a model's probability by weights and by likelihood differ by more than this, it is said; of a model that died, when the
 /// likelihood leaves it more than that.
 constexpr double tolerable_difference = 0.2, tolerable_loss = 0.02;
-/// by_likelihood: per model; nothing where no climb ended at a finite likelihood.
+/// One finding that names each such model, the largest difference first. by_likelihood: per model; nothing where no climb ended at
+/// a finite likelihood.
 Findings compare_probabilities(SelectionResult const& result, std::vector<std::optional<double>> const& by_likelihood);
 
 }  // namespace sysid

@@ -32,8 +32,13 @@ Polish polish_candidates(Session& session, std::vector<Candidate> const& candida
     auto const missed = [&](std::string const& why) {
       polish.findings.push_back({Severity::warning, "not_polished", fmt::format("`{}` was not polished: {}", model.name, why), ""});
     };
+    if (candidates[k].space->dimension() == 0) continue;  // one point, which is known
     if (posteriors[k].modes.empty()) {
       missed("no climb from its particles ends at a finite likelihood");
+      continue;
+    }
+    if (posteriors[k].given_up) {
+      missed("the climb to its mode was given up, for by the likelihood it is less probable than another by 30 nats and more");
       continue;
     }
     auto const target = likelihood_target(session, candidates[k], posteriors[k].solver);

@@ -130,8 +130,9 @@ class PredictSelection {
                                  session_.file.candidates[static_cast<std::size_t>(select_.candidates)].models[k].name);
     if (e == 0 && order.size() > 1)
       report.findings.push_back({Severity::note, "averaged_over_models", fmt::format("trajectories: {}", of_models), ""});
-    report.findings.push_back({Severity::note, "without_noise",
-                               "the bands are of the response alone: a selection by distance says nothing about the noise", ""});
+    if (e == 0)
+      report.findings.push_back({Severity::note, "without_noise",
+                                 "the bands are of the response alone: a selection by distance says nothing about the noise", ""});
     all.noisy.resize(leading_model->channels.size());  // none
     report.predictions.push_back(bands_along(*leading, all, experiment, *leading_model));
     Findings const left_out = leave_out_noise(*leading_model, report.predictions.back());

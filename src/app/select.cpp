@@ -165,10 +165,13 @@ class Select {
                                  "go on with --resume; it ends with the bytes of an unbroken run"});
     else if (!selection.result.ran_out)
       report.findings.push_back({Severity::note, "selection_ended", selection.result.stopped_by, ""});
-    report.findings.push_back({Severity::note, "width_of_threshold",
-                               "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
-                               "after an early stop, smaller after a late one",
-                               polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
+    bool const spread = std::any_of(selection.result.models.begin(), selection.result.models.end(),
+                                    [](SelectedModel const& each) { return each.died_in == 0 && !each.parameters.empty(); });
+    if (spread)
+      report.findings.push_back({Severity::note, "width_of_threshold",
+                                 "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
+                                 "after an early stop, smaller after a late one",
+                                 polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
     if (!interrupted) add_predictions(selection, report);
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : selection.result.settings.all()) report.settings.emplace_back(name, value);

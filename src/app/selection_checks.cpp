@@ -93,7 +93,7 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
   }
   // A model that cannot follow the data takes its misfit for noise: the one that needs the least is nearest to the truth.
   for (std::size_t k = 0; !stated && k < posteriors.size(); ++k) {
-    if (posteriors[k].modes.empty()) continue;
+    if (posteriors[k].modes.empty() || posteriors[k].given_up) continue;
     LaneArray declared(candidates[k].space->dimension(), 1);
     for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = posteriors[k].modes.front().declared[static_cast<std::size_t>(d)];
     auto const floor = floor_at(session, candidates[k], target.distance(static_cast<int>(k)), declared);
@@ -122,9 +122,12 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
   std::nth_element(shift.begin(), shift.begin() + count / 2, shift.end());
   double const median = shift[static_cast<std::size_t>(count / 2)];
   if (median <= tolerable_shift * result.threshold) return {};
-  return {{Severity::warning, "step_not_settled",
-           fmt::format("with {} distances move by {:.2g} of the threshold: part of them is the integrator's", solver.finer_words(),
-                       median / result.threshold),
+  std::string const what =
+      !std::isfinite(median) ? std::string("half of the particles or more do not stay finite: what they say is the integrator's")
+      : result.threshold == 0
+          ? fmt::format("distances move by {:.2g} from a threshold of 0: they are the integrator's", median)
+          : fmt::format("distances move by {:.2g} of the threshold: part of them is the integrator's", median / result.threshold);
+  return {{Severity::warning, "step_not_settled", fmt::format("with {} {}", solver.finer_words(), what),
            "take a finer solver, `substeps = 4` or `solver = dopri5`"}};
 }
 

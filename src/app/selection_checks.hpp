@@ -10,12 +10,12 @@
 namespace sysid {
 
 /// Laplace's model probabilities from the modes of each candidate's likelihood, densities in the units of the first candidate;
-/// names the worst difference from the particles', and takes back the warning of a death by chance that the likelihood confirms.
+/// names each large difference from the particles', and takes back the warning of a death by chance that the likelihood confirms.
 void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<CandidatePosterior> const& posteriors,
                      SelectionReport& selection, Findings& findings);
 
 /// What noise leaves of the distance: the noise that the leading model states, or where a prior leaves that open the smallest one
-/// that any candidate's mode has found. Normal noise only.
+/// that any candidate's mode has found; a place where a climb was given up is none. Normal noise only.
 Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
                          std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection);
 

@@ -41,6 +41,23 @@ std::vector<Mode> merged(std::vector<Mode> const& modes) {
   return result;
 }
 
+bool lost(Mode const& mode) { return !std::isfinite(mode.log_density); }
+
+// `finer` without places that only the coarser solver could reach: nothing follows them, so no solver would settle. One that was
+// lost before may yet come back with steps as fine as those of the search.
+std::vector<Mode> reached(std::vector<Mode> const& coarser, std::vector<Mode> const& finer) {
+  std::vector<Mode> left;
+  double sum = 0;
+  for (std::size_t m = 0; m < finer.size(); ++m) {
+    if (lost(finer[m]) && !lost(coarser[m])) continue;
+    left.push_back(finer[m]);
+    sum += finer[m].share;
+  }
+  if (left.size() < finer.size())
+    for (Mode& mode : left) mode.share = sum > 0 ? mode.share / sum : 1.0 / static_cast<double>(left.size());
+  return left;
+}
+
 // To first order only: far beyond a few sds the number means no more than "many".
 std::string move_text(double move) { return move > 5 ? "many sds" : fmt::format("about {:.2g} sd", move); }
 
@@ -56,6 +73,11 @@ Finding shaped(SolverSettings const& solver, bool chosen, std::string const& wha
 }
 
 }  // namespace
+
+std::string moved(double move) {
+  return std::isfinite(move) ? fmt::format("parameters move by up to {:.2g} sd", move)
+                             : std::string("the simulation fails at a mode");
+}
 
 SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed) {
   SearchSolver result{from, 0};
@@ -102,12 +124,14 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
     std::vector<Mode> finer = refit(*make(result.solver.finer()), aim, result.modes, seed, ledger, stop);
     result.moves.push_back(largest_move(result.modes, finer));
     if (result.moves.back() <= tolerable_move) break;
-    if (too_fine(result.solver.finer())) {
+    std::vector<Mode> const left = reached(result.modes, finer);
+    result.lost = left.empty();
+    if (result.lost || too_fine(result.solver.finer())) {
       result.settled = false;
       break;
     }
     result.solver = result.solver.finer();
-    result.modes = merged(finer);
+    result.modes = merged(left);
   }
   return result;
 }

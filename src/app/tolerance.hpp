@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "inference/backend.hpp"
@@ -12,6 +13,9 @@ namespace sysid {
 /// A parameter's limits (value plus and minus sd) may move by this many of its sds when the step is halved, or the tolerance made a
 /// hundred times smaller.
 constexpr double tolerable_move = 0.1;
+
+/// "parameters move by up to 0.3 sd", or that a mode is lost where the move is infinite.
+std::string moved(double move);
 
 using MakeTarget = std::function<std::unique_ptr<ModelTarget>(SolverSettings const& solver)>;
 
@@ -24,12 +28,13 @@ struct SearchSolver {
 SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed);
 
 /// The first of `from`, `from.finer()`, ... for which no mode moves or changes its width by more than `tolerable_move` sds at the
-/// next one; the modes there, those that came together counted once.
+/// next one; the modes there, those that came together counted once, those that only a coarser solver could reach left out.
 struct SettledSolver {
   SolverSettings solver;
   std::vector<Mode> modes;
   std::vector<double> moves;  // of each that was tried: largest move to the next one [sd]
-  bool settled = true;        // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative)
+  bool settled = true;        // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative), or lost
+  bool lost = false;          // with the next one no mode is finite any more: these are the last that were
 };
 SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
                             std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {});

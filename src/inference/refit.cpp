@@ -52,7 +52,7 @@ std::vector<Mode> refit(Target const& target, Aim aim, std::vector<Mode> const& 
 
 Move largest_move(Mode const& before, Mode const& after) {
   double const infinity = std::numeric_limits<double>::infinity();
-  if (!std::isfinite(after.log_density)) return {0, infinity, infinity};
+  if (!std::isfinite(before.log_density) || !std::isfinite(after.log_density)) return {0, infinity, infinity};
   Move most;
   for (std::size_t p = 0; p < before.declared.size(); ++p) {
     if (!(before.sd[p] > 0)) continue;

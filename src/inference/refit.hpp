@@ -14,7 +14,7 @@ std::vector<Mode> refit(Target const& target, Aim aim, std::vector<Mode> const& 
                         std::function<bool()> const& stop = {});
 
 /// How far a parameter's limits, its value plus and minus its sd, lie apart in two modes: |change of value| + |change of sd|, in
-/// units of `before`'s sd. Of the parameter for which that is largest; infinite when `after` is not finite.
+/// units of `before`'s sd. Of the parameter for which that is largest; infinite where either is not finite.
 struct Move {
   int parameter = 0;
   double size = 0;   // of value and sd together

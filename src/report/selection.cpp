@@ -76,9 +76,13 @@ void add_row(ReportTable& table, Summary const& s, std::string const& from) {
   if (!from.empty()) table.rows.back().push_back(from);
 }
 
+bool is_polished(SelectionReport const& selection, std::size_t m) {
+  return m < selection.polished.size() && !selection.polished[m].empty();
+}
+
 ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
   SelectedModel const& model = selection.result.models[m];
-  bool const polished = m < selection.polished.size() && !selection.polished[m].empty();
+  bool const polished = is_polished(selection, m);
   ReportTable table{"parameters of " + model.name,
                     "The sd of particles is the width that the threshold leaves, not that of the posterior.",
                     {"", "unit", "mean", "sd", "q5", "median", "q95"},
@@ -157,7 +161,7 @@ std::string model_file_name(std::string const& model) {
 std::vector<ReportTable> selection_tables(SelectionReport const& selection) {
   std::vector<ReportTable> tables = {model_table(selection), population_table(selection)};
   for (std::size_t m = 0; m < selection.result.models.size(); ++m)
-    if (selection.result.models[m].died_in == 0 && !selection.result.models[m].summaries.empty())
+    if (selection.result.models[m].died_in == 0 && (!selection.result.models[m].summaries.empty() || is_polished(selection, m)))
       tables.push_back(parameter_table(selection, m));
   if (!selection.shared.empty()) tables.push_back(shared_table(selection));
   if (!selection.shared_unmoved.empty()) {
@@ -187,7 +191,7 @@ nlohmann::ordered_json models_json(SelectionReport const& selection) {
     entry["parameters"] = Json::object();
     if (model.died_in > 0) continue;
     for (WeightedSummary const& s : model.summaries) entry["parameters"][s.name] = weighted_json(s);
-    if (m >= selection.polished.size() || selection.polished[m].empty()) continue;
+    if (!is_polished(selection, m)) continue;
     for (Summary const& s : selection.polished[m])
       entry["polished"][s.name] = {
           {"unit", s.unit}, {"mean", s.mean},         {"median", s.median},    {"sd", s.sd}, {"q5", s.q5}, {"q95", s.q95},

@@ -39,9 +39,10 @@ struct RunResult {
   std::string out, notices;
 };
 
-/// `name` may lie in a folder with data; results go to options.output. Front-end errors throw UserError with the first one.
+/// `name` may lie in a folder with data; results go to options.output, progress nowhere unless somebody watches it. Front-end
+/// errors throw UserError with the first one.
 inline RunResult run_text(std::filesystem::path const& name, std::string const& text, RunOptions options,
-                          std::vector<std::string> const& verbs = {}) {
+                          std::vector<std::string> const& verbs = {}, Progress* progress = nullptr) {
   options.figures = false;
   Source source(name.string(), text);
   Diagnostics diagnostics;
@@ -49,7 +50,7 @@ inline RunResult run_text(std::filesystem::path const& name, std::string const& 
   if (!file) throw UserError(diagnostics.all().front());
   SilentProgress silent;
   std::ostringstream out, notices;
-  ExitCode const code = run_tasks(source, *file, verbs, options, silent, out, notices);
+  ExitCode const code = run_tasks(source, *file, verbs, options, progress == nullptr ? silent : *progress, out, notices);
   return {static_cast<int>(code), out.str(), notices.str()};
 }
 

@@ -4,58 +4,18 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/running.hpp"
-#include "core/random.hpp"
+#include "app/line.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
+using testing::Answer;
+using testing::Line;
+using testing::slope;
 
 namespace {
-
-/// A straight line, exact or with noise of sd 0.1, in 40 rows.
-constexpr double slope = 2;
-
-struct Answer {
-  int exit = 0;
-  json summary;
-  std::string out;
-  bool has(std::string const& code) const {
-    for (json const& finding : summary.at("findings"))
-      if (finding.at("code") == code) return true;
-    return false;
-  }
-  json const& model(std::string const& name) const { return summary.at("models").at(name); }
-};
-
-class Line {
- public:
-  explicit Line(double noise, double offset = 0) {
-    std::ofstream file(folder_.path() / "line.csv");
-    file << "t,y,none\n";
-    Stream stream({.seed = 11, .purpose = Purpose::test, .index = 0, .step = 0});
-    for (int i = 0; i < 40; ++i) file << 0.1 * i << "," << offset + slope * 0.1 * i + noise * stream.normal() << ",NA\n";
-  }
-
-  /// Runs the task `answer` of models, candidates and task; the data block is `line` with channel d.
-  Answer run(std::string const& text, std::string const& unit = "", std::vector<std::string> const& verbs = {"select"}) const {
-    RunOptions options;
-    options.output = folder_.path() / "results";
-    options.force = true;
-    RunResult const result = run_text(folder_.path() / "m.sysid",
-                                      text + "\ndata line { file \"line.csv\"; time t [s]; input u = t " +
-                                          (unit.empty() ? "[-]" : "[s]") + " hold linear; measure d = y " + unit + " }\n",
-                                      options, verbs);
-    return {result.exit, json::parse(read_file(options.output / "answer/summary.json")), result.out};
-  }
-  std::filesystem::path results() const { return folder_.path() / "results"; }
-
- private:
-  TemporaryFolder folder_;
-};
 
 std::string const metres =
     "model a { input u [s]; parameter k [m/s] ~ uniform(0, 10); parameter c [m] ~ uniform(-5, 5)\n"
@@ -94,18 +54,18 @@ TEST_CASE("a model in metres and the same one in millimetres are equally probabl
   }
 }
 
-TEST_CASE("channels of two units make one root mean square") {
+TEST_CASE("channels of two units and two noises make one root mean square") {
   Line const line(0.1, 0.0);
   Answer const answer = line.run(
       "model a { input u [s]; parameter k [m/s] ~ uniform(0, 10); parameter g [m/s] ~ uniform(0, 10)\n"
-      "observe d [m] ~ normal(k*u, sd = 0.1)\n observe e [mm] ~ normal(g*u, sd = 0.1 [m]) }\n"
+      "observe d [m] ~ normal(k*u, sd = 0.1)\n observe e [mm] ~ normal(g*u, sd = 0.3 [m]) }\n"
       "data two { file \"line.csv\"; time t [s]; input u = t [s] hold linear; measure d = y [m]; measure e = y [m] }\n"
-      "answer = select a to two with abc_smc(particles = 300), distance = rmse, seed = 1",
+      "answer = select a to two with abc_smc(particles = 300), distance = rmse, weights(d = 3, e = 1), seed = 1",
       "[m]");
-  // Both are the same line, so both slopes are known alike; the floor of the mean of two root mean squares is 0.1 m.
+  // Both are the same line, so both slopes are known alike; the floor of the mean of two root mean squares is (3*0.1 + 0.3)/4 m.
   json const& parameters = answer.model("a").at("parameters");
   for (char const* name : {"k", "g"}) CHECK(parameters.at(name).at("mean").get<double>() == doctest::Approx(slope).epsilon(0.05));
-  CHECK(answer.summary.at("populations").at("noise_floor").get<double>() == doctest::Approx(0.1));
+  CHECK(answer.summary.at("populations").at("noise_floor").get<double>() == doctest::Approx(0.15));
 }
 
 TEST_CASE("a prior over six decades does not kill its model") {
@@ -148,8 +108,8 @@ TEST_CASE("a model whose draws all diverge is named, and is not said to have a l
   Line const line(0.1, 0.0);
   Answer const answer = line.run(
       "model lin { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
-      "model boom { input u; state q; initial q = 1; parameter k ~ uniform(1e6, 1e7); q' = k*q^2\n"
-      "observe d ~ normal(q, sd = 0.1) }\ncandidates s { lin; boom }\n"
+      "model boom { input u; state q; initial q = 1; parameter growth ~ uniform(1e6, 1e7); parameter b ~ uniform(-2, -1)\n"
+      "q' = growth*q^2; observe d ~ normal(q + b*u, sd = 0.1) }\ncandidates s { lin; boom }\n"
       "answer = select s to line with abc_smc(particles = 200), seed = 1");
   CHECK(answer.model("boom").at("died_by_chance") == false);
   CHECK_FALSE(answer.model("boom").contains("laplace"));
@@ -159,6 +119,15 @@ TEST_CASE("a model whose draws all diverge is named, and is not said to have a l
   int traced = 0, untold = 0;
   for (json const& failure : failures) (failure.at("time").is_null() ? untold : traced) += failure.at("count").get<int>();
   CHECK(traced == 8);
+  // Examples have the names and values of the model that failed, not of the one that leads.
+  for (json const& failure : failures) {
+    json const& example = failure.at("example");
+    REQUIRE(example.size() == 2);
+    CHECK(example.at("growth").get<double>() > 1e6);
+    CHECK(example.at("growth").get<double>() < 1e7);
+    CHECK(example.at("b").get<double>() < -1);
+    CHECK(example.at("b").get<double>() > -2);
+  }
   CHECK(untold > 8);
   CHECK(answer.out.find("nan") == std::string::npos);
   CHECK(read_file(line.results() / "answer/report.html").find("nan") == std::string::npos);
@@ -284,6 +253,10 @@ TEST_CASE("what no setting reads, and a weight that no sample carries, are refus
     return std::string("none");
   };
   CHECK(code("answer = select a to line with abc_smc(schedule = (10, 1), target = 5), seed = 1") == "E6203");
+  // 0 stands for the default; what is so small or so large moves nothing, or everything out of the prior.
+  CHECK(code("answer = select a to line with abc_smc(kernel_scale = 1e-320), seed = 1") == "E6005");
+  CHECK(code("answer = select a to line with abc_smc(kernel_scale = 1e300), seed = 1") == "E6005");
+  CHECK(code("answer = select a to line with abc_smc(particles = 50, populations = 2, kernel_scale = 0), seed = 1") == "none");
   CHECK(code("answer = select a to line with abc_smc(neighbours = 7), seed = 1") == "E6203");
   CHECK(code("answer = select a to line with abc_smc(stay = 0.1), seed = 1") == "E6203");
   CHECK(code("answer = select a to two with abc_smc(particles = 50), weights(w = 3, d = 1), seed = 1") == "E6517");

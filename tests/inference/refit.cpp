@@ -52,4 +52,5 @@ TEST_CASE("a mode that can no longer be solved keeps its place and has moved inf
   REQUIRE(lost.size() == 1);
   CHECK(lost[0].theta == modes[0].theta);
   CHECK(largest_move(modes[0], lost[0]).size == infinity);
+  CHECK(largest_move(lost[0], modes[0]).size == infinity);
 }
