@@ -28,7 +28,7 @@ std::string signed_slope(std::string const& name, std::string const& prior) {
 std::string const line_and_wave =
     "model straight { input u; state q; initial q = 0; parameter k ~ uniform(0, 10); q' = k + 0*u; observe d ~ normal(q, sd = 0.1) "
     "}\n"
-    "model wave { input u; state q, v; initial q = 0, v = 0; parameter a ~ uniform(0, 100); parameter w ~ uniform(8, 30)\n"
+    "model wave { input u; state q, v; initial q = 0, v = 0; parameter a ~ uniform(0, 100); parameter w ~ uniform(18, 26)\n"
     "parameter z ~ uniform(0, 0.5); q' = v; v' = -2*z*w*v - w^2*q + a*u; observe d ~ normal(q, sd = 0.1) }\n"
     "candidates both { straight probability 0.8; wave probability 0.2 }\n";
 
