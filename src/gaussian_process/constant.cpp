@@ -32,11 +32,9 @@ constexpr StateSpaceRow state_space{1, &stationary, &transition};
 KernelRow constant_kernel() {
   return {.name = "constant",
           .hyper_parameters = hyper_parameters,
-          .one_input = false,
           .values = &values,
           .add_gradient = &add_gradient,
           .state_space = &state_space,
-          .spectral_density = nullptr,
           .summary = "an unknown level"};
 }
 

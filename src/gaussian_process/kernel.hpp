@@ -47,15 +47,15 @@ struct StateSpaceRow {
 struct KernelRow {
   std::string_view name;
   std::span<HyperParameterRow const> hyper_parameters;
-  bool one_input;  // reads exactly one input; else any number
+  bool one_input = false;  // reads exactly one input; else any number
   /// k(left_i, right) into out [size].
   void (*values)(Strip const&, Numbers parameters, double* out);
   /// gradient [hyper-parameters] += sum over i of weights_i dk(left_i, right)/dlog(parameter); values: those of `values`.
   void (*add_gradient)(Strip const&, Numbers parameters, double const* values, double const* weights, double* gradient);
-  StateSpaceRow const* state_space;  // nullptr: has none
+  StateSpaceRow const* state_space = nullptr;  // nullptr: has none
   /// The Fourier transform of the covariance over the differences of its inputs, at angular frequencies [D]; the convention is
   /// k(0) = (2 pi)^-D times the integral of the density. nullptr: the kernel is not stationary, or has lines in place of a density.
-  double (*spectral_density)(Numbers parameters, Numbers frequencies);
+  double (*spectral_density)(Numbers parameters, Numbers frequencies) = nullptr;
   std::string_view summary;
 };
 

@@ -31,11 +31,8 @@ void add_gradient(Strip const& strip, Numbers p, double const*, double const* we
 KernelRow linear_kernel() {
   return {.name = "linear",
           .hyper_parameters = hyper_parameters,
-          .one_input = false,
           .values = &values,
           .add_gradient = &add_gradient,
-          .state_space = nullptr,
-          .spectral_density = nullptr,
           .summary = "lines through the origin with unknown slopes"};
 }
 

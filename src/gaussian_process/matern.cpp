@@ -144,7 +144,6 @@ KernelRow matern(std::string_view name, std::string_view summary) {
   static constexpr StateSpaceRow state_space{dimension, &stationary<dimension>, &transition<dimension>};
   return {.name = name,
           .hyper_parameters = amplitude_and_lengths,
-          .one_input = false,
           .values = &values<TwiceNu>,
           .add_gradient = &add_gradient<TwiceNu>,
           .state_space = &state_space,

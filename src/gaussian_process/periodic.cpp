@@ -57,11 +57,8 @@ void add_gradient(Strip const& strip, Numbers p, double const* k, double const* 
 KernelRow periodic_kernel() {
   return {.name = "periodic",
           .hyper_parameters = hyper_parameters,
-          .one_input = false,
           .values = &values,
           .add_gradient = &add_gradient,
-          .state_space = nullptr,
-          .spectral_density = nullptr,
           .summary = "functions that repeat themselves; times another kernel, that change slowly from period to period"};
 }
 

@@ -46,10 +46,8 @@ double spectral_density(Numbers p, Numbers frequencies) {
 KernelRow squared_exponential_kernel() {
   return {.name = "squared_exponential",
           .hyper_parameters = amplitude_and_lengths,
-          .one_input = false,
           .values = &values,
           .add_gradient = &add_gradient,
-          .state_space = nullptr,
           .spectral_density = &spectral_density,
           .summary = "smooth functions, with all derivatives"};
 }

@@ -1,7 +1,5 @@
 // What the program answers to a .sysid text: front end, data, tasks; as rendered messages and an exit code.
 #pragma once
-#include <stdlib.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -10,28 +8,11 @@
 #include "app/experiments.hpp"
 #include "app/pipeline.hpp"
 #include "app/readiness.hpp"
+#include "temporary_folder.hpp"
 
 namespace sysid::test {
 
 inline std::filesystem::path const error_examples = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/errors";
-
-/// A folder of its own, removed with all in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sysid_test_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::filesystem::filesystem_error("mkdtemp", std::error_code());
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  TemporaryFolder(TemporaryFolder const&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder const&) = delete;
-
-  std::filesystem::path path;
-};
 
 /// Data paths are relative to the folder of the .sysid file, here the current one.
 class WorkingFolder {

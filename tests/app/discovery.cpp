@@ -6,32 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/check_file.hpp"
-#include "app/running.hpp"
+#include "app/discovered.hpp"
 #include "app/session.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
 
 namespace {
-
-std::filesystem::path const models = std::filesystem::path(SYSID_SOURCE_DIR) / "models/discovery";
-
-struct Discovered {
-  TemporaryFolder folder;
-  RunResult result;
-  json summary;
-  std::filesystem::path source;
-};
-
-void discover(Discovered& into, std::string const& text) {
-  RunOptions options;
-  options.output = into.folder.path() / "results";
-  into.result = run_text(models / "here.sysid", text, options);
-  into.summary = json::parse(read_file(options.output / "found/summary.json"));
-  into.source = options.output / "found/found.sysid";
-}
-
-std::string const duffing = read_file(models / "duffing.sysid");
 
 std::vector<std::string> kept(json const& equation) {
   std::vector<std::string> all;
@@ -56,15 +37,14 @@ std::string decay(int rows, double scale) {
 }  // namespace
 
 TEST_CASE("Duffing's equation is found from a noisy displacement, and its source is checked, fitted and predicts unchanged") {
-  Discovered found;
-  discover(found, duffing);
+  Discovered const found(duffing);
   CHECK(found.result.exit == 0);
   json const& equation = found.summary.at("discovery").at("equations").at(0);
   CHECK(kept(equation) == std::vector<std::string>{"y''", "y'", "y", "y^3"});
   CHECK(found.result.out.find("verdict: x = ") != std::string::npos);
 
-  std::string const text = read_file(found.source);
-  Source source(found.source.string(), text);
+  std::string const text = read_file(found.source());
+  Source source(found.source().string(), text);
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   REQUIRE_MESSAGE(file, render(diagnostics, source));
@@ -80,9 +60,9 @@ TEST_CASE("Duffing's equation is found from a noisy displacement, and its source
   CHECK(checked.diagnostics.all().empty());
   for (TaskPage const& page : checked.page.tasks) CHECK(page.all_findings().empty());
 
-  RunResult const fit = run_text(found.source, text, options, {"fit"});
+  RunResult const fit = run_text(found.source(), text, options, {"fit"});
   CHECK(fit.exit == 0);
-  RunResult const prediction = run_text(found.source, text, options, {"predict"});
+  RunResult const prediction = run_text(found.source(), text, options, {"predict"});
   CHECK(prediction.exit == 0);
   json const fitted = json::parse(read_file(after.path() / "posterior/summary.json"));
   // The truth, within five sds of the posterior.
@@ -95,11 +75,9 @@ TEST_CASE("Duffing's equation is found from a noisy displacement, and its source
 }
 
 TEST_CASE("two runs of one seed leave the same bytes") {
-  Discovered one, other;
-  discover(one, duffing);
-  discover(other, duffing);
+  Discovered const one(duffing), other(duffing);
   for (char const* name : {"summary.json", "terms.csv", "structures.csv", "refit.csv", "resolved.sysid"})
-    CHECK(read_file(one.source.parent_path() / name) == read_file(other.source.parent_path() / name));
+    CHECK(read_file(one.source().parent_path() / name) == read_file(other.source().parent_path() / name));
   CHECK(one.result.out == other.result.out);
 }
 
@@ -110,8 +88,7 @@ TEST_CASE("every selector and every form may be combined, and the target may kno
     for (char const* form : {"weak", "savitzky_golay"}) {
       CAPTURE(selector);
       CAPTURE(form);
-      Discovered found;
-      discover(found, with(known, "spike_slab(derivatives = weak)", fmt::format("{}(derivatives = {})", selector, form)));
+      Discovered const found(with(known, "spike_slab(derivatives = weak)", fmt::format("{}(derivatives = {})", selector, form)));
       json const& equation = found.summary.at("discovery").at("equations").at(0);
       REQUIRE(equation.at("terms").size() == 11);
       CHECK(equation.at("terms").at(0).at("fate") == "known");
@@ -119,15 +96,14 @@ TEST_CASE("every selector and every form may be combined, and the target may kno
       // Smoothing the displacement and the force alike leaves errors of tens of percent (docs/methods.md), the weak form of a few.
       double const m = equation.at("terms").at(0).at("coefficient");
       CHECK(std::abs(m - 1) < (std::string(form) == "weak" ? 0.05 : 0.5));
-      CHECK(read_file(found.source).find("parameter m  [kg]") != std::string::npos);
+      CHECK(read_file(found.source()).find("parameter m  [kg]") != std::string::npos);
     }
 }
 
 TEST_CASE("the best supports become a set of candidates with a selection") {
-  Discovered found;
-  discover(found, with(duffing, ", seed = 1", ", candidates = yes, top = 3, seed = 1"));
-  std::string const text = read_file(found.source);
-  Source source(found.source.string(), text);
+  Discovered const found(with(duffing, ", seed = 1", ", candidates = yes, top = 3, seed = 1"));
+  std::string const text = read_file(found.source());
+  Source source(found.source().string(), text);
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   REQUIRE_MESSAGE(file, render(diagnostics, source));

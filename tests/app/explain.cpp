@@ -22,9 +22,9 @@ void write_files(ErrorSection const& section, std::vector<Example> const& exampl
 
 Answer answer_to(ErrorSection const& section, std::vector<Example> const& examples, Depth depth) {
   TemporaryFolder const folder, output;
-  write_files(section, examples, folder.path);
-  WorkingFolder const here(folder.path);
-  return answer("example.sysid", section.complete(examples), depth, output.path);
+  write_files(section, examples, folder.path());
+  WorkingFolder const here(folder.path());
+  return answer("example.sysid", section.complete(examples), depth, output.path());
 }
 
 std::set<std::string> codes_in_sources() {

@@ -52,7 +52,7 @@ TEST_CASE("each bad example is answered by the expected messages and exit code")
     CAPTURE(path.string());
     TemporaryFolder const output;
     bool const warning = is_warning(path.filename().string());
-    Answer const shown = answer(path.filename().string(), content(path), warning ? Depth::data : Depth::run, output.path);
+    Answer const shown = answer(path.filename().string(), content(path), warning ? Depth::data : Depth::run, output.path());
     std::filesystem::path expected = path;
     expected.replace_extension(".expected");
     if (bless) write(expected, shown.messages);

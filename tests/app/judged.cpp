@@ -5,34 +5,20 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/running.hpp"
+#include "app/discovered.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
 
 namespace {
 
-std::filesystem::path const models = std::filesystem::path(SYSID_SOURCE_DIR) / "models/discovery";
-
-struct Judged {
-  TemporaryFolder folder;
-  RunResult result;
-  json summary;
-  std::filesystem::path place;
+struct Judged : Discovered {
+  using Discovered::Discovered;
 
   json const& judged() const { return summary.at("discovery").at("judged"); }
   json const& first() const { return judged().at("structures").at(0); }
   bool found(std::string const& code) const { return result.out.find("[" + code + "]") != std::string::npos; }
 };
-
-void discover(Judged& into, std::string const& text, RunOptions options = {}) {
-  options.output = into.folder.path() / "results";
-  into.result = run_text(models / "here.sysid", text, options);
-  into.place = options.output / "found";
-  into.summary = json::parse(read_file(into.place / "summary.json"));
-}
-
-std::string const duffing = read_file(models / "duffing.sysid");
 
 void check_coefficients(json const& structure, std::vector<double> const& truth, double within) {
   REQUIRE(structure.at("coefficients").size() == truth.size());
@@ -48,8 +34,7 @@ void check_coefficients(json const& structure, std::vector<double> const& truth,
 }  // namespace
 
 TEST_CASE("Duffing's equation is refitted, ranked first and foretells rows that nothing has seen") {
-  Judged found;
-  discover(found, duffing);
+  Judged const found(duffing);
   json const& judged = found.judged();
   CHECK(judged.at("whole") == true);
   CHECK(judged.at("segments") == 1);
@@ -73,8 +58,7 @@ TEST_CASE("Duffing's equation is refitted, ranked first and foretells rows that 
 }
 
 TEST_CASE("where differences mislead the regression, simulation ranks the true structure first and it is what is written") {
-  Judged found;
-  discover(found, with(duffing, "derivatives = weak", "derivatives = central"));
+  Judged const found(with(duffing, "derivatives = weak", "derivatives = central"));
   json const& first = found.first();
   CHECK(first.at("terms") == "y'', y', y, y^3");
   CHECK(first.at("rank_by_regression").get<int>() > 1);
@@ -86,8 +70,7 @@ TEST_CASE("where differences mislead the regression, simulation ranks the true s
 }
 
 TEST_CASE("a chaotic record is refitted, and its last fifth foretold from a window") {
-  Judged found;
-  discover(found, read_file(models / "lorenz.sysid"));
+  Judged const found(read_file(discovery_models / "lorenz.sysid"));
   CHECK(found.result.exit == 0);
   json const& judged = found.judged();
   CHECK(judged.at("kept_aside") == "the last fifth of record");
@@ -103,8 +86,7 @@ TEST_CASE("a chaotic record is refitted, and its last fifth foretold from a wind
 }
 
 TEST_CASE("an equation that lacks a term is followed in parts, its residual and its forecast say so") {
-  Judged found;
-  discover(found, with(duffing, "y^2, y^3,", "y^2,"));
+  Judged const found(with(duffing, "y^2, y^3,", "y^2,"));
   CHECK(found.judged().at("whole") == false);
   CHECK(found.found("motion_unexplained"));
   CHECK(found.found("followed_in_parts"));
@@ -114,21 +96,18 @@ TEST_CASE("an equation that lacks a term is followed in parts, its residual and 
 }
 
 TEST_CASE("a structure that is no model says so, and what is judged is without it") {
-  Judged found;
-  discover(found, with(duffing, "terms = y'', y', y, y^2, y^3,", "terms = y, y^3,"));
+  Judged const found(with(duffing, "terms = y'', y', y, y^2, y^3,", "terms = y, y^3,"));
   for (json const& structure : found.judged().at("structures"))
     if (structure.contains("failure")) CHECK_FALSE(structure.at("failure").get<std::string>().empty());
   CHECK(found.result.out.find("structures that simulation could not judge") != std::string::npos);
 }
 
 TEST_CASE("a judgement is the same bytes for any number of threads and lanes") {
-  Judged one;
-  discover(one, duffing);
+  Judged const one(duffing);
   for (ExecutionOptions const execution : {ExecutionOptions{1, 1}, ExecutionOptions{8, 3}}) {
-    Judged other;
     RunOptions options;
     options.execution = execution;
-    discover(other, duffing, options);
+    Judged const other(duffing, options);
     for (char const* name : {"summary.json", "structures.csv", "refit.csv", "found.sysid"})
       CHECK(without(read_file(one.place / name), one.folder.path().string()) ==
             without(read_file(other.place / name), other.folder.path().string()));
@@ -137,8 +116,7 @@ TEST_CASE("a judgement is the same bytes for any number of threads and lanes") {
 }
 
 TEST_CASE("the refit may be left out, and then the regression's word is the last") {
-  Judged found;
-  discover(found, with(duffing, ", seed = 1", ", refit = no, seed = 1"));
+  Judged const found(with(duffing, ", seed = 1", ", refit = no, seed = 1"));
   CHECK_FALSE(found.summary.at("discovery").contains("judged"));
   CHECK_FALSE(std::filesystem::exists(found.place / "structures.csv"));
   std::string const equation = found.summary.at("discovery").at("equations").at(0).at("equation");
@@ -153,7 +131,7 @@ TEST_CASE("an interruption at any point of a judgement leaves nothing half done"
     RunOptions options;
     options.output = folder.path() / "results";
     options.interrupt_after = poll;
-    RunResult const result = run_text(models / "here.sysid", duffing, options);
+    RunResult const result = run_text(discovery_models / "here.sysid", duffing, options);
     clear_interrupt();
     CHECK((result.exit == 75 || result.exit == 0));
     CHECK(std::filesystem::exists(options.output / "found/summary.json") == (result.exit == 0));

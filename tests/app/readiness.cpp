@@ -28,30 +28,30 @@ TEST_CASE("mistakes in the data of any task are all reported before the first ta
   Answer const shown =
       run(model + dish + missing + beyond + fit + "a = predict posterior on gone with draws(5)\n" +
               "b = predict posterior on cut.late with draws(5)\n" + "c = predict posterior on gone with draws(6)\n",
-          output.path);
+          output.path());
   CHECK(shown.exit == ExitCode::user_error);
   CHECK(count(shown.messages, "error[E4018]") == 1);
   CHECK(count(shown.messages, "error[E4016]") == 1);
-  CHECK_FALSE(std::filesystem::exists(output.path / "posterior"));
+  CHECK_FALSE(std::filesystem::exists(output.path() / "posterior"));
 }
 
 TEST_CASE("files that cannot be read are an input error of their own") {
   TemporaryFolder const output;
   std::string const missing = "data dish { file \"data/gone.csv\"; time t [s]; measure size = y }\n";
-  CHECK(run(model + missing + fit, output.path).exit == ExitCode::io);
+  CHECK(run(model + missing + fit, output.path()).exit == ExitCode::io);
 }
 
 TEST_CASE("old results outlive a forced run whose data cannot be read") {
   TemporaryFolder const output;
-  REQUIRE(run(model + dish + fit, output.path).exit <= ExitCode::doubtful);
-  std::string const before = content(output.path / "posterior" / "draws_1.csv");
+  REQUIRE(run(model + dish + fit, output.path()).exit <= ExitCode::doubtful);
+  std::string const before = content(output.path() / "posterior" / "draws_1.csv");
   REQUIRE_FALSE(before.empty());
   RunOptions options;
   options.force = true;
   std::string const beyond = "data late { file \"data/growth.csv\"; time t [s]; measure size = y; split end = rows 5..9999 }\n";
-  CHECK(run(model + dish + beyond + fit + "a = predict posterior on late.end with draws(5)\n", output.path, options).exit ==
+  CHECK(run(model + dish + beyond + fit + "a = predict posterior on late.end with draws(5)\n", output.path(), options).exit ==
         ExitCode::user_error);
-  CHECK(content(output.path / "posterior" / "draws_1.csv") == before);
+  CHECK(content(output.path() / "posterior" / "draws_1.csv") == before);
 }
 
 TEST_CASE("a file without tasks says which it could have") {
@@ -62,7 +62,7 @@ TEST_CASE("a file without tasks says which it could have") {
   REQUIRE(file);
   TemporaryFolder const output;
   RunOptions options;
-  options.output = output.path;
+  options.output = output.path();
   SilentProgress progress;
   std::ostringstream summaries, notices;
   CHECK(run_tasks(source, *file, {}, options, progress, summaries, notices) == ExitCode::usage);
@@ -75,15 +75,15 @@ TEST_CASE("a selection that cannot begin is refused before the first task begins
       "model straight {\n  state y\n  initial y = 1\n  parameter rate [1/day] ~ flat()\n"
       "  parameter sigma ~ half_cauchy(scale = 1)\n  y' = -rate*y\n  observe size ~ normal(y, sd = sigma)\n}\n";
   std::string const select = "choice = select straight to dish with abc_smc(particles = 20), seed = 1\n";
-  Answer const improper = run(model + flat + dish + fit + select, output.path);
+  Answer const improper = run(model + flat + dish + fit + select, output.path());
   CHECK(improper.exit == ExitCode::user_error);
   CHECK(count(improper.messages, "error[E6204]") == 1);
   CHECK(count(improper.messages, "`abc_smc` needs priors that can be drawn from; that of `rate` is flat") == 1);
   Answer const rising =
-      run(model + dish + fit + "choice = select decay to dish with abc_smc(schedule = (10, 20)), seed = 1\n", output.path);
+      run(model + dish + fit + "choice = select decay to dish with abc_smc(schedule = (10, 20)), seed = 1\n", output.path());
   CHECK(rising.exit == ExitCode::user_error);
   CHECK(count(rising.messages, "error[E6203]") == 1);
-  CHECK_FALSE(std::filesystem::exists(output.path / "posterior"));
+  CHECK_FALSE(std::filesystem::exists(output.path() / "posterior"));
 }
 
 TEST_CASE("an improper prior of the noise is refused where the likelihood is asked beside the distance") {

@@ -1,7 +1,5 @@
 // Runs a text as the command line would, in a folder of its own that goes with the object.
 #pragma once
-#include <unistd.h>
-
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -13,26 +11,9 @@
 #include "app/pipeline.hpp"
 #include "core/files.hpp"
 #include "core/interrupt.hpp"
+#include "temporary_folder.hpp"
 
 namespace sysid {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    char name[] = "/tmp/sysid-test-XXXXXX";
-    path_ = mkdtemp(name);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(TemporaryFolder const&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder const&) = delete;
-  std::filesystem::path const& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 struct RunResult {
   int exit = 0;

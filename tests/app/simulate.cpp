@@ -1,6 +1,8 @@
 // Records that `simulate` writes.
 #include <doctest/doctest.h>
 
+#include <set>
+
 #include "app/running.hpp"
 
 using namespace sysid;
@@ -18,4 +20,58 @@ truth = simulate lag with values(tau = 1), input x = gaussian(sd = 1), samples =
   CHECK(text.find("\nt,x_input,x,x_clean\n") != std::string::npos);
   CHECK(text.find("# column x_input") != std::string::npos);
   CHECK(text.find("# column x: measured; x_clean: without noise") != std::string::npos);
+}
+
+namespace {
+
+std::filesystem::path const models = std::filesystem::path(SYSID_SOURCE_DIR) / "models";
+
+std::vector<std::filesystem::path> shipped(std::string const& extension) {
+  std::vector<std::filesystem::path> files;
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(models))
+    if (entry.path().extension() == extension) files.push_back(entry.path());
+  return files;
+}
+
+// Records that the simulations of a text write, each against the shipped one of its name in `folder`; those that are the same.
+std::set<std::filesystem::path> made_again(std::filesystem::path const& folder, std::string const& text) {
+  TemporaryFolder results;
+  RunOptions options;
+  options.output = results.path() / "results";
+  run_text(folder / "again.sysid", text, options, {"simulate"});
+  std::set<std::filesystem::path> same;
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(options.output)) {
+    if (entry.path().extension() != ".csv") continue;
+    std::filesystem::path const record = folder / entry.path().filename();
+    CAPTURE(record.string());
+    REQUIRE(std::filesystem::exists(record));
+    bool const equal = read_file(entry.path()) == read_file(record);
+    CHECK(equal);
+    if (equal) same.insert(record);
+  }
+  return same;
+}
+
+}  // namespace
+
+TEST_CASE("every shipped record that says it was simulated comes out again, byte for byte") {
+  std::set<std::filesystem::path> same;
+  for (std::filesystem::path const& file : shipped(".sysid")) {
+    std::string const text = read_file(file);
+    if (text.find("= simulate ") != std::string::npos) same.merge(made_again(file.parent_path(), text));
+  }
+  // The one whose task stands in its page.
+  std::filesystem::path const folder = models / "autoregression";
+  std::string const page = read_file(folder / "README.md"), model = read_file(folder / "autoregression.sysid");
+  std::size_t const begin = page.find("made = simulate"), end = page.find('\'', begin);
+  REQUIRE(end != std::string::npos);
+  same.merge(made_again(folder, model.substr(0, model.find("\ndata")) + "\n" + page.substr(begin, end - begin) + "\n"));
+  int count = 0;
+  for (std::filesystem::path const& file : shipped(".csv")) {
+    if (!read_file(file).starts_with("# made by sysid")) continue;
+    CAPTURE(file.string());
+    CHECK(same.contains(file));
+    ++count;
+  }
+  CHECK(count >= 13);
 }

@@ -44,22 +44,22 @@ std::string checkpoint_of_an_interrupted_run(std::filesystem::path const& output
 
 TEST_CASE("results that exist already are kept unless force is asked for") {
   TemporaryFolder const output;
-  CHECK(run("k", output.path).exit <= ExitCode::doubtful);
-  std::string const before = content(output.path / "posterior" / "draws_1.csv");
-  Answer const again = run("k", output.path);
+  CHECK(run("k", output.path()).exit <= ExitCode::doubtful);
+  std::string const before = content(output.path() / "posterior" / "draws_1.csv");
+  Answer const again = run("k", output.path());
   CHECK(again.exit == ExitCode::user_error);
   CHECK(again.messages ==
         "example.sysid: error: `OUT/posterior` holds results already\n"
         "help: add --force to replace them, or -o DIR to write elsewhere\n");
-  CHECK(content(output.path / "posterior" / "draws_1.csv") == before);
+  CHECK(content(output.path() / "posterior" / "draws_1.csv") == before);
   RunOptions options;
   options.force = true;
-  CHECK(run("k", output.path, {}, options).exit <= ExitCode::doubtful);
+  CHECK(run("k", output.path(), {}, options).exit <= ExitCode::doubtful);
 }
 
 TEST_CASE("a prediction without stored draws says what to run first") {
   TemporaryFolder const output;
-  Answer const shown = run("k", output.path, {"predict"});
+  Answer const shown = run("k", output.path(), {"predict"});
   CHECK(shown.exit == ExitCode::user_error);
   CHECK(shown.messages ==
         "example.sysid: error[E6202]: there are no draws of `posterior` in `OUT/posterior`\n"
@@ -69,36 +69,36 @@ TEST_CASE("a prediction without stored draws says what to run first") {
 
 TEST_CASE("stored draws of a model with other parameters are refused") {
   TemporaryFolder const output;
-  CHECK(run("k", output.path, {"fit"}).exit <= ExitCode::doubtful);
-  Answer const shown = run("rate", output.path, {"predict"});
+  CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
+  Answer const shown = run("rate", output.path(), {"predict"});
   CHECK(shown.exit == ExitCode::user_error);
   CHECK(shown.messages.find("error[E6201]: the results in `OUT/posterior` are of another text of model") != std::string::npos);
-  CHECK(run("k", output.path, {"predict"}).exit == ExitCode::success);
+  CHECK(run("k", output.path(), {"predict"}).exit == ExitCode::success);
 }
 
 TEST_CASE("complete results of another text are not kept by --resume") {
   TemporaryFolder const output;
-  CHECK(run("k", output.path, {"fit"}).exit <= ExitCode::doubtful);
+  CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
   RunOptions options;
   options.resume = true;
-  CHECK(run("k", output.path, {"fit"}, options).exit == ExitCode::success);
-  Answer const shown = run("rate", output.path, {"fit"}, options);
+  CHECK(run("k", output.path(), {"fit"}, options).exit == ExitCode::success);
+  Answer const shown = run("rate", output.path(), {"fit"}, options);
   CHECK(shown.exit == ExitCode::user_error);
   CHECK(shown.messages.find("error[E6208]: the results in `OUT/posterior` are of another text of model") != std::string::npos);
 }
 
 TEST_CASE("stored draws of other data, or of other experiments, are not taken up") {
   TemporaryFolder const output, folder;
-  WorkingFolder const here(folder.path);
+  WorkingFolder const here(folder.path());
   std::string const csv = content(error_examples / "data/growth.csv");
   std::filesystem::create_directory("data");
   write("data/growth.csv", csv);
   auto const run_here = [&](std::string const& file, std::vector<std::string> const& verbs) {
-    return answer("example.sysid", file, Depth::run, output.path, {}, verbs);
+    return answer("example.sysid", file, Depth::run, output.path(), {}, verbs);
   };
   CHECK(run_here(text("k"), {"fit"}).exit <= ExitCode::doubtful);
   CHECK(run_here(text("k"), {"predict"}).exit == ExitCode::success);
-  std::filesystem::remove_all(output.path / "forecast");
+  std::filesystem::remove_all(output.path() / "forecast");
   std::string parted = text("k");
   parted.replace(parted.find("  measure"), 0, "  split all = rows 1..4\n");
   parted.replace(parted.find("to dish"), 7, "to dish.all");
@@ -112,15 +112,15 @@ TEST_CASE("stored draws of other data, or of other experiments, are not taken up
 
 TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   TemporaryFolder const output;
-  std::string const checkpoint = checkpoint_of_an_interrupted_run(output.path);
+  std::string const checkpoint = checkpoint_of_an_interrupted_run(output.path());
   REQUIRE_FALSE(checkpoint.empty());
   RunOptions options;
   options.resume = true;
-  Answer const other = run("rate", output.path, {}, options);
+  Answer const other = run("rate", output.path(), {}, options);
   CHECK(other.exit == ExitCode::user_error);
   CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` is of another text, data or seed") != std::string::npos);
-  write(output.path / "posterior" / "checkpoint.cbor", checkpoint.substr(0, checkpoint.size() / 2));
-  Answer const damaged = run("k", output.path, {}, options);
+  write(output.path() / "posterior" / "checkpoint.cbor", checkpoint.substr(0, checkpoint.size() / 2));
+  Answer const damaged = run("k", output.path(), {}, options);
   CHECK(damaged.exit == ExitCode::user_error);
   CHECK(damaged.messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") != std::string::npos);
 }
@@ -133,9 +133,9 @@ TEST_CASE("an output folder that cannot be made or written is an error of input 
     CHECK(shown.messages.starts_with("sysid: error: cannot make the folder `OUT/posterior`: "));
   }
   TemporaryFolder const output;
-  std::filesystem::permissions(output.path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  std::filesystem::permissions(output.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   if (::geteuid() != 0) {  // nothing is read-only to root
-    Answer const shown = run("k", output.path / "x");
+    Answer const shown = run("k", output.path() / "x");
     CHECK(shown.exit == ExitCode::io);
     CHECK(shown.messages.starts_with("sysid: error: cannot make the folder `OUT/posterior`: permission denied"));
   }
@@ -150,12 +150,12 @@ TEST_CASE("a disk that takes no byte is found before any work, and nothing half-
   rlimit none = before;
   none.rlim_cur = 0;
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &none) == 0);
-  Answer const shown = run("k", output.path);
+  Answer const shown = run("k", output.path());
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
   ::signal(SIGXFSZ, before_signal);
   CHECK(shown.exit == ExitCode::io);
   CHECK(shown.messages ==
         "sysid: error: cannot write `OUT/posterior/claim`: file too large\n"
         "help: check that the folder takes files and the disk has room\n");
-  CHECK(std::filesystem::is_empty(output.path / "posterior"));
+  CHECK(std::filesystem::is_empty(output.path() / "posterior"));
 }

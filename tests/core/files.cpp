@@ -3,27 +3,17 @@
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
 
 #include "core/diagnostic.hpp"
+#include "temporary_folder.hpp"
 
 using namespace sysid;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder of its own for each test, removed at the end.
-struct Folder {
-  Folder() {
-    char name[] = "/tmp/sysid-files-XXXXXX";
-    path = mkdtemp(name);
-  }
-  ~Folder() { fs::remove_all(path); }
-  fs::path path;
-};
 
 std::string message_of(auto const& action) {
   try {
@@ -37,15 +27,15 @@ std::string message_of(auto const& action) {
 }  // namespace
 
 TEST_CASE("what is written is read back, byte for byte") {
-  Folder const folder;
+  TemporaryFolder const folder;
   std::string bytes = "a\r\nb";
   bytes += '\0';
   bytes += std::string(200000, '\xFF');
-  write_file(folder.path / "x", bytes);
-  CHECK(read_file(folder.path / "x") == bytes);
-  write_file(folder.path / "x", "short");
-  CHECK(read_file(folder.path / "x") == "short");
-  CHECK_FALSE(fs::exists(folder.path / "x.partial"));
+  write_file(folder.path() / "x", bytes);
+  CHECK(read_file(folder.path() / "x") == bytes);
+  write_file(folder.path() / "x", "short");
+  CHECK(read_file(folder.path() / "x") == "short");
+  CHECK_FALSE(fs::exists(folder.path() / "x.partial"));
 }
 
 TEST_CASE("a file that is not there is refused with path and reason") {
@@ -54,10 +44,10 @@ TEST_CASE("a file that is not there is refused with path and reason") {
 }
 
 TEST_CASE("a folder is not a file") {
-  Folder const folder;
-  CHECK(message_of([&] { read_file(folder.path); }) == "cannot read `" + folder.path.string() + "`: is a directory");
-  CHECK(message_of([&] { write_file(folder.path, "x"); }).find("is a directory") != std::string::npos);
-  CHECK(fs::is_directory(folder.path));
+  TemporaryFolder const folder;
+  CHECK(message_of([&] { read_file(folder.path()); }) == "cannot read `" + folder.path().string() + "`: is a directory");
+  CHECK(message_of([&] { write_file(folder.path(), "x"); }).find("is a directory") != std::string::npos);
+  CHECK(fs::is_directory(folder.path()));
 }
 
 TEST_CASE("a full device is named, and stays a device") {
@@ -66,52 +56,52 @@ TEST_CASE("a full device is named, and stays a device") {
 }
 
 TEST_CASE("a write that fails half-way keeps the old file and removes the temporary one") {
-  Folder const folder;
-  write_file(folder.path / "x", "old");
+  TemporaryFolder const folder;
+  write_file(folder.path() / "x", "old");
   struct rlimit before = {};
   getrlimit(RLIMIT_FSIZE, &before);
   struct rlimit limit = before;
   limit.rlim_cur = 1000;
   auto const handler = std::signal(SIGXFSZ, SIG_IGN);
   setrlimit(RLIMIT_FSIZE, &limit);
-  std::string const message = message_of([&] { write_file(folder.path / "x", std::string(2000, 'n')); });
+  std::string const message = message_of([&] { write_file(folder.path() / "x", std::string(2000, 'n')); });
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
-  CHECK(message == "cannot write `" + (folder.path / "x").string() + "`: file too large");
-  CHECK(read_file(folder.path / "x") == "old");
-  CHECK_FALSE(fs::exists(folder.path / "x.partial"));
+  CHECK(message == "cannot write `" + (folder.path() / "x").string() + "`: file too large");
+  CHECK(read_file(folder.path() / "x") == "old");
+  CHECK_FALSE(fs::exists(folder.path() / "x.partial"));
 }
 
 TEST_CASE("a symbolic link is followed, not replaced") {
-  Folder const folder;
-  write_file(folder.path / "real", "old");
-  fs::create_symlink("real", folder.path / "link");
-  write_file(folder.path / "link", "new");
-  CHECK(fs::is_symlink(folder.path / "link"));
-  CHECK(read_file(folder.path / "real") == "new");
+  TemporaryFolder const folder;
+  write_file(folder.path() / "real", "old");
+  fs::create_symlink("real", folder.path() / "link");
+  write_file(folder.path() / "link", "new");
+  CHECK(fs::is_symlink(folder.path() / "link"));
+  CHECK(read_file(folder.path() / "real") == "new");
 }
 
 TEST_CASE("permissions are kept") {
-  Folder const folder;
-  write_file(folder.path / "x", "old");
-  fs::permissions(folder.path / "x", fs::perms::owner_read | fs::perms::owner_write);
-  write_file(folder.path / "x", "new");
-  CHECK(fs::status(folder.path / "x").permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+  TemporaryFolder const folder;
+  write_file(folder.path() / "x", "old");
+  fs::permissions(folder.path() / "x", fs::perms::owner_read | fs::perms::owner_write);
+  write_file(folder.path() / "x", "new");
+  CHECK(fs::status(folder.path() / "x").permissions() == (fs::perms::owner_read | fs::perms::owner_write));
 }
 
 TEST_CASE("a folder is made with those above it; a file in its place is an error") {
-  Folder const folder;
-  make_folder(folder.path / "a" / "b");
-  make_folder(folder.path / "a" / "b");
-  CHECK(fs::is_directory(folder.path / "a" / "b"));
-  write_file(folder.path / "file", "");
-  CHECK(message_of([&] { make_folder(folder.path / "file"); }).find("not a directory") != std::string::npos);
+  TemporaryFolder const folder;
+  make_folder(folder.path() / "a" / "b");
+  make_folder(folder.path() / "a" / "b");
+  CHECK(fs::is_directory(folder.path() / "a" / "b"));
+  write_file(folder.path() / "file", "");
+  CHECK(message_of([&] { make_folder(folder.path() / "file"); }).find("not a directory") != std::string::npos);
 }
 
 TEST_CASE("removing what is not there is no error") {
-  Folder const folder;
-  write_file(folder.path / "x", "");
-  remove_file(folder.path / "x");
-  CHECK_FALSE(fs::exists(folder.path / "x"));
-  CHECK(message_of([&] { remove_file(folder.path / "x"); }) == "no error");
+  TemporaryFolder const folder;
+  write_file(folder.path() / "x", "");
+  remove_file(folder.path() / "x");
+  CHECK_FALSE(fs::exists(folder.path() / "x"));
+  CHECK(message_of([&] { remove_file(folder.path() / "x"); }) == "no error");
 }

@@ -2,7 +2,6 @@
 #include "report/result.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <map>
 
@@ -10,20 +9,12 @@
 #include "core/files.hpp"
 #include "example.hpp"
 #include "report/gnuplot.hpp"
+#include "temporary_folder.hpp"
 
 using namespace sysid;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Folder {
-  Folder() {
-    char name[] = "/tmp/sysid-result-XXXXXX";
-    path = mkdtemp(name);
-  }
-  ~Folder() { fs::remove_all(path); }
-  fs::path path;
-};
 
 std::map<std::string, std::string> contents(fs::path const& folder) {
   std::map<std::string, std::string> out;
@@ -35,9 +26,9 @@ std::map<std::string, std::string> contents(fs::path const& folder) {
 }  // namespace
 
 TEST_CASE("a result folder holds draws per chain, prediction, summary, timing, report and the resolved file") {
-  Folder const folder;
-  write_result(example::duffing(10), folder.path / "posterior");
-  auto const files = contents(folder.path / "posterior");
+  TemporaryFolder const folder;
+  write_result(example::duffing(10), folder.path() / "posterior");
+  auto const files = contents(folder.path() / "posterior");
   for (char const* name : {"draws_1.csv", "draws_4.csv", "predict.csv", "summary.json", "timing.json", "report.html",
                            "resolved.sysid", "figures/posterior.gnuplot"})
     CHECK_MESSAGE(files.contains(name), name);
@@ -47,12 +38,12 @@ TEST_CASE("a result folder holds draws per chain, prediction, summary, timing, r
 }
 
 TEST_CASE("the same result is the same bytes but for the timing") {
-  Folder const folder;
+  TemporaryFolder const folder;
   Report report = example::duffing(10);
-  write_result(report, folder.path / "a");
+  write_result(report, folder.path() / "a");
   report.timing = {{"wall_s", 7.5}};
-  write_result(report, folder.path / "b");
-  auto a = contents(folder.path / "a"), b = contents(folder.path / "b");
+  write_result(report, folder.path() / "b");
+  auto a = contents(folder.path() / "a"), b = contents(folder.path() / "b");
   CHECK(a["timing.json"] != b["timing.json"]);
   a.erase("timing.json");
   b.erase("timing.json");
@@ -60,8 +51,8 @@ TEST_CASE("the same result is the same bytes but for the timing") {
 }
 
 TEST_CASE("a result is not overwritten unless forced, and then nothing of it stays") {
-  Folder const folder;
-  fs::path const path = folder.path / "posterior";
+  TemporaryFolder const folder;
+  fs::path const path = folder.path() / "posterior";
   prepare_result(path, false);
   write_file(path / "checkpoint", "kept");
   prepare_result(path, false);  // a checkpoint is no result
@@ -82,18 +73,18 @@ TEST_CASE("a result is not overwritten unless forced, and then nothing of it sta
 }
 
 TEST_CASE("predictions of several experiments have a file each") {
-  Folder const folder;
+  TemporaryFolder const folder;
   Report report = example::duffing(10);
   report.predictions.push_back(report.predictions[0]);
   report.predictions[1].experiment = "bench.test";
-  write_result(report, folder.path);
-  CHECK(fs::exists(folder.path / "predict_bench_train.csv"));
-  CHECK(fs::exists(folder.path / "predict_bench_test.csv"));
-  CHECK_FALSE(fs::exists(folder.path / "predict.csv"));
+  write_result(report, folder.path());
+  CHECK(fs::exists(folder.path() / "predict_bench_train.csv"));
+  CHECK(fs::exists(folder.path() / "predict_bench_test.csv"));
+  CHECK_FALSE(fs::exists(folder.path() / "predict.csv"));
 }
 
 TEST_CASE("a folder that cannot be written is an I/O error") {
-  Folder const folder;
-  write_file(folder.path / "file", "");
-  CHECK_THROWS_AS(write_result(example::duffing(2), folder.path / "file"), IoError);
+  TemporaryFolder const folder;
+  write_file(folder.path() / "file", "");
+  CHECK_THROWS_AS(write_result(example::duffing(2), folder.path() / "file"), IoError);
 }
