@@ -5,10 +5,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "app/coefficient_names.hpp"
 #include "app/discovery_findings.hpp"
 #include "app/experiments.hpp"
 #include "app/found_equation.hpp"
-#include "app/found_model.hpp"
 #include "app/found_source.hpp"
 #include "app/judge_structures.hpp"
 #include "app/judged_findings.hpp"

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "app/coefficient_names.hpp"
 #include "app/found_source.hpp"
+#include "app/motion.hpp"
 #include "check/elaborate/tree.hpp"
 #include "check/scope.hpp"
 #include "check/walk.hpp"
@@ -50,65 +51,16 @@ std::string identifier(std::string text) {
   return text;
 }
 
-std::set<std::string> declared_in(CheckedDictionary const& dictionary) {
-  std::set<std::string> names;
-  for (Quantity const& state : dictionary.states) names.insert(state.name);
-  for (ast::DictionaryStatement const& statement : dictionary.tree.statements) {
-    if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement)) names.insert(time->time.name.text);
-    if (auto const* inputs = std::get_if<ast::InputDeclaration>(&statement))
-      for (ast::Declared const& input : inputs->names) names.insert(input.name.text);
-    if (auto const* parameter = std::get_if<ast::DictionaryParameter>(&statement)) names.insert(parameter->name.name.text);
-    if (auto const* definition = std::get_if<ast::Definition>(&statement)) names.insert(definition->name.name.text);
-  }
-  return names;
-}
-
 std::string fresh(std::string name, std::set<std::string>& taken) {
   while (!taken.insert(name).second) name += "_";
   return name;
-}
-
-/// First row that was measured and the sizes of differences in time of one channel over all experiments.
-struct Motion {
-  double first = 0;
-  std::vector<double> size;  // [order]: root mean square of the k-th difference quotient, of the values themselves about their mean
-};
-
-Motion motion_of(std::vector<ExperimentData> const& data, std::size_t channel, int orders) {
-  Motion motion;
-  motion.size.assign(static_cast<std::size_t>(orders) + 1, 0);
-  double mean_first = 0;
-  for (ExperimentData const& each : data) {
-    std::vector<double> const& time = each.experiment.time;
-    std::vector<double> values, times;
-    for (std::size_t i = 0; i < time.size(); ++i)
-      if (!std::isnan(each.experiment.measured[channel][i])) {
-        values.push_back(each.experiment.measured[channel][i]);
-        times.push_back(time[i]);
-      }
-    if (values.empty()) continue;
-    mean_first += values.front() / static_cast<double>(data.size());
-    double mean = 0;
-    for (double const v : values) mean += v / static_cast<double>(values.size());
-    for (int k = 0; k <= orders && values.size() > 1; ++k) {
-      double square = 0;
-      for (double const v : values) square += (v - (k == 0 ? mean : 0)) * (v - (k == 0 ? mean : 0));
-      double& size = motion.size[static_cast<std::size_t>(k)];
-      size = std::max(size, std::sqrt(square / static_cast<double>(values.size())));
-      for (std::size_t i = 0; i + 1 < values.size(); ++i) values[i] = (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
-      values.pop_back();
-      times.pop_back();
-    }
-  }
-  motion.first = mean_first;
-  return motion;
 }
 
 /// One model of the file.
 class ModelText {
  public:
   ModelText(FoundSource const& source, FoundStructure const& structure) : source_(source), structure_(structure) {
-    taken_ = declared_in(source.dictionary);
+    taken_ = declared_names(source.dictionary);
     for (std::size_t e = 0; e < structure.equations.size(); ++e) {
       names_.push_back(coefficient_names(source.dictionary, static_cast<int>(e)));
       taken_.insert(names_.back().begin(), names_.back().end());
@@ -336,28 +288,6 @@ FoundModel found_model(FoundSource const& source, FoundStructure const& structur
   ModelText model(source, structure);
   std::string text = model.text(name, title);
   return {std::move(text), model.inputs()};
-}
-
-std::vector<std::string> coefficient_names(CheckedDictionary const& dictionary, int equation) {
-  std::set<std::string> const declared = declared_in(dictionary);
-  std::vector<DictionaryTerm> const& terms = dictionary.equations[static_cast<std::size_t>(equation)].terms;
-  std::map<std::string, int> before;  // how many terms a parameter stands before, in all equations
-  for (DictionaryEquation const& each : dictionary.equations)
-    for (DictionaryTerm const& term : each.terms) ++before[term.coefficient];
-  std::vector<std::string> names;
-  int index = 0;
-  for (DictionaryTerm const& term : terms) {
-    if (!term.in_target) ++index;
-    if (!term.coefficient.empty() && before[term.coefficient] == 1) {
-      names.push_back(term.coefficient);
-      continue;
-    }
-    std::string const letter(1, static_cast<char>('a' + equation % 26));
-    std::string name = fmt::format("{}{}{}", letter, equation < 26 ? "" : fmt::format("{}_", equation / 26), index);
-    while (declared.contains(name)) name += "_";
-    names.push_back(std::move(name));
-  }
-  return names;
 }
 
 }  // namespace sysid

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "app/coefficient_names.hpp"
 #include "app/forecast_errors.hpp"
 #include "app/found_equation.hpp"
-#include "app/found_model.hpp"
 #include "app/judged_findings.hpp"
 #include "app/judged_model.hpp"
 #include "app/judged_rows.hpp"

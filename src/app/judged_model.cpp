@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/found_model.hpp"
+#include "app/coefficient_names.hpp"
 #include "app/pipeline.hpp"
 #include "check/scope.hpp"
 #include "core/diagnostic.hpp"

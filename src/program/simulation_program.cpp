@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <map>
-#include <set>
 #include <tuple>
 
 #include "core/diagnostic.hpp"
@@ -11,7 +10,7 @@
 #include "program/algebra.hpp"
 #include "program/embedded.hpp"
 #include "program/emit.hpp"
-#include "program/interpreter/executor.hpp"
+#include "program/registers.hpp"
 
 namespace sysid {
 namespace {
@@ -19,22 +18,6 @@ namespace {
 // OperandPlace holders for values that only the program has: leaves of kind `unknown`.
 constexpr int accumulator_leaf = 1 << 20;       // + accumulator
 constexpr int epilogue_uniform_leaf = 1 << 21;  // + position in the epilogue's row
-
-// Registers and uniforms are numbered within banks until all sections are known.
-enum Bank : std::uint32_t {
-  parameter_bank = 0u << 24,
-  hoisted_bank = 1u << 24,
-  state_bank = 2u << 24,
-  accumulator_bank = 3u << 24,
-  record_bank = 4u << 24,
-  sum_bank = 5u << 24,
-  temporary_bank = 6u << 24,
-  constant_bank = 7u << 24,
-  row_bank = 8u << 24,
-  control_bank = 9u << 24,
-};
-constexpr std::uint32_t bank_of(std::uint32_t index) { return index & 0xff000000u; }
-constexpr std::uint32_t position_of(std::uint32_t index) { return index & 0x00ffffffu; }
 
 /// A channel's sum as  sum_i factor_i * term_i : terms are accumulators, data sums, or the number of samples.
 struct SumTerm {
@@ -73,7 +56,8 @@ class Compilation {
     compile_epilogue();
     compile_start();
     compile_prologue();
-    number();
+    widest_row_ = std::max(widest_row_, static_cast<int>(source.channels.size()) + data_sums_);
+    number_registers(program_, widest_row_);
     return std::move(program_);
   }
 
@@ -279,74 +263,6 @@ class Compilation {
         constants_.try_emplace(std::bit_cast<std::uint64_t>(value), static_cast<std::uint32_t>(program_.constants.size()));
     if (fresh) program_.constants.push_back(value);
     return found->second;
-  }
-
-  // --- final numbers ---
-
-  void number() {
-    widest_row_ = std::max(widest_row_, static_cast<int>(program_.source.channels.size()) + data_sums_);
-    program_.uniforms = static_cast<int>(program_.constants.size()) + widest_row_;
-    std::set<std::uint32_t> hot;
-    std::vector<Section*> sections{&program_.prologue, &program_.start,  &program_.carry,
-                                   &program_.step,     &program_.record, &program_.epilogue};
-    for (Section& observe : program_.observe) sections.push_back(&observe);
-    for (Section* section : sections) {
-      for (Instruction& instruction : section->code) {
-        if (instruction.store) instruction.target = numbered(instruction.target);
-        for (Operand* operand : {&instruction.a, &instruction.b, &instruction.c})
-          if (operand->place == OperandPlace::lane || operand->place == OperandPlace::uniform)
-            operand->index = numbered(operand->index);
-      }
-      section->linked = link(section->code, program_.uniforms);
-    }
-    auto const touch = [&hot](Code const& code) {
-      for (Instruction const& instruction : code) {
-        if (instruction.store) hot.insert(instruction.target);
-        for (Operand const& operand : {instruction.a, instruction.b, instruction.c})
-          if (operand.place == OperandPlace::lane) hot.insert(operand.index);
-      }
-    };
-    touch(program_.step.code);
-    for (Section const& observe : program_.observe) touch(observe.code);
-    program_.hot_registers = static_cast<int>(hot.size());
-  }
-
-  std::uint32_t numbered(std::uint32_t index) const {
-    RegisterLayout const& layout = program_.registers;
-    int first = 0;
-    switch (bank_of(index)) {
-      case parameter_bank:
-        first = 0;
-        break;
-      case hoisted_bank:
-        first = layout.first_hoisted();
-        break;
-      case state_bank:
-        first = layout.first_state();
-        break;
-      case control_bank:
-        first = layout.first_control();
-        break;
-      case accumulator_bank:
-        first = layout.first_accumulator();
-        break;
-      case record_bank:
-        first = layout.first_record();
-        break;
-      case sum_bank:
-        first = layout.first_sum();
-        break;
-      case temporary_bank:
-        first = layout.first_temporary();
-        break;
-      case constant_bank:
-        first = 0;
-        break;
-      case row_bank:
-        first = static_cast<int>(program_.constants.size());
-        break;
-    }
-    return static_cast<std::uint32_t>(first) + position_of(index);
   }
 
   SimulationProgram program_;

@@ -8,6 +8,7 @@
 
 #include "check/elaborate/errors.hpp"
 #include "check/elaborate/frame.hpp"
+#include "check/elaborate/part_noise.hpp"
 #include "check/elaborate/tree.hpp"
 
 namespace sysid {
@@ -44,7 +45,7 @@ class Flattener {
       report_unknown_names();
       return std::nullopt;
     }
-    drop_noise_of_parts();
+    drop_noise_of_parts(result_.tree.statements, noise_of_parts());
     collect_shapes(*root_);
     return std::move(result_);
   }
@@ -289,16 +290,9 @@ class Flattener {
     return std::nullopt;
   }
 
-  // `observe` of a part is left out, and with it what it alone reads of parts, over definitions and priors: a model's own noise is
-  // no part of a whole. What the whole declares itself stays.
-  void drop_noise_of_parts() {
-    Statements whole, single;
-    for (ast::ModelStatement const& statement : result_.tree.statements)
-      if (std::string const name = dispensable(statement); !name.empty()) {
-        whole[without_index(name)].push_back(&statement);
-        single[name].push_back(&statement);
-      }
-    std::set<std::string> noise, kept;  // names of vectors as wholes, names of numbers
+  // What `observe` of parts reads of them, vectors as wholes: none of it is written out.
+  std::set<std::string> noise_of_parts() {
+    std::set<std::string> noise;
     for (auto const& [frame, observation] : ignored_)
       for (ast::Argument const& argument : observation->noise.arguments)
         tree::each(argument.value, [&, frame = frame](ast::Expression const& each) {
@@ -306,41 +300,7 @@ class Flattener {
           Found const found = reference == nullptr ? Found{} : find(*frame, reference->name.text);
           if (found.symbol != nullptr) noise.insert(found.frame->prefix + found.name);
         });
-    spread(noise, whole, without_index);
-    auto const of_noise = [&](std::string const& name) {
-      return name.find('.') != std::string::npos && noise.contains(without_index(name));
-    };
-    for (ast::ModelStatement const& statement : result_.tree.statements)
-      if (!of_noise(dispensable(statement)))
-        tree::each_reference(statement, [&](ast::Reference const& reference) { kept.insert(reference.name.text); });
-    spread(kept, single, [](std::string const& name) { return name; });
-    std::erase_if(result_.tree.statements, [&](ast::ModelStatement const& statement) {
-      std::string const name = dispensable(statement);
-      return of_noise(name) && !kept.contains(name);
-    });
-  }
-  static std::string without_index(std::string const& name) { return name.substr(0, name.find('[')); }
-  // The name of a parameter or definition: what it says is there for those that read it. Empty for other statements.
-  static std::string dispensable(ast::ModelStatement const& statement) {
-    if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) return parameter->name.name.text;
-    auto const* definition = std::get_if<ast::Definition>(&statement);
-    return definition == nullptr || definition->kind == ast::DefinitionKind::derived ? std::string() : definition->name.name.text;
-  }
-  using Statements = std::map<std::string, std::vector<ast::ModelStatement const*>>;
-  // Adds what the statements behind the names read, and those behind that; `as`: how a name is written in the set.
-  template <class Spelling>
-  static void spread(std::set<std::string>& names, Statements const& behind, Spelling const& as) {
-    std::vector<std::string> open(names.begin(), names.end());
-    while (!open.empty()) {
-      auto const place = behind.find(open.back());
-      open.pop_back();
-      if (place == behind.end()) continue;
-      for (ast::ModelStatement const* statement : place->second)
-        tree::each_reference(*statement, [&](ast::Reference const& reference) {
-          std::string name = as(reference.name.text);
-          if (names.insert(name).second) open.push_back(std::move(name));
-        });
-    }
+    return noise;
   }
 
   void collect_shapes(Frame const& frame) {
