@@ -4,9 +4,7 @@
 
 namespace sysid::grammar {
 
-struct candidates_tag {};
-
-inline constexpr x3::rule<candidates_tag, ast::Candidates> candidates = "a set of candidate models";
+inline constexpr x3::rule<struct candidates_tag, ast::Candidates> candidates = "a set of candidate models";
 
 BOOST_SPIRIT_DECLARE(decltype(candidates))
 

@@ -7,14 +7,11 @@
 namespace sysid::grammar {
 
 struct candidate_line_tag : resumes_behind_statement {};
-struct candidate_statement_tag {};
-struct candidate_tag {};
-struct shared_parameters_tag {};
 
 constexpr x3::rule<candidate_line_tag, ast::CandidateStatement> candidate_line = wanted::candidate_statement;
-constexpr x3::rule<candidate_statement_tag, ast::CandidateStatement> candidate_statement = wanted::candidate_statement;
-constexpr x3::rule<candidate_tag, ast::Candidate> candidate = wanted::candidate_statement;
-constexpr x3::rule<shared_parameters_tag, ast::SharedParameters> shared_parameters = "shared parameters";
+constexpr x3::rule<struct candidate_statement_tag, ast::CandidateStatement> candidate_statement = wanted::candidate_statement;
+constexpr x3::rule<struct candidate_tag, ast::Candidate> candidate = wanted::candidate_statement;
+constexpr x3::rule<struct shared_parameters_tag, ast::SharedParameters> shared_parameters = "shared parameters";
 
 auto const candidates_def = located[keyword("candidates") > name[to(&ast::Candidates::name)] > -text[to(&ast::Candidates::title)] >
                                     opening_brace > *(candidate_line[append(&ast::Candidates::statements)] | '\n' | ';') > '}'];

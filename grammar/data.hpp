@@ -4,9 +4,7 @@
 
 namespace sysid::grammar {
 
-struct data_tag {};
-
-inline constexpr x3::rule<data_tag, ast::Data> data = "a data block";
+inline constexpr x3::rule<struct data_tag, ast::Data> data = "a data block";
 
 BOOST_SPIRIT_DECLARE(decltype(data))
 

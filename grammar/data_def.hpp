@@ -6,32 +6,20 @@
 namespace sysid::grammar {
 
 struct data_line_tag : resumes_behind_statement {};
-struct data_statement_tag {};
-struct column_tag {};
-struct data_file_tag {};
-struct data_time_tag {};
-struct data_rate_tag {};
-struct data_input_tag {};
-struct data_measure_tag {};
-struct data_constant_tag {};
-struct data_split_tag {};
-struct split_part_tag {};
-struct rows_tag {};
-struct range_tag {};
 
 constexpr x3::rule<data_line_tag, ast::DataStatement> data_line = wanted::data_statement;
-constexpr x3::rule<data_statement_tag, ast::DataStatement> data_statement = wanted::data_statement;
-constexpr x3::rule<column_tag, ast::Column> column = wanted::column;
-constexpr x3::rule<data_file_tag, ast::DataFile> data_file = "a file";
-constexpr x3::rule<data_time_tag, ast::DataTime> data_time = "a time column";
-constexpr x3::rule<data_rate_tag, ast::DataRate> data_rate = "a rate";
-constexpr x3::rule<data_input_tag, ast::DataInput> data_input = "an input column";
-constexpr x3::rule<data_measure_tag, ast::DataMeasure> data_measure = "a measured column";
-constexpr x3::rule<data_constant_tag, ast::DataConstant> data_constant = "a constant";
-constexpr x3::rule<data_split_tag, ast::DataSplit> data_split = "a split";
-constexpr x3::rule<split_part_tag, ast::SplitPart> split_part = wanted::name;
-constexpr x3::rule<rows_tag> rows_word = "`rows`";
-constexpr x3::rule<range_tag> range = "`..`";
+constexpr x3::rule<struct data_statement_tag, ast::DataStatement> data_statement = wanted::data_statement;
+constexpr x3::rule<struct column_tag, ast::Column> column = wanted::column;
+constexpr x3::rule<struct data_file_tag, ast::DataFile> data_file = "a file";
+constexpr x3::rule<struct data_time_tag, ast::DataTime> data_time = "a time column";
+constexpr x3::rule<struct data_rate_tag, ast::DataRate> data_rate = "a rate";
+constexpr x3::rule<struct data_input_tag, ast::DataInput> data_input = "an input column";
+constexpr x3::rule<struct data_measure_tag, ast::DataMeasure> data_measure = "a measured column";
+constexpr x3::rule<struct data_constant_tag, ast::DataConstant> data_constant = "a constant";
+constexpr x3::rule<struct data_split_tag, ast::DataSplit> data_split = "a split";
+constexpr x3::rule<struct split_part_tag, ast::SplitPart> split_part = wanted::name;
+constexpr x3::rule<struct rows_tag> rows_word = "`rows`";
+constexpr x3::rule<struct range_tag> range = "`..`";
 
 /// A column goes by an identifier or, where its name is none, by a text.
 constexpr auto column_name = [](auto& context) { x3::_val(context).name = std::move(x3::_attr(context).text); };

@@ -4,9 +4,7 @@
 
 namespace sysid::grammar {
 
-struct dictionary_tag {};
-
-inline constexpr x3::rule<dictionary_tag, ast::Dictionary> dictionary = "a dictionary";
+inline constexpr x3::rule<struct dictionary_tag, ast::Dictionary> dictionary = "a dictionary";
 
 BOOST_SPIRIT_DECLARE(decltype(dictionary))
 

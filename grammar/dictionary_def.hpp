@@ -8,28 +8,18 @@
 namespace sysid::grammar {
 
 struct dictionary_line_tag : resumes_behind_statement {};
-struct dictionary_statement_tag {};
-struct quantity_tag {};
-struct dictionary_time_tag {};
-struct dictionary_inputs_tag {};
-struct measured_state_tag {};
-struct dictionary_states_tag {};
-struct dictionary_parameter_tag {};
-struct dictionary_definition_tag {};
-struct dictionary_list_tag {};
-struct coefficient_units_tag {};
 
 constexpr x3::rule<dictionary_line_tag, ast::DictionaryStatement> dictionary_line = wanted::dictionary_statement;
-constexpr x3::rule<dictionary_statement_tag, ast::DictionaryStatement> dictionary_statement = wanted::dictionary_statement;
-constexpr x3::rule<quantity_tag, ast::Declared> quantity = wanted::name;
-constexpr x3::rule<dictionary_time_tag, ast::TimeDeclaration> dictionary_time = "a declaration of time";
-constexpr x3::rule<dictionary_inputs_tag, ast::InputDeclaration> dictionary_inputs = "a declaration of inputs";
-constexpr x3::rule<measured_state_tag, ast::DictionaryState> measured_state = wanted::name;
-constexpr x3::rule<dictionary_states_tag, ast::DictionaryStates> dictionary_states = "a declaration of states";
-constexpr x3::rule<dictionary_parameter_tag, ast::DictionaryParameter> dictionary_parameter = "a declaration of a parameter";
-constexpr x3::rule<dictionary_definition_tag, ast::Definition> dictionary_definition = "a definition";
-constexpr x3::rule<dictionary_list_tag, ast::DictionaryList> dictionary_list = "a list of terms";
-constexpr x3::rule<coefficient_units_tag, ast::CoefficientUnits> coefficient_units = "the units of coefficients";
+constexpr x3::rule<struct dictionary_statement_tag, ast::DictionaryStatement> dictionary_statement = wanted::dictionary_statement;
+constexpr x3::rule<struct quantity_tag, ast::Declared> quantity = wanted::name;
+constexpr x3::rule<struct dictionary_time_tag, ast::TimeDeclaration> dictionary_time = "a declaration of time";
+constexpr x3::rule<struct dictionary_inputs_tag, ast::InputDeclaration> dictionary_inputs = "a declaration of inputs";
+constexpr x3::rule<struct measured_state_tag, ast::DictionaryState> measured_state = wanted::name;
+constexpr x3::rule<struct dictionary_states_tag, ast::DictionaryStates> dictionary_states = "a declaration of states";
+constexpr x3::rule<struct dictionary_parameter_tag, ast::DictionaryParameter> dictionary_parameter = "a declaration of a parameter";
+constexpr x3::rule<struct dictionary_definition_tag, ast::Definition> dictionary_definition = "a definition";
+constexpr x3::rule<struct dictionary_list_tag, ast::DictionaryList> dictionary_list = "a list of terms";
+constexpr x3::rule<struct coefficient_units_tag, ast::CoefficientUnits> coefficient_units = "the units of coefficients";
 
 constexpr auto prime_of_state = [](auto& context) { ++x3::_val(context).primes; };
 

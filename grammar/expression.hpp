@@ -4,31 +4,21 @@
 
 namespace sysid::grammar {
 
-struct expression_tag {};
-struct call_tag {};
-struct distribution_tag {};
-struct argument_tag {};
-struct unit_tag {};
-struct unit_expression_tag {};
-struct reference_tag {};
-struct declared_tag {};
-struct declared_parameter_tag {};
-
-inline constexpr x3::rule<expression_tag, ast::Expression> expression = wanted::value;
+inline constexpr x3::rule<struct expression_tag, ast::Expression> expression = wanted::value;
 /// name(arguments); fails where no parenthesis follows a name.
-inline constexpr x3::rule<call_tag, ast::Call> call = "a function";
-inline constexpr x3::rule<distribution_tag, ast::Call> distribution = "a distribution such as `normal(0, 1)`";
+inline constexpr x3::rule<struct call_tag, ast::Call> call = "a function";
+inline constexpr x3::rule<struct distribution_tag, ast::Call> distribution = "a distribution such as `normal(0, 1)`";
 /// `value`, `name = value`.
-inline constexpr x3::rule<argument_tag, ast::Argument> argument = "an argument";
+inline constexpr x3::rule<struct argument_tag, ast::Argument> argument = "an argument";
 /// `[...]`.
-inline constexpr x3::rule<unit_tag, ast::UnitExpression> unit = "a unit in brackets";
-inline constexpr x3::rule<unit_expression_tag, ast::UnitExpression> unit_expression = "a unit";
+inline constexpr x3::rule<struct unit_tag, ast::UnitExpression> unit = "a unit in brackets";
+inline constexpr x3::rule<struct unit_expression_tag, ast::UnitExpression> unit_expression = "a unit";
 /// A path, its index and its primes; the index stands directly behind the name, as the primes do.
-inline constexpr x3::rule<reference_tag, ast::Reference> reference = wanted::name;
+inline constexpr x3::rule<struct reference_tag, ast::Reference> reference = wanted::name;
 /// A name, its sizes and its unit.
-inline constexpr x3::rule<declared_tag, ast::Declared> declared = wanted::name;
+inline constexpr x3::rule<struct declared_tag, ast::Declared> declared = wanted::name;
 /// The same, with `per experiment` before the unit.
-inline constexpr x3::rule<declared_parameter_tag, ast::Declared> declared_parameter = wanted::name;
+inline constexpr x3::rule<struct declared_parameter_tag, ast::Declared> declared_parameter = wanted::name;
 
 BOOST_SPIRIT_DECLARE(decltype(expression), decltype(call), decltype(distribution), decltype(argument), decltype(unit),
                      decltype(unit_expression), decltype(reference), decltype(declared), decltype(declared_parameter))

@@ -7,52 +7,30 @@
 
 namespace sysid::grammar {
 
-struct conditional_tag {};
-struct disjunction_tag {};
-struct conjunction_tag {};
-struct negation_tag {};
-struct denial_tag {};
-struct negative_tag {};
-struct comparison_tag {};
-struct sum_tag {};
-struct product_tag {};
-struct signed_value_tag {};
-struct power_tag {};
-struct primary_tag {};
-struct group_tag {};
-struct number_tag {};
-struct then_tag {};
-struct else_tag {};
-struct no_value_follows_tag {};
-struct index_tag {};
-struct closing_bracket_of_index_tag {};
-struct sizes_tag {};
-struct experiment_word_tag {};
-
-constexpr x3::rule<conditional_tag, ast::Conditional> conditional = wanted::value;
-constexpr x3::rule<disjunction_tag, ast::Expression> disjunction = wanted::value;
-constexpr x3::rule<conjunction_tag, ast::Expression> conjunction = wanted::value;
+constexpr x3::rule<struct conditional_tag, ast::Conditional> conditional = wanted::value;
+constexpr x3::rule<struct disjunction_tag, ast::Expression> disjunction = wanted::value;
+constexpr x3::rule<struct conjunction_tag, ast::Expression> conjunction = wanted::value;
 /// `not a` and `-a`.
-constexpr x3::rule<denial_tag, ast::Unary> denial = wanted::value;
-constexpr x3::rule<negative_tag, ast::Unary> negative = wanted::value;
-constexpr x3::rule<negation_tag, ast::Expression> negation = wanted::value;
-constexpr x3::rule<comparison_tag, ast::Expression> comparison = wanted::value;
-constexpr x3::rule<sum_tag, ast::Expression> sum = wanted::value;
-constexpr x3::rule<product_tag, ast::Expression> product = wanted::value;
-constexpr x3::rule<signed_value_tag, ast::Expression> signed_value = wanted::value;
-constexpr x3::rule<power_tag, ast::Expression> power = wanted::value;
-constexpr x3::rule<primary_tag, ast::Expression> primary = wanted::value;
+constexpr x3::rule<struct denial_tag, ast::Unary> denial = wanted::value;
+constexpr x3::rule<struct negative_tag, ast::Unary> negative = wanted::value;
+constexpr x3::rule<struct negation_tag, ast::Expression> negation = wanted::value;
+constexpr x3::rule<struct comparison_tag, ast::Expression> comparison = wanted::value;
+constexpr x3::rule<struct sum_tag, ast::Expression> sum = wanted::value;
+constexpr x3::rule<struct product_tag, ast::Expression> product = wanted::value;
+constexpr x3::rule<struct signed_value_tag, ast::Expression> signed_value = wanted::value;
+constexpr x3::rule<struct power_tag, ast::Expression> power = wanted::value;
+constexpr x3::rule<struct primary_tag, ast::Expression> primary = wanted::value;
 /// One expression in parentheses, or a list of several.
-constexpr x3::rule<group_tag, ast::List> group = wanted::value;
-constexpr x3::rule<number_tag, ast::Number> number = wanted::value;
+constexpr x3::rule<struct group_tag, ast::List> group = wanted::value;
+constexpr x3::rule<struct number_tag, ast::Number> number = wanted::value;
 /// What stands between `[` and `]` behind a name, and between `(` and `)` behind a declared one.
-constexpr x3::rule<index_tag, std::vector<ast::Expression>> index = "an index";
-constexpr x3::rule<closing_bracket_of_index_tag> closing_bracket_of_index = "`]`";
-constexpr x3::rule<sizes_tag, std::vector<ast::Expression>> sizes = "the size of a vector or matrix";
-constexpr x3::rule<experiment_word_tag> experiment_word = "`experiment`";
-constexpr x3::rule<then_tag> then_word = "`then`";
-constexpr x3::rule<else_tag> else_word = "`else`";
-constexpr x3::rule<no_value_follows_tag> no_value_follows = wanted::operator_between;
+constexpr x3::rule<struct index_tag, std::vector<ast::Expression>> index = "an index";
+constexpr x3::rule<struct closing_bracket_of_index_tag> closing_bracket_of_index = "`]`";
+constexpr x3::rule<struct sizes_tag, std::vector<ast::Expression>> sizes = "the size of a vector or matrix";
+constexpr x3::rule<struct experiment_word_tag> experiment_word = "`experiment`";
+constexpr x3::rule<struct then_tag> then_word = "`then`";
+constexpr x3::rule<struct else_tag> else_word = "`else`";
+constexpr x3::rule<struct no_value_follows_tag> no_value_follows = wanted::operator_between;
 
 /// Symbols by longest match.
 struct binary_operator : x3::symbols<std::string> {

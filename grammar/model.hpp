@@ -4,11 +4,8 @@
 
 namespace sysid::grammar {
 
-struct model_tag {};
-struct function_definition_tag {};
-
-inline constexpr x3::rule<model_tag, ast::Model> model = "a model";
-inline constexpr x3::rule<function_definition_tag, ast::FunctionDefinition> function_definition = "a function definition";
+inline constexpr x3::rule<struct model_tag, ast::Model> model = "a model";
+inline constexpr x3::rule<struct function_definition_tag, ast::FunctionDefinition> function_definition = "a function definition";
 
 BOOST_SPIRIT_DECLARE(decltype(model), decltype(function_definition))
 

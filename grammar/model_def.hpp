@@ -7,34 +7,22 @@
 namespace sysid::grammar {
 
 struct model_line_tag : resumes_behind_statement {};
-struct model_statement_tag {};
-struct model_argument_tag {};
-struct discrete_time_tag {};
-struct time_declaration_tag {};
-struct input_declaration_tag {};
-struct state_declaration_tag {};
-struct initial_declaration_tag {};
-struct initial_value_tag {};
-struct parameter_declaration_tag {};
-struct definition_tag {};
-struct observation_tag {};
-struct part_tag {};
-struct equation_tag {};
 
 constexpr x3::rule<model_line_tag, ast::ModelStatement> model_line = wanted::model_statement;
-constexpr x3::rule<model_statement_tag, ast::ModelStatement> model_statement = wanted::model_statement;
-constexpr x3::rule<model_argument_tag, ast::ModelArgument> model_argument = wanted::name;
-constexpr x3::rule<discrete_time_tag, ast::DiscreteTimeDeclaration> discrete_time = "a declaration of time";
-constexpr x3::rule<time_declaration_tag, ast::TimeDeclaration> time_declaration = "a declaration of time";
-constexpr x3::rule<input_declaration_tag, ast::InputDeclaration> input_declaration = "a declaration of inputs";
-constexpr x3::rule<state_declaration_tag, ast::StateDeclaration> state_declaration = "a declaration of states";
-constexpr x3::rule<initial_declaration_tag, ast::InitialDeclaration> initial_declaration = "initial values";
-constexpr x3::rule<initial_value_tag, ast::InitialValue> initial_value = wanted::name;
-constexpr x3::rule<parameter_declaration_tag, ast::ParameterDeclaration> parameter_declaration = "a declaration of a parameter";
-constexpr x3::rule<definition_tag, ast::Definition> definition = "a definition";
-constexpr x3::rule<observation_tag, ast::Observation> observation = "an observation";
-constexpr x3::rule<part_tag, ast::Part> part = "a part";
-constexpr x3::rule<equation_tag, ast::Equation> equation = "an equation";
+constexpr x3::rule<struct model_statement_tag, ast::ModelStatement> model_statement = wanted::model_statement;
+constexpr x3::rule<struct model_argument_tag, ast::ModelArgument> model_argument = wanted::name;
+constexpr x3::rule<struct discrete_time_tag, ast::DiscreteTimeDeclaration> discrete_time = "a declaration of time";
+constexpr x3::rule<struct time_declaration_tag, ast::TimeDeclaration> time_declaration = "a declaration of time";
+constexpr x3::rule<struct input_declaration_tag, ast::InputDeclaration> input_declaration = "a declaration of inputs";
+constexpr x3::rule<struct state_declaration_tag, ast::StateDeclaration> state_declaration = "a declaration of states";
+constexpr x3::rule<struct initial_declaration_tag, ast::InitialDeclaration> initial_declaration = "initial values";
+constexpr x3::rule<struct initial_value_tag, ast::InitialValue> initial_value = wanted::name;
+constexpr x3::rule<struct parameter_declaration_tag, ast::ParameterDeclaration> parameter_declaration =
+    "a declaration of a parameter";
+constexpr x3::rule<struct definition_tag, ast::Definition> definition = "a definition";
+constexpr x3::rule<struct observation_tag, ast::Observation> observation = "an observation";
+constexpr x3::rule<struct part_tag, ast::Part> part = "a part";
+constexpr x3::rule<struct equation_tag, ast::Equation> equation = "an equation";
 
 auto const model_def =
     located[keyword("model") > name[to(&ast::Model::name)] > -('(' > model_argument[append(&ast::Model::arguments)] >

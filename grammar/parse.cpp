@@ -22,16 +22,13 @@ constexpr std::size_t most_errors = 20;
 
 }  // namespace
 
-struct file_tag {};
 struct file_line_tag : resumes_behind_item {};
-struct use_tag {};
-struct item_tag {};
 struct lone_expression_tag : resumes_behind_item {};
 
-constexpr x3::rule<file_tag, ast::File> file = "a file";
+constexpr x3::rule<struct file_tag, ast::File> file = "a file";
 constexpr x3::rule<file_line_tag, ast::Item> file_line = wanted::item;
-constexpr x3::rule<use_tag, ast::Use> use = "a module";
-constexpr x3::rule<item_tag, ast::Item> item = wanted::item;
+constexpr x3::rule<struct use_tag, ast::Use> use = "a module";
+constexpr x3::rule<struct item_tag, ast::Item> item = wanted::item;
 constexpr x3::rule<lone_expression_tag, ast::Expression> lone_expression = wanted::value;
 
 auto const file_def = *(file_line[append(&ast::File::items)] | '\n' | ';');

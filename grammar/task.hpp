@@ -4,9 +4,7 @@
 
 namespace sysid::grammar {
 
-struct task_tag {};
-
-inline constexpr x3::rule<task_tag, ast::Task> task = "a task";
+inline constexpr x3::rule<struct task_tag, ast::Task> task = "a task";
 
 BOOST_SPIRIT_DECLARE(decltype(task))
 

@@ -6,22 +6,14 @@
 
 namespace sysid::grammar {
 
-struct verb_tag {};
-struct preposition_tag {};
-struct data_reference_tag {};
-struct option_tag {};
-struct settings_tag {};
-struct preposition_or_end_tag {};
-struct with_or_end_tag {};
-
-constexpr x3::rule<verb_tag, ast::Name> verb = wanted::verb;
-constexpr x3::rule<preposition_tag, ast::Name> preposition = "`to`, `on` or `from`";
-constexpr x3::rule<data_reference_tag, ast::DataReference> data_reference = "the name of a data block";
-constexpr x3::rule<option_tag, ast::Option> option = "an option";
+constexpr x3::rule<struct verb_tag, ast::Name> verb = wanted::verb;
+constexpr x3::rule<struct preposition_tag, ast::Name> preposition = "`to`, `on` or `from`";
+constexpr x3::rule<struct data_reference_tag, ast::DataReference> data_reference = "the name of a data block";
+constexpr x3::rule<struct option_tag, ast::Option> option = "an option";
 /// `with` and what follows; its own list, since an alternative does not roll a container back.
-constexpr x3::rule<settings_tag, std::vector<ast::Option>> settings = "`with`";
-constexpr x3::rule<preposition_or_end_tag> preposition_or_end = wanted::preposition_or_end;
-constexpr x3::rule<with_or_end_tag> with_or_end = wanted::with_or_end;
+constexpr x3::rule<struct settings_tag, std::vector<ast::Option>> settings = "`with`";
+constexpr x3::rule<struct preposition_or_end_tag> preposition_or_end = wanted::preposition_or_end;
+constexpr x3::rule<struct with_or_end_tag> with_or_end = wanted::with_or_end;
 
 template <auto const& Table>
 constexpr auto take_one_of = [](auto& context) {

@@ -6,28 +6,18 @@
 
 namespace sysid::grammar {
 
-struct name_tag {};
-struct text_tag {};
-struct plain_number_tag {};
-struct path_tag {};
-struct element_tag {};
-struct equals_tag {};
-struct tilde_tag {};
-struct opening_brace_tag {};
-struct end_of_statement_tag {};
-
-inline constexpr x3::rule<name_tag, ast::Name> name = wanted::name;
+inline constexpr x3::rule<struct name_tag, ast::Name> name = wanted::name;
 /// A name behind those of the parts it lies in: `spring.force`.
-inline constexpr x3::rule<path_tag, ast::Name> path = wanted::name;
+inline constexpr x3::rule<struct path_tag, ast::Name> path = wanted::name;
 /// A number that is declared under a path, perhaps as an element of a vector or matrix: `spring.k`, `q[2]`, `M[1, 2]`.
-inline constexpr x3::rule<element_tag, ast::Name> element = wanted::name;
-inline constexpr x3::rule<text_tag, ast::Text> text = "a text in quotes";
+inline constexpr x3::rule<struct element_tag, ast::Name> element = wanted::name;
+inline constexpr x3::rule<struct text_tag, ast::Text> text = "a text in quotes";
 /// Without a unit.
-inline constexpr x3::rule<plain_number_tag, ast::Number> plain_number = "a number";
-inline constexpr x3::rule<equals_tag> equals = wanted::equals;
-inline constexpr x3::rule<tilde_tag> tilde = wanted::tilde;
-inline constexpr x3::rule<opening_brace_tag> opening_brace = wanted::opening_brace;
-inline constexpr x3::rule<end_of_statement_tag> end_of_statement = wanted::end_of_statement;
+inline constexpr x3::rule<struct plain_number_tag, ast::Number> plain_number = "a number";
+inline constexpr x3::rule<struct equals_tag> equals = wanted::equals;
+inline constexpr x3::rule<struct tilde_tag> tilde = wanted::tilde;
+inline constexpr x3::rule<struct opening_brace_tag> opening_brace = wanted::opening_brace;
+inline constexpr x3::rule<struct end_of_statement_tag> end_of_statement = wanted::end_of_statement;
 
 BOOST_SPIRIT_DECLARE(decltype(name), decltype(path), decltype(element), decltype(text), decltype(plain_number), decltype(equals),
                      decltype(tilde), decltype(opening_brace), decltype(end_of_statement))

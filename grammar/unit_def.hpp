@@ -5,26 +5,16 @@
 
 namespace sysid::grammar {
 
-struct unit_content_tag {};
-struct dimensionless_tag {};
-struct unit_factor_tag {};
-struct divisor_tag {};
-struct unit_name_tag {};
-struct exponent_tag {};
-struct negative_exponent_tag {};
-struct exponent_magnitude_tag {};
-struct closing_bracket_tag {};
-
-constexpr x3::rule<unit_content_tag, ast::UnitExpression> unit_content = "a unit";
-constexpr x3::rule<dimensionless_tag, ast::UnitFactor> dimensionless = "a unit";
-constexpr x3::rule<unit_factor_tag, ast::UnitFactor> unit_factor = "a unit";
+constexpr x3::rule<struct unit_content_tag, ast::UnitExpression> unit_content = "a unit";
+constexpr x3::rule<struct dimensionless_tag, ast::UnitFactor> dimensionless = "a unit";
+constexpr x3::rule<struct unit_factor_tag, ast::UnitFactor> unit_factor = "a unit";
 /// The factor behind a `/`.
-constexpr x3::rule<divisor_tag, ast::UnitFactor> divisor = "a unit";
-constexpr x3::rule<unit_name_tag, ast::Name> unit_name = "a unit";
-constexpr x3::rule<exponent_tag, ast::Expression> exponent = "an exponent";
-constexpr x3::rule<negative_exponent_tag, ast::Unary> negative_exponent = "an exponent";
-constexpr x3::rule<exponent_magnitude_tag, ast::Expression> exponent_magnitude = "an exponent";
-constexpr x3::rule<closing_bracket_tag> closing_bracket = "`]`";
+constexpr x3::rule<struct divisor_tag, ast::UnitFactor> divisor = "a unit";
+constexpr x3::rule<struct unit_name_tag, ast::Name> unit_name = "a unit";
+constexpr x3::rule<struct exponent_tag, ast::Expression> exponent = "an exponent";
+constexpr x3::rule<struct negative_exponent_tag, ast::Unary> negative_exponent = "an exponent";
+constexpr x3::rule<struct exponent_magnitude_tag, ast::Expression> exponent_magnitude = "an exponent";
+constexpr x3::rule<struct closing_bracket_tag> closing_bracket = "`]`";
 
 constexpr auto name_itself(char const* spelling) {
   return [spelling](auto& context) { x3::_val(context).text = spelling; };
