@@ -20,6 +20,7 @@ constexpr x3::rule<struct initial_value_tag, ast::InitialValue> initial_value = 
 constexpr x3::rule<struct parameter_declaration_tag, ast::ParameterDeclaration> parameter_declaration =
     "a declaration of a parameter";
 constexpr x3::rule<struct definition_tag, ast::Definition> definition = "a definition";
+constexpr x3::rule<struct process_definition_tag, ast::ProcessDefinition> process_definition = "a Gaussian process";
 constexpr x3::rule<struct observation_tag, ast::Observation> observation = "an observation";
 constexpr x3::rule<struct part_tag, ast::Part> part = "a part";
 constexpr x3::rule<struct equation_tag, ast::Equation> equation = "an equation";
@@ -31,7 +32,8 @@ auto const model_def =
 auto const model_line_def = (!(x3::lit('\n') | ';' | '}' | x3::eoi)) > model_statement[take] > end_of_statement;
 auto const model_statement_def = discrete_time[take] | time_declaration[take] | input_declaration[take] | state_declaration[take] |
                                  initial_declaration[take] | parameter_declaration[take] | definition[take] |
-                                 function_definition[take] | observation[take] | part[take] | equation[take];
+                                 process_definition[take] | function_definition[take] | observation[take] | part[take] |
+                                 equation[take];
 
 auto const model_argument_def =
     located[name[to(&ast::ModelArgument::name)] >> -(equals > expression[to(&ast::ModelArgument::value)])];
@@ -57,6 +59,11 @@ auto const function_definition_def =
     located[keyword("function") > name[to(&ast::FunctionDefinition::name)] > '(' >
             -(name[append(&ast::FunctionDefinition::parameters)] >> *(',' > name[append(&ast::FunctionDefinition::parameters)])) >
             ')' > equals > expression[to(&ast::FunctionDefinition::value)]];
+// Up to `~` it may still be a function with a value: that rule says what is wrong with a head.
+auto const process_definition_def =
+    located[keyword("function") >> name[to(&ast::ProcessDefinition::name)] >> '(' >>
+            name[append(&ast::ProcessDefinition::inputs)] >> *(',' >> name[append(&ast::ProcessDefinition::inputs)]) >> ')' >>
+            tilde > distribution[to(&ast::ProcessDefinition::process)]];
 auto const observation_def =
     located[keyword("observe") > declared[to(&ast::Observation::channel)] > tilde > distribution[to(&ast::Observation::noise)]];
 auto const part_def = located[keyword("part") > name[to(&ast::Part::name)] > equals > call[to(&ast::Part::model)]];
@@ -65,6 +72,6 @@ auto const equation_def =
 
 BOOST_SPIRIT_DEFINE(model, model_line, model_statement, model_argument, discrete_time, time_declaration, input_declaration,
                     state_declaration, initial_declaration, initial_value, parameter_declaration, definition, function_definition,
-                    observation, part, equation)
+                    process_definition, observation, part, equation)
 
 }  // namespace sysid::grammar

@@ -10,8 +10,8 @@
 
 namespace sysid {
 
-Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
-                       Model const& model) {
+Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
+                       Experiment const& experiment, Model const& model) {
   Prediction prediction;
   prediction.experiment = experiment.name;
   prediction.time = experiment.time;
@@ -23,8 +23,8 @@ Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& r
   if (prediction.rows)  // of any order: shown as they stand in the file
     for (std::size_t i = 0; i < prediction.time.size(); ++i) prediction.time[i] = experiment.first_row + static_cast<double>(i);
   prediction.scored = experiment.scored;
-  for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
-    TrajectoryQuantity const& quantity = trajectory.quantities()[q];
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    TrajectoryQuantity const& quantity = quantities[q];
     // A state that a channel of its name observes is shown once, as the channel.
     bool const shown = quantity.channel < 0 && std::any_of(model.channels.begin(), model.channels.end(),
                                                            [&](Channel const& channel) { return channel.name == quantity.name; });

@@ -1,5 +1,7 @@
 // Trajectories of draws condensed to what reports show.
 #pragma once
+#include <span>
+
 #include "data/experiment.hpp"
 #include "inference/finding.hpp"
 #include "likelihood/trajectory.hpp"
@@ -8,8 +10,8 @@
 namespace sysid {
 
 /// Bands of every quantity along an experiment, with and without noise, beside the measured samples; declared units.
-Prediction bands_along(Trajectory const& trajectory, Trajectory::Result const& result, Experiment const& experiment,
-                       Model const& model);
+Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
+                       Experiment const& experiment, Model const& model);
 
 /// Without what reads a parameter of the noise: particles of a selection have none. Says what went.
 Findings leave_out_noise(Model const& model, Prediction& prediction);

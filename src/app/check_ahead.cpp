@@ -33,6 +33,10 @@ std::string obstacle(LookedAt const& look, PriorDraws const& prior, std::vector<
 }  // namespace
 
 void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
+  if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty()) {
+    page.left_out = "what needs draws of the prior: the model has a Gaussian process";
+    return;
+  }
   LookedAt const look(session, what, data, page);
   for (Parameter const& parameter : look.model().parameters)
     if (parameter.prior && !parameter.prior->row->proper) {

@@ -13,6 +13,7 @@
 #include "app/fit_checks.hpp"
 #include "app/fit_target.hpp"
 #include "app/preparation.hpp"
+#include "app/process_fit.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
@@ -272,7 +273,7 @@ class Fit {
                                 what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
     Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, e));
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name)) findings.push_back(std::move(finding));
-    Prediction prediction = bands_along(trajectory, result, experiment, model_);
+    Prediction prediction = bands_along(trajectory.quantities(), result, experiment, model_);
     for (Finding& finding : band_findings(prediction, result.failed(), result.failed(), data_.size() > 1))
       findings.push_back(std::move(finding));
     return prediction;
@@ -298,6 +299,8 @@ class Fit {
 }  // namespace
 
 ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what) {
+  if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty())
+    return run_process_fit(session, index, task, what);
   return Fit(session, index, task, what).run();
 }
 

@@ -96,8 +96,10 @@ std::string dump_stage(Source& source, std::string const& stage, Diagnostics& di
   if (!file) return {};
   if (stage == "flat") return unparse(file->tree);
   std::string text;
-  for (Model const& model : file->models)
+  for (Model model : file->models) {
+    if (stage == "program") remove_processes(model);
     text += stage == "model" ? dump(model) : dump_program(*compile(model, false, model.implicit ? "ida" : SolverSettings{}.method));
+  }
   if (stage == "model") {
     for (CandidateSet const& set : file->candidates) text += dump(set);
     for (CheckedDictionary const& dictionary : file->dictionaries) text += dictionary_text(describe_dictionary(dictionary));

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "app/bands.hpp"
+#include "app/coverage.hpp"
 #include "app/drift.hpp"
 #include "app/experiments.hpp"
+#include "app/process_fit.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/solver_record.hpp"
@@ -17,26 +19,6 @@
 
 namespace sysid {
 namespace {
-
-constexpr double least_coverage = 0.8;  // of a 95 % band: errors that are correlated in time leave it in stretches
-
-int measured_samples(Report const& report, FitLine const& line) {
-  int count = 0;
-  for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities) {
-      if (prediction.experiment != line.experiment || quantity.name != line.channel) continue;
-      for (std::size_t i = 0; i < quantity.measured.size(); ++i)
-        count += prediction.scored[i] != 0 && !std::isnan(quantity.measured[i]);
-    }
-  return count;
-}
-
-// So few inside a 95 % band that chance will not do it: 3.3 binomial sds and one sample besides.
-bool misses(double coverage, int samples) {
-  constexpr double expected = 0.95;
-  double const short_of = (expected - coverage) * samples;
-  return coverage < least_coverage && short_of > 3.3 * std::sqrt(samples * expected * (1 - expected)) + 1;
-}
 
 // The per-experiment parameters that a new experiment draws from their prior, by name.
 std::vector<std::string> drawn_parameters(Model const& model, ExperimentUse const& use) {
@@ -87,7 +69,7 @@ class Predict {
     if (model_.integrated()) add_solver(fitted_.solver, report.settings);
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
-    bool const missed = add_coverage(report);
+    bool const missed = add_coverage(report, model_.dynamics == Dynamics::discrete && !model_.states.empty());
     report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
                      : report.ledger.failed() > 0     ? "some trajectories do not stay finite"
                      : missed                         ? "all trajectories stay finite, but the data lie outside their bands"
@@ -115,26 +97,6 @@ class Predict {
     return space_->of_new_experiment(declared, use.constants, {seed_, Purpose::population, static_cast<std::uint64_t>(e) << 32, 0});
   }
 
-  // Whether some channel leaves its 95 % band far more often than it should.
-  bool add_coverage(Report& report) const {
-    bool const fed_back = model_.dynamics == Dynamics::discrete && !model_.states.empty();
-    bool any = false;
-    for (FitLine const& line : fit_lines(report))
-      for (Score const& score : line.scores) {
-        if (score.name != "coverage_95" || !misses(score.value, measured_samples(report, line))) continue;
-        any = true;
-        report.findings.push_back(
-            {Severity::warning, "coverage_low",
-             fmt::format("only {:.0f} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
-             fed_back
-                 ? "a free run leaves out the noise that feeds back into later samples: its bands are those of the parameters and "
-                   "of each sample's own noise"
-                 : "the model or its noise does not carry over to these data: look at the residuals, and at inputs outside the "
-                   "range that was fitted"});
-      }
-    return any;
-  }
-
   // Adds bands, findings and failures of experiment e.
   void predict(int e, Report& report) const {
     Experiment const& experiment = data_[static_cast<std::size_t>(e)].experiment;
@@ -147,7 +109,7 @@ class Predict {
     Trajectory::Result const result = what_.redraw_each_step
                                           ? trajectory.run_redrawn(draws, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
                                           : trajectory.run(draws, noise);
-    report.predictions.push_back(bands_along(trajectory, result, experiment, model_));
+    report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model_));
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name))
       report.findings.push_back(std::move(finding));
     report.ledger.merge(result.ledger);
@@ -178,6 +140,10 @@ class Predict {
 
 }  // namespace
 
-ExitCode run_predict(Session& session, Task const& task, PredictTask const& what) { return Predict(session, task, what).run(); }
+ExitCode run_predict(Session& session, Task const& task, PredictTask const& what) {
+  auto const& fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
+  if (!session.file.models[static_cast<std::size_t>(fit.model)].processes.empty()) return run_process_predict(session, task, what);
+  return Predict(session, task, what).run();
+}
 
 }  // namespace sysid

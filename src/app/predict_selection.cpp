@@ -134,7 +134,7 @@ class PredictSelection {
       report.findings.push_back({Severity::note, "without_noise",
                                  "the bands are of the response alone: a selection by distance says nothing about the noise", ""});
     all.noisy.resize(leading_model->channels.size());  // none
-    report.predictions.push_back(bands_along(*leading, all, experiment, *leading_model));
+    report.predictions.push_back(bands_along(leading->quantities(), all, experiment, *leading_model));
     Findings const left_out = leave_out_noise(*leading_model, report.predictions.back());
     if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
     report.ledger.merge(all.ledger);

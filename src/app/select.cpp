@@ -109,7 +109,7 @@ class Select {
       Trajectory::Result result = trajectory.run(parameters, prediction_noise(seed_, static_cast<int>(e)));
       if (candidate.space->dimension() != candidate.simulated->dimension())
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
-      report.predictions.push_back(bands_along(trajectory, result, experiment, candidate.compiled->model));
+      report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, candidate.compiled->model));
       Findings left_out = leave_out_noise(candidate.compiled->model, report.predictions.back());
       if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))

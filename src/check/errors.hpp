@@ -192,4 +192,38 @@ Diagnostic experiment_twice(Span second, Span first, std::string const& experime
 Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other);
 Diagnostic shared_prior_reads_own(Span prior, std::string const& parameter, std::string const& own);
 
+// Gaussian processes (E32)
+Diagnostic not_a_process(ast::Name const& name);
+Diagnostic one_covariance(Span span);
+Diagnostic not_a_covariance(Span span);
+Diagnostic unknown_kernel(ast::Name const& name, Names const& known);
+/// given: empty where it is no name.
+Diagnostic not_an_input_of_process(Span span, std::string const& given, std::string const& process, Names const& inputs);
+Diagnostic kernel_input_twice(Span span, std::string const& input);
+Diagnostic kernel_of_one_input(Span span, std::string const& kernel, std::size_t given);
+Diagnostic hyper_parameter_count(Span span, std::string const& name, std::size_t given, std::size_t wanted);
+/// input: that it belongs to; empty: to none.
+Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given,
+                                Unit const& wanted);
+Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right);
+Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string const& what);
+Diagnostic hyper_parameter_not_positive(Span span, std::string const& name);
+Diagnostic process_in_differential_equation(Span span, std::string const& name);
+/// what: "lagged", "the argument of another".
+Diagnostic process_out_of_place(Span span, std::string const& what);
+Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel);
+Diagnostic process_unobserved(Span span, std::string const& name);
+Diagnostic process_with_moving_noise(Span span, std::string const& channel);
+Diagnostic process_without_normal_noise(Span span, std::string const& channel, std::string const& noise);
+Diagnostic process_applied_twice(Span second, Span first, std::string const& name);
+Diagnostic process_of_two_channels(Span span, std::string const& name, std::string const& first, std::string const& second);
+Diagnostic process_never_applied(ast::Name const& name);
+Diagnostic channel_without_process(Span span, std::string const& channel);
+/// verb: "simulated", "selected among".
+Diagnostic process_task(Span span, std::string const& verb, std::string const& model);
+Diagnostic process_beside_differential_equation(Span span, std::string const& model);
+/// rule: "in free run".
+Diagnostic process_feeds_back(Span span, std::string const& rule);
+Diagnostic process_of_one_experiment(Span span, std::string const& name, std::string const& parameter);
+
 }  // namespace sysid::errors

@@ -13,6 +13,7 @@ std::string moving_part(Graph const& graph, NodeId root) {
   if (reads(LeafKind::state) || reads(LeafKind::unknown)) return "a state";
   if (reads(LeafKind::input) || reads(LeafKind::input_rate)) return "an input";
   if (reads(LeafKind::time)) return "time";
+  if (reads(LeafKind::process)) return "a Gaussian process";
   if (reads(LeafKind::measured) || reads(LeafKind::previous)) return "samples";
   return {};
 }
@@ -36,6 +37,7 @@ std::optional<Model> ModelChecker::run() {
   channels();
   derived();
   if (!failed()) constraints();
+  if (!failed()) processes();
   if (!failed()) finish_samples();
   if (!failed()) order_priors();
   if (failed()) return std::nullopt;

@@ -83,6 +83,13 @@ class ModelChecker {
   // Equations that were differentiated must hold at the start.
   void constraints();
 
+  // --- model_processes.cpp
+  // Where Gaussian processes stand: each applied, an addend of what one channel with normal noise is centred on.
+  void processes();
+  // Inside the arguments of a process, what a channel predicts is without processes: else they would need themselves.
+  void resolve_process_arguments(std::vector<NodeId> const& predicted);
+  void place_processes();
+
   // --- model_samples.cpp
   void name_samples();
   // Place holders of samples become what they stand for.

@@ -53,6 +53,8 @@ void ModelChecker::declare() {
                      {DefinitionSymbol{definition}, scope_.unit(definition->name.unit), definition->name.name.span});
     } else if (auto const* function = std::get_if<ast::FunctionDefinition>(&statement)) {
       scope_.define_function(*function);
+    } else if (auto const* process = std::get_if<ast::ProcessDefinition>(&statement)) {
+      scope_.define_process(*process);
     }
   }
 }

@@ -143,6 +143,10 @@ void ModelChecker::derived() {
     quantity.span = definition.name.name.span;
     quantity.value = solved(value->node);
     quantity.per_sample = !moving.empty();
+    if (model_.graph.depends(quantity.value, [](Node const& node) { return is_leaf(node, LeafKind::process); })) {
+      diagnostics_.add(errors::process_out_of_place(definition.value.span, "part of a derived quantity"));
+      return;
+    }
     model_.derived.push_back(std::move(quantity));
   });
   // Algebraic unknowns are shown like states.

@@ -67,12 +67,14 @@ void ModelChecker::finish_samples() {
   }
   for (Derived& derived : model_.derived) derived.value = resolve(resolve, derived.value);
   if (failed()) return;
+  resolve_process_arguments(predicted);
   model_.memories = scope_.samples().memories;
   for (NodeId& memory : model_.memories) memory = solved(memory);
   if (model_.dynamics == Dynamics::discrete)
     lay_out_lags(predicted);
   else if (model_.states.empty() && !reads_input_rate())
     model_.dynamics = Dynamics::none;
+  if (!failed()) place_processes();
 }
 
 bool ModelChecker::reads_input_rate() const {
@@ -93,6 +95,13 @@ void ModelChecker::lay_out_lags(std::vector<NodeId> const& predicted) {
     Channel const& channel = model_.channels[c];
     model_.pasts.push_back({{channel.name, channel.unit, channel.span}, predicted[c], static_cast<int>(c), {}});
     initial.emplace_back();
+  }
+  // What a channel predicts without processes: the white part, from which lagged residuals are taken.
+  for (std::size_t c = 0; c < model_.channels.size() && !model_.processes.empty(); ++c) {
+    Channel const& channel = model_.channels[c];
+    std::string const name = "white part of predicted(" + channel.name + ")";
+    model_.pasts.push_back({{name, channel.unit, channel.span}, without_processes(model_.graph, predicted[c]), -1, {}});
+    initial.push_back(model_.graph.leaf(LeafKind::measured, static_cast<int>(c)));
   }
   if (auto const missing = lay_out_pasts(model_, initial)) {
     Past const& past = model_.pasts[static_cast<std::size_t>(*missing)];

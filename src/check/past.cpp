@@ -58,6 +58,12 @@ std::optional<std::vector<Typed>> Scope::lag_calls(ast::Call const& call) {
     return std::nullopt;
   }
   auto const value = expression(call.arguments[0].value);
+  if (value && graph_.depends(value->node, [](Node const& node) {
+        return node.operation == Operation::leaf && node.leaf_kind == LeafKind::process;
+      })) {
+    diagnostics_.add(errors::process_out_of_place(call.span, "lagged"));
+    return std::nullopt;
+  }
   ast::Expression const& count = call.arguments[1].value;
   auto const* range = std::get_if<ast::Box<ast::Binary>>(&count.node);
   bool const is_range = range != nullptr && (*range)->symbol == "..";

@@ -56,6 +56,7 @@ class Scope {
   /// False, with a diagnostic, when the name is taken.
   bool declare(ast::Name const& name, Symbol symbol);
   bool define_function(ast::FunctionDefinition const& function);
+  bool define_process(ast::ProcessDefinition const& process);
   Symbol const* find(std::string const& name) const;
   Symbol* find(std::string const& name);
   /// A function of the user's; null for built-in ones.
@@ -76,6 +77,14 @@ class Scope {
 
   /// What stayed without a unit where one was needed, in the order of the text.
   std::vector<Unchecked> unchecked() const;
+  /// A declared Gaussian process: leaf process(i) where it stands i-th. use: once it has been applied, by `call`.
+  struct ProcessName {
+    ast::ProcessDefinition const* definition;
+    std::optional<Process> use;
+    Span call;
+  };
+  std::vector<ProcessName> const& processes() const { return processes_; }
+
   /// What is known of samples and channels; the model's checker fills it.
   SampleNames& samples() { return samples_; }
 
@@ -89,6 +98,7 @@ class Scope {
         diagnostics_(diagnostics),
         symbols_(other.symbols_),
         functions_(other.functions_),
+        processes_(other.processes_),
         units_(other.units_, diagnostics),
         samples_(other.samples_) {}
   void open_names(ast::Expression const& tree, std::set<std::string>& names, std::set<std::string>& seen) const;
@@ -112,6 +122,9 @@ class Scope {
   std::optional<Typed> channel_call(ast::Call const& call);
   std::optional<Typed> change_call(ast::Call const& call);
 
+  // process_call.cpp
+  std::optional<Typed> process_call(ast::Call const& call, std::size_t index);
+
   /// False when expanding functions and definitions takes more work or stack than can be spent.
   bool affordable(Span span);
 
@@ -120,6 +133,7 @@ class Scope {
   Diagnostics& diagnostics_;
   std::map<std::string, Symbol> symbols_;
   std::map<std::string, ast::FunctionDefinition const*> functions_;
+  std::vector<ProcessName> processes_;
   std::map<ast::Definition const*, std::optional<Typed>> resolved_;
   std::vector<std::string> resolving_;
   std::size_t looked_at_ = 0, depth_ = 0;  // expressions so far; those being looked at, one inside the other

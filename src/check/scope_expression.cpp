@@ -141,6 +141,8 @@ Typed Scope::combined(ast::Binary const& binary, Typed const& left, Typed const&
 std::optional<Typed> Scope::function_call(ast::Call const& call) {
   if (is_past_call(call)) return past_call(call);
   std::string const& name = call.function.text;
+  for (std::size_t i = 0; i < processes_.size(); ++i)
+    if (processes_[i].definition->name.text == name) return process_call(call, i);
   bool good = true;
   bool counted = true;  // unless a list of lags is wrong, or a range stands for several arguments
   std::size_t count = 0;
@@ -199,6 +201,7 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     std::vector<std::string> known;
     for (FunctionRow const& each : functions()) known.emplace_back(each.name);
     for (auto const& [each, definition] : functions_) known.push_back(each);
+    for (ProcessName const& each : processes_) known.push_back(each.definition->name.text);
     diagnostics_.add(errors::unknown_function(call.function, known, find(name) != nullptr));
     return std::nullopt;
   }

@@ -48,6 +48,8 @@ class TaskChecker {
 
   // --- task_fit.cpp
   FitTask fit();
+  // One step ahead, and no differential equations beside it.
+  void suit_processes(FitTask const& task, Model const& model);
 
   // --- task_select.cpp
   SelectTask select();

@@ -21,10 +21,22 @@ FitTask TaskChecker::fit() {
         !backend_option(option, key, backends_.fitting, task.backend, task.settings))
       options_.unknown(option, {"start", "solver", "substeps", "prediction", "seed"});
   }
-  if (model != nullptr) suit(task, *model);
+  if (model != nullptr) {
+    suit(task, *model);
+    suit_processes(task, *model);
+  }
   if (task.backend.empty() && !diagnostics_.has_errors(before_))
     diagnostics_.add(errors::backend_missing(tree_, names_of(backends_.fitting)));
   return task;
+}
+
+void TaskChecker::suit_processes(FitTask const& task, Model const& model) {
+  if (model.processes.empty()) return;
+  if (model.integrated()) return diagnostics_.add(errors::process_beside_differential_equation(tree_.subject.span, model.name));
+  auto const ruled = with_prediction(model, task.prediction);
+  if (ruled && feeds_back(*ruled))
+    diagnostics_.add(errors::process_feeds_back(
+        tree_.subject.span, task.prediction == PredictionRule::free_run ? "in free run" : "from simulated samples"));
 }
 
 }  // namespace sysid

@@ -20,6 +20,10 @@ SimulateTask TaskChecker::simulate() {
     diagnostics_.add(errors::nothing_observed(tree_.subject));
     return task;
   }
+  if (!model.processes.empty()) {
+    diagnostics_.add(errors::process_task(tree_.subject.span, "simulated", model.name));
+    return task;
+  }
   for (Parameter const& parameter : model.parameters)
     task.values.push_back(parameter.per_experiment && parameter.value ? model.graph.constant_value(*parameter.value)
                                                                       : std::nullopt);

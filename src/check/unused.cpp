@@ -17,7 +17,8 @@ void add(Roots& roots, Distribution const& distribution) {
 }
 
 Roots results(Model const& model) {
-  Roots roots = model.residuals;
+  Roots roots = read_by(model.processes);
+  roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());
   roots.insert(roots.end(), model.memories.begin(), model.memories.end());
   for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
   for (Unknown const& unknown : model.unknowns) roots.push_back(unknown.guess);

@@ -12,6 +12,7 @@
 #include "core/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
+#include "gaussian_process/kernel.hpp"
 #include "inference/backend.hpp"
 #include "inference/selector.hpp"
 #include "regression/columns.hpp"
@@ -39,6 +40,12 @@ std::string with_settings(std::string_view name, std::string_view summary, std::
   return text;
 }
 
+std::string signature(gaussian_process::KernelRow const& row) {
+  std::string text;
+  for (auto const& each : row.hyper_parameters) text += fmt::format("{}{} = ...", text.empty() ? "" : ", ", each.name);
+  return fmt::format("{}({})", row.name, text);
+}
+
 }  // namespace
 
 std::string list(std::string const& topic) {
@@ -49,6 +56,8 @@ std::string list(std::string const& topic) {
   } else if (topic == "distributions") {
     for (DistributionRow const& row : distributions())
       text += fmt::format("{:<68} {}{}\n", signature(row), row.summary, row.noise && !row.discrete ? "; also as noise" : "");
+  } else if (topic == "kernels") {
+    for (auto const& row : gaussian_process::kernels()) text += fmt::format("{:<68} {}\n", signature(row), row.summary);
   } else if (topic == "modules") {
     for (LibraryModule const& module : library_modules()) text += fmt::format("{:<14} {}\n", module.name, module_summary(module));
   } else if (topic == "discovery") {

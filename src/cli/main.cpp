@@ -271,7 +271,7 @@ int main(int argument_count, char** arguments) {
   CLI::App* listing = app.add_subcommand("list", "list functions, distributions, backends, discovery, solvers or modules");
   listing->add_option("what", line.topic, "functions, distributions, backends, discovery, solvers or modules")
       ->required()
-      ->check(CLI::IsMember({"functions", "distributions", "backends", "discovery", "solvers", "modules"}));
+      ->check(CLI::IsMember({"functions", "distributions", "kernels", "backends", "discovery", "solvers", "modules"}));
   listing->callback([&] { std::cout << list(line.topic); });
   CLI::App* explaining =
       app.add_subcommand("explain", "what the code of a message or a finding means, with an example and its mended twin");

@@ -17,10 +17,11 @@ enum class Purpose : std::uint32_t {
   selection = 7,  // which posterior draws are used
   redraw = 8,     // parameters redrawn at each step
   test = 9,
-  prediction = 10,  // measurement noise of predictions
-  population = 11,  // parameters of an experiment that was not fitted, from their prior
-  particle = 12,    // proposals of populations of particles
-  supports = 13,    // moves between supports of a dictionary
+  prediction = 10,   // measurement noise of predictions
+  population = 11,   // parameters of an experiment that was not fitted, from their prior
+  particle = 12,     // proposals of populations of particles
+  supports = 13,     // moves between supports of a dictionary
+  coefficient = 14,  // coefficients that a likelihood integrated out
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

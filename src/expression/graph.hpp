@@ -55,6 +55,7 @@ enum class LeafKind : std::uint8_t {
   input_rate,     // its time derivative
   time,
   measured,     // the channel's sample at the current time
+  process,      // an unknown function's value at the current sample
   previous,     // a remembered value, `index` says which, as it was at the sample before
   unknown,      // a highest derivative still to be solved for, or a place holder of a symbolic pass
   step_size,    // h of the integrator

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inference/ascent.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
@@ -148,6 +149,7 @@ Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::mov
 
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop) {
+  if (objective.target.has_gradient()) return climb_by_gradient(objective, climbers, rounds, ledger, stop);
   // Blocks hold a few million residuals at most, whatever the length of the record.
   int const columns = 2 * objective.dimension() + 1;
   int const rows = std::max(1, objective.target.residual_count());

@@ -26,7 +26,8 @@ Climber climber_at(Eigen::VectorXd theta, double log_density);
 ///
 /// J by central differences of 1e-5 prior widths, more where the target is rough; P is minus the diagonal second derivative of the
 /// log prior where positive. Each round tries four dampings a decade apart and keeps the best. Steps are at most two prior widths
-/// long in any coordinate. Levenberg 1944, Marquardt 1963; as in More 1978 but for the choice of damping, which lanes make cheap.
+/// long in any coordinate. A target that has a gradient is climbed by that instead. Levenberg 1944, Marquardt 1963; as in More 1978
+/// but for the choice of damping, which lanes make cheap.
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop);
 

@@ -19,36 +19,44 @@ namespace sysid {
 namespace {
 
 constexpr int draws_per_pass = 2048;
-constexpr std::size_t likeliest = 96, others = 32;
 constexpr int early_rounds = 6, late_rounds = 100, usual_rounds = 15;
-constexpr std::size_t finalists = 16;
 constexpr int most_passes = 4;
+
+/// How much a search looks at: of which draws it asks the density, and how many of them it climbs from.
+struct Breadth {
+  int draws;
+  std::size_t likeliest, others, finalists;
+};
+constexpr Breadth broad{draws_per_pass, 96, 32, 16};
+/// Of a likelihood that takes a matrix decomposition each time, and tells its gradient.
+constexpr Breadth narrow{64, 6, 2, 4};
+
 constexpr double notable_share = 0.01;
 
 // Steps of Purpose::start: streams of different uses never meet.
 constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_step = 1'000'000;
 
 /// The draws worth a local search: the likeliest, and the first of the rest.
-std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Ledger& ledger,
+std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Breadth const& breadth, Ledger& ledger,
                                    std::function<bool()> const& stop) {
   std::vector<double> const density = log_density_in_blocks(objective, draws, ledger, stop);
   std::vector<int> order;
   for (int w = 0; w < draws.width(); ++w)
     if (std::isfinite(density[static_cast<std::size_t>(w)])) order.push_back(w);
-  std::size_t const best = std::min(likeliest, order.size());
+  std::size_t const best = std::min(breadth.likeliest, order.size());
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(best), order.end(), [&](int a, int b) {
     double const fa = density[static_cast<std::size_t>(a)], fb = density[static_cast<std::size_t>(b)];
     return fa > fb || (fa == fb && a < b);
   });
   std::sort(order.begin() + static_cast<std::ptrdiff_t>(best), order.end());
-  order.resize(std::min(order.size(), best + others));
+  order.resize(std::min(order.size(), best + breadth.others));
   std::vector<Climber> starts;
   for (int const w : order) starts.push_back(climber_at(column(draws, w), density[static_cast<std::size_t>(w)]));
   return starts;
 }
 
 /// The best of `climbers` that lie apart, filled up with the next best.
-std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Climber> climbers) {
+std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Climber> climbers, std::size_t finalists) {
   sort_best_first(climbers);
   std::vector<Climber> chosen, rest;
   for (Climber& climber : climbers) {
@@ -115,10 +123,13 @@ LaneArray draw_prior(Target const& target, StreamKey key, int count) {
 
 SearchResult search(Target const& target, Aim aim, RunContext& context) {
   SearchResult result;
+  Breadth const& breadth = target.has_gradient() ? narrow : broad;
   // All that a search of one pass does but its last rounds, of which a handful is usual.
   auto const dimension = static_cast<std::uint64_t>(target.dimension());
-  std::uint64_t const round = 2 * dimension + 1 + 4,
-                      usual = draws_per_pass + (likeliest + others) * early_rounds * round + finalists * usual_rounds * round;
+  std::uint64_t const round = target.has_gradient() ? 1 : 2 * dimension + 1 + 4,
+                      usual = static_cast<std::uint64_t>(breadth.draws) +
+                              (breadth.likeliest + breadth.others) * early_rounds * round +
+                              breadth.finalists * usual_rounds * round;
   std::uint64_t const before = context.ledger.solves();
   std::uint64_t expected = usual;
   auto const stop = [&] {
@@ -132,9 +143,9 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   for (int pass = 0; pass < most_passes && !stop(); ++pass) {
     LaneArray const draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
     if (!objective) objective.emplace(make_objective(target, aim, draws));
-    std::vector<Climber> starts = choose_starts(*objective, draws, context.ledger, stop);
+    std::vector<Climber> starts = choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop);
     climb(*objective, starts, early_rounds, context.ledger, stop);
-    std::vector<Climber> last = choose_finalists(*objective, std::move(starts));
+    std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
     climb(*objective, last, late_rounds, context.ledger, stop);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
@@ -151,7 +162,7 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
     return result;
   }
   if (result.modes.empty()) {
-    result.failure = no_finite_start(context.ledger, most_passes * draws_per_pass);
+    result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(most_passes * breadth.draws));
     return result;
   }
   add_findings(*objective, result);
@@ -245,8 +256,8 @@ Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
   std::stable_sort(failures.begin(), failures.end(), [](Failure const& a, Failure const& b) { return a.count > b.count; });
   std::string places;
   for (std::size_t i = 0; i < failures.size() && i < 3; ++i)
-    places += fmt::format("{}{} in {} at t = {:.4g} s", i == 0 ? ": " : ", ", name(failures[i].kind), failures[i].where,
-                          failures[i].time);
+    places += fmt::format("{}{} in {}{}", i == 0 ? ": " : ", ", name(failures[i].kind), failures[i].where,
+                          std::isnan(failures[i].time) ? "" : fmt::format(" at t = {:.4g} s", failures[i].time));
   return {
       Severity::error, "no_finite_start",
       fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, places),

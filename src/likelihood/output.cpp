@@ -172,6 +172,8 @@ std::vector<ParameterRole> parameter_roles(Model const& model) {
   Graph graph = model.graph;
   std::vector<NodeId> response = model.residuals, noise, prior, derived;
   response.insert(response.end(), model.memories.begin(), model.memories.end());
+  std::vector<NodeId> const of_processes = sysid::read_by(model.processes);
+  response.insert(response.end(), of_processes.begin(), of_processes.end());
   for (State const& state : model.states) {
     response.push_back(state.derivative);
     response.push_back(state.initial);

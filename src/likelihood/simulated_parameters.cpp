@@ -40,7 +40,7 @@ std::vector<bool> parameters_below(Model const& model, Graph const& graph, std::
 
 std::vector<bool> simulated_parameters(Model const& model) {
   Graph graph = model.graph;
-  std::vector<NodeId> roots;
+  std::vector<NodeId> roots = read_by(model.processes);
   for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
   roots.insert(roots.end(), model.memories.begin(), model.memories.end());
   roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());

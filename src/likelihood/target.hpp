@@ -40,6 +40,10 @@ class Target {
   /// scored sample sign(y - centre) sqrt(2 (s - log p(y))), s the largest log density any location gives y, and per channel one row
   /// sqrt(2 (C - sum s)) that carries the scale. A failed lane is +infinity in every row.
   virtual void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const = 0;
+  /// Whether `log_likelihood_gradient` may be called: where a likelihood is dear, a search climbs by it.
+  virtual bool has_gradient() const { return false; }
+  /// log likelihood of one vector theta [P], and its derivatives [P]; -infinity as above, the gradient then 0.
+  virtual double log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const;
   /// How rough the log likelihood is as a function of theta: what a simulation leaves to chance, as a part of its size. 0 where it
   /// is smooth but for rounding; the tolerance where steps are chosen by the error.
   virtual double roughness() const { return 0; }

@@ -29,6 +29,8 @@ std::string present_name(Model const& model, Node const& leaf) {
       return "time";
     case LeafKind::measured:
       return fmt::format("measured({})", model.channels[index].name);
+    case LeafKind::process:
+      return model.processes[index].name;
     case LeafKind::previous:
       return fmt::format("previous({})", index);
     case LeafKind::unknown:
@@ -79,6 +81,16 @@ std::string dump(Model const& model) {
     out += fmt::format("  unknown {}, sought from {}\n", declared(unknown), text(unknown.guess));
   for (NodeId const residual : model.residuals) out += fmt::format("    0 = {}\n", text(residual));
   for (Invariant const& invariant : model.invariants) out += fmt::format("  invariant 0 = {}\n", text(invariant.value));
+  for (Process const& process : model.processes) {
+    std::string arguments, kernels;
+    for (NodeId const argument : process.arguments) arguments += (arguments.empty() ? "" : ", ") + text(argument);
+    for (KernelUse const& kernel : process.kernels) {
+      std::string values;
+      for (NodeId const value : kernel.hyper_parameters) values += (values.empty() ? "" : ", ") + text(value);
+      kernels += fmt::format("{}{}({})", kernels.empty() ? "" : ", ", kernel.row->name, values);
+    }
+    out += fmt::format("  process {} at ({}), covariance of {}\n", declared(process), arguments, kernels);
+  }
   for (Channel const& channel : model.channels) out += fmt::format("  observe {} ~ {}\n", declared(channel), call(channel.noise));
   for (Derived const& derived : model.derived)
     out += fmt::format("  derive {} = {}{}\n", declared(derived), text(derived.value), derived.per_sample ? "  # per sample" : "");

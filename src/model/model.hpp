@@ -4,23 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "core/unit.hpp"
 #include "distribution/distribution.hpp"
 #include "expression/graph.hpp"
+#include "model/process.hpp"
+#include "model/quantity.hpp"
 
 namespace sysid {
-
-/// A declared thing: the user's name, unit (absent: undeclared) and where it stands.
-struct Quantity {
-  std::string name;
-  std::optional<Unit> unit;
-  Span span;
-
-  /// Declared number -> SI and back; offsets never enter equations.
-  double to_si(double declared) const { return unit ? declared * unit->scale : declared; }
-  double from_si(double si) const { return unit ? si / unit->scale : si; }
-  std::string unit_text() const { return unit ? unit->text : std::string(); }
-};
 
 /// How a model goes from one sample to the next.
 enum class Dynamics {
@@ -102,6 +91,7 @@ struct Model {
   std::vector<Parameter> parameters;  // in the user's order
   std::vector<int> sampling_order;    // sampled parameters, each after those its prior refers to
   std::vector<Channel> channels;
+  std::vector<Process> processes;
   std::vector<Derived> derived;
   std::vector<Unchecked> unchecked;  // in the order of the text
   std::vector<Past> pasts;

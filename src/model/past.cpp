@@ -23,6 +23,8 @@ void each_root(Model& model, Visit const& visit) {
     for (NodeId& argument : channel.noise.arguments) visit(argument);
   for (Derived& derived : model.derived) visit(derived.value);
   for (Past& past : model.pasts) visit(past.present);
+  for (Process& process : model.processes)
+    for (NodeId& argument : process.arguments) visit(argument);
 }
 
 bool is_leaf(Node const& node, LeafKind kind) { return node.operation == Operation::leaf && node.leaf_kind == kind; }
@@ -73,6 +75,7 @@ void drop_unread_states(Model& model) {
   for (Channel const& channel : model.channels)
     roots.insert(roots.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
   for (Derived const& derived : model.derived) roots.push_back(derived.value);
+  for (Process const& process : model.processes) roots.insert(roots.end(), process.arguments.begin(), process.arguments.end());
   std::set<int> kept;
   while (true) {
     std::size_t const before = kept.size();
@@ -193,6 +196,17 @@ std::optional<Model> with_prediction(Model model, PredictionRule rule) {
   return model;
 }
 
+void remove_processes(Model& model) {
+  each_root(model, [&](NodeId& root) { root = without_processes(model.graph, root); });
+  model.processes.clear();
+}
+
+bool feeds_back(Model const& model) {
+  return std::any_of(model.states.begin(), model.states.end(), [&](State const& state) {
+    return model.graph.depends(state.derivative, [](Node const& node) { return is_leaf(node, LeafKind::process); });
+  });
+}
+
 bool same_step(double step, double declared) { return std::abs(step - declared) <= 0.01 * declared; }
 
 int data_lag(Model const& model) {
@@ -210,15 +224,20 @@ int data_lag(Model const& model) {
   for (Channel const& channel : model.channels)
     for (NodeId const argument : channel.noise.arguments) look(argument);
   for (Derived const& derived : model.derived) look(derived.value);
+  for (Process const& process : model.processes)
+    for (NodeId const argument : process.arguments) look(argument);
   return most;
 }
 
 std::vector<PastSample> past_samples(Model const& model, int channel) {
   std::vector<NodeId> roots;
-  if (channel >= 0)
+  if (channel >= 0) {
     roots = model.channels[static_cast<std::size_t>(channel)].noise.arguments;
-  else
+    for (Process const& process : model.processes)
+      if (process.channel == channel) roots.insert(roots.end(), process.arguments.begin(), process.arguments.end());
+  } else {
     for (State const& state : model.states) roots.push_back(channel == -1 ? state.derivative : state.initial);
+  }
   std::vector<PastSample> samples;
   for (NodeId const id : model.graph.reachable(roots))
     if (is_leaf(model.graph[id], LeafKind::measured)) samples.push_back({model.graph[id].index, model.graph[id].lag});

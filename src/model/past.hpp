@@ -25,6 +25,12 @@ std::optional<int> lay_out_pasts(Model& model, std::vector<std::optional<NodeId>
 /// The model under a rule. Nothing when it asks for one-step prediction and no channel measures what is lagged.
 std::optional<Model> with_prediction(Model model, PredictionRule rule);
 
+/// Every process at zero, the mean of its prior: what is left is white.
+void remove_processes(Model& model);
+
+/// Whether a state reads a process: what it is at one sample then shows in later ones.
+bool feeds_back(Model const& model);
+
 /// Whether a time between samples is the one that a model declares: to 1 %, since printed times are rounded.
 bool same_step(double step, double declared);
 

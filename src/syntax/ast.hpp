@@ -195,6 +195,13 @@ struct FunctionDefinition : Located {
   Expression value;
   friend bool operator==(FunctionDefinition const&, FunctionDefinition const&) = default;
 };
+/// `function d(u, v) ~ gp(matern52(amplitude = s, length = (lu, lv)))`: an unknown function of the inputs named.
+struct ProcessDefinition : Located {
+  Name name;
+  std::vector<Name> inputs;
+  Call process;
+  friend bool operator==(ProcessDefinition const&, ProcessDefinition const&) = default;
+};
 /// `observe displacement [m] ~ normal(y, precision = beta)`; the unit may be left out.
 struct Observation : Located {
   Declared channel;
@@ -215,7 +222,7 @@ struct Equation : Located {
 
 using ModelStatement =
     std::variant<TimeDeclaration, DiscreteTimeDeclaration, InputDeclaration, StateDeclaration, InitialDeclaration,
-                 ParameterDeclaration, Definition, FunctionDefinition, Observation, Part, Equation>;
+                 ParameterDeclaration, Definition, FunctionDefinition, ProcessDefinition, Observation, Part, Equation>;
 
 /// `n`, `n = 2`: an argument of a model, a whole number known when the model is used.
 struct ModelArgument : Located {

@@ -70,6 +70,9 @@ struct ModelStatementText {
     return fmt::format("{} {} = {}", keyword, text_of(s.name), unparse(s.value));
   }
   std::string operator()(ast::FunctionDefinition const& s) const { return text_of(s); }
+  std::string operator()(ast::ProcessDefinition const& s) const {
+    return fmt::format("function {}({}) ~ {}", s.name.text, comma_list(s.inputs), text_of(s.process));
+  }
   std::string operator()(ast::Observation const& s) const {
     return fmt::format("observe {} ~ {}", text_of(s.channel), text_of(s.noise));
   }

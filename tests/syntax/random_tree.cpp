@@ -101,7 +101,9 @@ ast::FunctionDefinition RandomTree::function() {
 
 ast::ModelStatement RandomTree::model_statement() {
   constexpr std::array kinds{ast::DefinitionKind::constant, ast::DefinitionKind::local, ast::DefinitionKind::derived};
-  switch (random_.below(11)) {
+  switch (random_.below(12)) {
+    case 11:
+      return ast::ProcessDefinition{{}, name(), several(1, [&] { return name(); }), call(2)};
     case 9:
       return ast::DiscreteTimeDeclaration{{}, perhaps([&] { return ast::Expression{{}, number(1)}; })};
     case 10:

@@ -126,6 +126,12 @@ Diagnostic discrete_part(Span span, std::string const& part, Span declaration) {
               declaration, "declared here");
 }
 
+Diagnostic process_of_part(Span span, std::string const& part, Span declaration) {
+  return with(error("E3215", span, fmt::format("part `{}` has a Gaussian process of its own", part),
+                    "declare the process in the model around it, where its channel is"),
+              declaration, "declared here");
+}
+
 Diagnostic module_not_found(ast::Name const& module, std::string const& folder, Names const& known) {
   return error(
       "E2901", module.span,

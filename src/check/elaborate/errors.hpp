@@ -34,6 +34,7 @@ Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input);
 /// models: how many a candidate stands for.
 Diagnostic candidate_range(Span span, long models, std::size_t most);
 Diagnostic discrete_part(Span span, std::string const& part, Span declaration);
+Diagnostic process_of_part(Span span, std::string const& part, Span declaration);
 
 // modules (E29)
 Diagnostic module_not_found(ast::Name const& module, std::string const& folder, Names const& known);

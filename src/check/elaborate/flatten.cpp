@@ -205,6 +205,14 @@ class Flattener {
   void take(Frame& frame, ast::FunctionDefinition const& function) {
     if (frame.outer == nullptr) add(function, function.span);
   }
+  void take(Frame& frame, ast::ProcessDefinition const& process) {
+    if (frame.outer != nullptr) {
+      diagnostics_.add(errors::process_of_part(frame.use, frame.prefix.substr(0, frame.prefix.size() - 1), process.span));
+      return;
+    }
+    if (auto call = evaluator_.call_arguments(process.process, frame))
+      add(ast::ProcessDefinition{{process.span}, process.name, process.inputs, std::move(*call)}, process.span);
+  }
   void take(Frame& frame, ast::Observation const& observation) {
     if (frame.outer != nullptr) {
       ignored_.push_back({&frame, &observation});

@@ -44,6 +44,8 @@ void each_top(ast::ModelStatement const& statement, std::function<void(ast::Expr
           visit(one.value);
         } else if constexpr (std::is_same_v<One, ast::Observation>) {
           call(one.noise);
+        } else if constexpr (std::is_same_v<One, ast::ProcessDefinition>) {
+          call(one.process);
         } else if constexpr (std::is_same_v<One, ast::Part>) {
           call(one.model);
         } else if constexpr (std::is_same_v<One, ast::Equation>) {

@@ -1,0 +1,51 @@
+// Measured samples against the bands that should hold them.
+#include "app/coverage.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace sysid {
+namespace {
+
+constexpr double least_coverage = 0.8;  // of a 95 % band: errors that are correlated in time leave it in stretches
+
+int measured_samples(Report const& report, FitLine const& line) {
+  int count = 0;
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities) {
+      if (prediction.experiment != line.experiment || quantity.name != line.channel) continue;
+      for (std::size_t i = 0; i < quantity.measured.size(); ++i)
+        count += prediction.scored[i] != 0 && !std::isnan(quantity.measured[i]);
+    }
+  return count;
+}
+
+// So few inside a 95 % band that chance will not do it: 3.3 binomial sds and one sample besides.
+bool misses(double coverage, int samples) {
+  constexpr double expected = 0.95;
+  double const short_of = (expected - coverage) * samples;
+  return coverage < least_coverage && short_of > 3.3 * std::sqrt(samples * expected * (1 - expected)) + 1;
+}
+
+}  // namespace
+
+bool add_coverage(Report& report, bool fed_back) {
+  bool any = false;
+  for (FitLine const& line : fit_lines(report))
+    for (Score const& score : line.scores) {
+      if (score.name != "coverage_95" || !misses(score.value, measured_samples(report, line))) continue;
+      any = true;
+      report.findings.push_back(
+          {Severity::warning, "coverage_low",
+           fmt::format("only {:.0f} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
+           fed_back
+               ? "a free run leaves out the noise that feeds back into later samples: its bands are those of the parameters and "
+                 "of each sample's own noise"
+               : "the model or its noise does not carry over to these data: look at the residuals, and at inputs outside the "
+                 "range that was fitted"});
+    }
+  return any;
+}
+
+}  // namespace sysid

@@ -1,0 +1,241 @@
+// `fit` of a model with Gaussian processes: search by gradient, back end, integrated coefficients drawn, scores of samples left
+// out.
+#include "app/process_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/bands.hpp"
+#include "app/derived_draws.hpp"
+#include "app/fit_checks.hpp"
+#include "app/fit_target.hpp"
+#include "app/preparation.hpp"
+#include "app/process_draws.hpp"
+#include "app/process_scores.hpp"
+#include "app/readiness.hpp"
+#include "app/reporting.hpp"
+#include "app/resolved.hpp"
+#include "app/task_checkpoint.hpp"
+#include "core/files.hpp"
+#include "inference/bound_check.hpp"
+#include "inference/search.hpp"
+#include "inference/verdict.hpp"
+#include "report/result.hpp"
+#include "report/terminal.hpp"
+
+namespace sysid {
+namespace {
+
+using json = nlohmann::json;
+
+class ProcessFit {
+ public:
+  ProcessFit(Session& session, int index, Task const& task, FitTask const& what)
+      : session_(session),
+        index_(index),
+        task_(task),
+        what_(what),
+        checkpoint_(session, task, what.seed),
+        seed_(checkpoint_.seed()),
+        backend_(*find_backend(what.backend)),
+        model_(process_model(session, what, what.prediction)),
+        data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
+                               what.prediction)),
+        target_(process_target(session, what, model_, data_)),
+        began_(std::chrono::steady_clock::now()) {
+    checkpoint_.of_data(data_);
+  }
+
+  ExitCode run() {
+    if (auto const why = refusal(task_, what_, model_->reduced(), data_)) throw UserError(*why);
+    RunContext context{seed_,   session_.progress,
+                       ledger_, [this] { return session_.interrupted(); },
+                       {},      session_.options.checkpoint_interval,
+                       {},      {},
+                       {}};
+    if (std::optional<json> const stored = checkpoint_.stored()) {
+      preparation_ = restore_preparation(stored->at("preparation"));
+      if (stored->contains("state")) context.resume = stored->at("state");
+      session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+    } else {
+      RunContext searching{
+          seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
+      SearchResult found = search(*target_, backend_.aim, searching);
+      if (found.interrupted) return stop_early();
+      if (found.failure) throw UserError(no_result(*found.failure));
+      preparation_.modes = std::move(found.modes);
+      preparation_.findings = std::move(found.findings);
+    }
+    context.modes = preparation_.modes;
+    context.mode_findings = preparation_.findings;
+    context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
+    FitResult result = backend_.run(*target_, what_.settings, context);
+    if (result.failure) throw UserError(no_result(*result.failure));
+    if (result.interrupted && result.draws.total() == 0) return stop_early();
+    return finish(std::move(result));
+  }
+
+ private:
+  Diagnostic no_result(Finding const& failure) const {
+    std::string const code = failure.code == "no_finite_start" ? "E5002" : "E6206";
+    return {Severity::error, code, failure.message, Label{task_.span, {}}, {}, failure.help};
+  }
+
+  ExitCode stop_early() const {
+    bool const kept = std::filesystem::exists(checkpoint_.path());
+    session_.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task_.name,
+                                    kept ? "goes on from there" : "starts it again");
+    return ExitCode::interrupted;
+  }
+
+  ExitCode finish(FitResult result) {
+    bool const interrupted = result.interrupted;
+    Model const& model = model_->model();
+    Report report = begin_report(
+        session_, task_, what_.model,
+        fmt::format("fit {} to {} with {}", model.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
+    for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, model));
+    auto const all = parameter_space(model, what_.experiments);
+    report.priors = priors_of(*all, report.priors);
+    report.findings = result.findings;
+    auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
+    if (!result.search_told) add(preparation_.findings);
+    if (interrupted)
+      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
+                                 "go on with --resume; it ends with the bytes of an unbroken run"});
+    add(check_use(model));
+    if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
+    std::vector<Summary> const sampled = summarise(result);
+    report.draws = with_coefficients(*target_, *all, result.draws, seed_);
+    report.summary = summaries(*all, sampled, report.draws);
+    add_derived(*compiled_white(), *all, report.draws);
+    for (std::size_t c = static_cast<std::size_t>(report.draws.parameter_count); c < report.draws.names.size(); ++c)
+      report.summary.push_back(of_draws(report.draws, c));
+    if (!interrupted) {
+      ProcessScores scores = score_left_out(*target_, *all, best_draw(report.draws), data_);
+      report.fit = std::move(scores.lines);
+      add(scores.findings);
+      for (int e = 0; e < static_cast<int>(data_.size()); ++e) report.predictions.push_back(fitted_rows(*all, report.draws, e));
+    }
+    report.modes = result.modes;
+    report.settings = {{"backend", what_.backend}};
+    for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
+    report.settings.emplace_back("start_state", start_text(what_.start));
+    if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));
+    auto const marginalised = model_->marginalised();
+    if (!marginalised.empty()) report.settings.emplace_back("integrated_out", fmt::format("{}", fmt::join(marginalised, ", ")));
+    report.resolved_text = resolved_fit(session_, task_, what_, result.settings, preparation_.solver, seed_);
+    report.ledger = preparation_.ledger;
+    report.ledger.merge(ledger_);
+    Verdict const verdict = judge(report.findings);
+    report.verdict = verdict.text;
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
+    report.timing = {{"wall_seconds", wall.count()},
+                     {"threads", static_cast<std::int64_t>(session_.threads())},
+                     {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
+    write_result(report, session_.result_folder(task_), session_.options.figures);
+    session_.out << terminal_summary(report);
+    if (interrupted) {
+      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
+      return ExitCode::interrupted;
+    }
+    remove_file(checkpoint_.path());
+    session_.fitted[index_] = {std::move(report.draws), preparation_.solver};
+    return verdict.pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  std::shared_ptr<CompiledModel const> compiled_white() const {
+    Model white = model_->model();
+    remove_processes(white);
+    return compile(std::move(white), what_.start.kind == StartRule::Kind::estimated, what_.solver.method);
+  }
+
+  static Summary of_draws(Draws const& draws, std::size_t column) {
+    ChainValues values;
+    for (Chain const& chain : draws.chains) {
+      values.emplace_back();
+      for (auto const& draw : chain.values) values.back().push_back(draw[column]);
+    }
+    Summary summary = summarise(draws.names[column], draws.units[column], values);
+    if (draws.total() == 1) summary.sd = summary.mad = summary.q5 = summary.q95 = std::nan("");
+    return summary;
+  }
+
+  // Of every parameter in the user's order: of what was sampled as the back end says, of what was integrated out the draws; at an
+  // optimum the width that the rest leaves it.
+  std::vector<Summary> summaries(ParameterSpace const& all, std::vector<Summary> const& sampled, Draws const& draws) const {
+    std::vector<Summary> result;
+    auto const sds =
+        draws.total() == 1 ? coefficient_sds(*target_, all, best_draw(draws)) : std::vector<std::pair<std::string, double>>{};
+    for (std::size_t p = 0; p < all.infos().size(); ++p) {
+      std::string const& name = all.infos()[p].name;
+      auto const own = std::find_if(sampled.begin(), sampled.end(), [&](Summary const& each) { return each.name == name; });
+      result.push_back(own != sampled.end() ? *own : of_draws(draws, p));
+      for (auto const& [coefficient, sd] : sds)
+        if (coefficient == name) result.back().sd = sd;
+    }
+    return result;
+  }
+
+  static std::vector<double> best_draw(Draws const& draws) {
+    std::vector<double> const* best = nullptr;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (Chain const& chain : draws.chains)
+      for (std::size_t d = 0; d < chain.values.size(); ++d)
+        if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
+    return {best->begin(), best->begin() + draws.parameter_count};
+  }
+
+  Prediction fitted_rows(ParameterSpace const& all, Draws const& draws, int e) const {
+    ProcessForecast const forecast(target_, model_, data_[static_cast<std::size_t>(e)].experiment, what_.solver,
+                                   start_rows(what_.start), session_.options.execution);
+    LaneArray const columns = spread(draws, 100);
+    LaneArray own(static_cast<int>(model_->model().parameters.size()), columns.width());
+    all.select(all.values_of_declared(columns), e, own);
+    Trajectory::Result const result = forecast_draws(forecast, all, columns, own, 100, prediction_noise(seed_, e));
+    return bands_along(forecast.quantities(), result, data_[static_cast<std::size_t>(e)].experiment, model_->model());
+  }
+
+  Session& session_;
+  int index_;
+  Task const& task_;
+  FitTask const& what_;
+  TaskCheckpoint checkpoint_;
+  std::uint64_t seed_;
+  BackendRow const& backend_;
+  std::shared_ptr<ProcessModel const> model_;
+  std::vector<ExperimentData> data_;
+  std::shared_ptr<ProcessTarget const> target_;
+  std::chrono::steady_clock::time_point began_;
+  Preparation preparation_;
+  Ledger ledger_;
+};
+
+}  // namespace
+
+std::shared_ptr<ProcessModel const> process_model(Session const& session, FitTask const& fit, PredictionRule prediction) {
+  auto ruled = with_prediction(session.file.models[static_cast<std::size_t>(fit.model)], prediction);
+  if (!ruled) throw InternalError("a prediction rule was let through that the model has no data for");
+  return std::make_shared<ProcessModel const>(std::move(*ruled), fit.start.kind == StartRule::Kind::estimated, fit.solver.method);
+}
+
+std::shared_ptr<ProcessTarget const> process_target(Session const& session, FitTask const& fit,
+                                                    std::shared_ptr<ProcessModel const> model,
+                                                    std::vector<ExperimentData> const& data) {
+  TargetOptions options;
+  options.solver = fit.solver;
+  options.start_rows = start_rows(fit.start);
+  options.execution = session.options.execution;
+  auto const space = parameter_space(model->reduced(), fit.experiments);
+  return std::make_shared<ProcessTarget const>(std::move(model), space, experiments_of(data), std::move(options));
+}
+
+ExitCode run_process_fit(Session& session, int index, Task const& task, FitTask const& what) {
+  return ProcessFit(session, index, task, what).run();
+}
+
+}  // namespace sysid

@@ -1,0 +1,12 @@
+// What a target need not have.
+#include "likelihood/target.hpp"
+
+#include "core/diagnostic.hpp"
+
+namespace sysid {
+
+double Target::log_likelihood_gradient(std::span<double const>, std::span<double>, Ledger&) const {
+  throw InternalError("a gradient of a target that has none");
+}
+
+}  // namespace sysid
