@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/process_draws.hpp"
+#include "gaussian_process/concern.hpp"
 #include "gaussian_process/left_out.hpp"
 #include "inference/residual_tests.hpp"
 
@@ -13,6 +14,43 @@ namespace sysid {
 namespace {
 
 constexpr int most_samples = 5000;
+constexpr double far = 2;  // ranges of the inputs fitted
+
+// What the inputs that were fitted leave to the prior.
+void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::Regression const& regression, Findings& findings) {
+  ProcessChannel const& layout = target.model().channels()[c];
+  Eigen::MatrixXd const& inputs = regression.observations.inputs;
+  std::vector<int> columns;
+  std::vector<std::string> names;
+  for (Process const& process : target.model().model().processes)
+    for (Quantity const& input : process.inputs)
+      if (process.channel == static_cast<int>(c)) {
+        columns.push_back(static_cast<int>(columns.size()));
+        names.push_back(fmt::format("`{}` of `{}`", input.name, process.name));
+      }
+  if (int const repeated = gaussian_process::repeated_inputs(inputs, columns); repeated > 0)
+    findings.push_back({Severity::note, "duplicate_inputs",
+                        fmt::format("{} of {} samples of {} repeat the inputs of another one: what differs there is noise",
+                                    repeated, inputs.rows(), target.model().model().channels[c].name),
+                        ""});
+  auto const hyper_parameters = layout.covariance.hyper_parameters();
+  std::string last;
+  for (std::size_t k = 0; k < hyper_parameters.size(); ++k) {
+    if (hyper_parameters[k].name != "length" || hyper_parameters[k].column < 0) continue;
+    auto const column = inputs.col(hyper_parameters[k].column);
+    double const range = column.maxCoeff() - column.minCoeff();
+    std::string const& name = names[static_cast<std::size_t>(hyper_parameters[k].column)];
+    bool const scaled = layout.covariance.terms()[static_cast<std::size_t>(hyper_parameters[k].term)].row->name != "periodic";
+    if (!scaled || range <= 0 || regression.parameters[k] <= far * range || name == last) continue;
+    last = name;
+    findings.push_back(
+        {Severity::note, "length_beyond_range",
+         fmt::format("the length-scale of {} is {:.2g} times the range that was fitted: the process hardly depends on "
+                     "it, and how long the length is its prior says",
+                     name, regression.parameters[k] / range),
+         "leave the input out, or look whether the white part has its effect already"});
+  }
+}
 
 }  // namespace
 
@@ -25,6 +63,7 @@ ProcessScores score_left_out(ProcessTarget const& target, ParameterSpace const& 
   for (std::size_t c = 0; c < target.model().channels().size(); ++c) {
     Channel const& channel = target.model().model().channels[c];
     auto const regression = target.regression(parameters, static_cast<int>(c), false);
+    if (regression) look_at_inputs(target, c, *regression, result.findings);
     if (!regression || regression->observations.values.size() > most_samples) continue;
     auto const left_out =
         gaussian_process::leave_one_out(target.model().channels()[c].covariance, regression->observations, regression->parameters);

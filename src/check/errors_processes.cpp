@@ -77,7 +77,8 @@ Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string
                "use numbers, constants and parameters");
 }
 Diagnostic hyper_parameter_not_positive(Span span, std::string const& name) {
-  return error("E3207", span, fmt::format("the {} of a kernel must be positive", name), "");
+  return error("E3207", span, fmt::format("the {} of a kernel must be positive", name),
+               "an amplitude is a standard deviation, a length a distance: give a number above 0");
 }
 Diagnostic process_in_differential_equation(Span span, std::string const& name) {
   return error(

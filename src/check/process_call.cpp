@@ -319,7 +319,7 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
       process.inputs.push_back({definition.inputs[i].text, known_unit(value), argument.span});
       process.arguments.push_back(value.node);
       units.push_back(known_unit(value));
-      if (units.back()) units.back()->offset = 0;
+      if (units.back()) units.back() = difference(*units.back());
     }
   }
   if (!good) return std::nullopt;

@@ -112,7 +112,7 @@ ProcessForecast::ProcessForecast(std::shared_ptr<ProcessTarget const> trained, s
   for (std::size_t c = 0; c < channels.size(); ++c)
     quantities_.push_back({channels[c].name, unit_of(channels[c]), static_cast<int>(c)});
   for (Channel const& channel : channels)
-    quantities_.push_back({fmt::format("white part of {}", channel.name), unit_of(channel), -1});
+    quantities_.push_back({fmt::format("white({})", channel.name), unit_of(channel), -1});
 }
 
 bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count, StreamKey key,

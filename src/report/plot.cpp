@@ -13,7 +13,8 @@ namespace sysid::plot {
 double Axis::scaled(double value) const { return value / std::pow(10.0, exponent); }
 
 Axis axis(double low, double high, int count, double margin) {
-  if (!(high > low)) {
+  // What differs in its rounding alone is constant: ticks between could not be told apart, nor counted.
+  if (!(high - low > 1e-9 * std::max(std::fabs(low), std::fabs(high)))) {
     double const around = low == 0 ? 1 : 0.05 * std::fabs(low);
     low -= around;
     high += around;

@@ -18,6 +18,7 @@
 #include "data/record.hpp"
 #include "data/table.hpp"
 #include "likelihood/compiled_model.hpp"
+#include "likelihood/process_model.hpp"
 #include "model/past.hpp"
 #include "simulate/simulator.hpp"
 #include "syntax/format.hpp"
@@ -49,9 +50,13 @@ inline void look_at(Diagnostics const& diagnostics, Source const& source) {
 }
 
 /// One step of the model at parameters that need not make sense.
-inline void simulate_one_step(Model const& model) {
+inline void simulate_one_step(Model model) {
   SolverSettings solver;
   if (model.implicit) solver.method = "ida";  // as the checker chooses
+  if (!model.processes.empty()) {
+    (void)ProcessModel(model, false, solver.method);
+    remove_processes(model);
+  }
   std::shared_ptr<CompiledModel const> const compiled = compile(model, false, solver.method);
   (void)dump_program(*compiled);
   int const history = data_lag(model);

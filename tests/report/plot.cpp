@@ -33,6 +33,14 @@ TEST_CASE("large and small numbers share a power of ten that is a multiple of th
   CHECK(axis_label("n", "", 6) == "n [10⁶]");
 }
 
+TEST_CASE("what differs in its rounding alone has the axis of a constant") {
+  for (double const value : {-32.5, 3e-5, 7e8}) {
+    Axis const a = axis(value, std::nextafter(std::nextafter(value, 1e9), 1e9), 5);
+    CHECK(a.ticks.size() >= 2);
+    CHECK(a.ticks.size() <= 12);
+  }
+}
+
 TEST_CASE("a constant has an axis with room around it") {
   for (double const value : {0.0, 3.0, -2e9}) {
     Axis const a = axis(value, value, 3);
