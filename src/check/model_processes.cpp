@@ -11,6 +11,16 @@ bool reads_process(Graph const& graph, NodeId root) {
   return graph.depends(root, [](Node const& node) { return is_leaf(node, LeafKind::process); });
 }
 
+/// Whether `root` is a sum that has the leaf once, with a plus sign.
+bool is_addend(Graph const& graph, NodeId root, std::function<bool(Node const&)> const& is_this) {
+  Node const node = graph[root];
+  if (is_this(node)) return true;
+  if (node.operation != Operation::add && node.operation != Operation::subtract) return false;
+  bool const left = graph.depends(node.a, is_this), right = graph.depends(node.b, is_this);
+  if (left == right) return false;
+  return left ? is_addend(graph, node.a, is_this) : node.operation == Operation::add && is_addend(graph, node.b, is_this);
+}
+
 bool same_leaf(Node const& a, Node const& b) { return is_leaf(a, b.leaf_kind) && a.index == b.index; }
 
 }  // namespace
@@ -84,8 +94,7 @@ void ModelChecker::place_processes() {
             diagnostics_.add(errors::process_of_one_experiment(call, process.name, own.name));
             return;
           }
-      NodeId const slope = graph.differentiate(centre, graph.leaf(LeafKind::process, static_cast<int>(p)));
-      if (!graph.is_constant(slope, 1)) {
+      if (!is_addend(graph, centre, is_this)) {
         diagnostics_.add(errors::process_no_addend(call, process.name, channel.name));
         return;
       }

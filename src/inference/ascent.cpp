@@ -63,6 +63,10 @@ void climb_by_gradient(Objective const& objective, std::vector<Climber>& climber
     if (climber.done) continue;
     if (stop && stop()) return;
     auto const f = [&](Eigen::VectorXd const& at, Eigen::VectorXd& gradient) {
+      if (stop && stop()) {  // who asks for it does not wait for a search to end
+        gradient.setZero();
+        return -std::numeric_limits<double>::infinity();
+      }
       return density(objective, at.cwiseProduct(objective.scale), gradient, ledger);
     };
     gaussian_process::Climb const found =

@@ -42,6 +42,29 @@ std::set<int> read_elsewhere(Model const& model, Graph& graph) {
   return found;
 }
 
+/// Whether a derivative tells all of how `root` depends on a parameter: no jump, and no function that may have none, reads it.
+bool smooth_in(Graph const& graph, NodeId root, int parameter) {
+  auto const is_it = [&](Node const& node) { return is_leaf(node, LeafKind::parameter) && node.index == parameter; };
+  for (NodeId const id : graph.reachable({&root, 1})) {
+    switch (graph[id].operation) {
+      case Operation::sign:
+      case Operation::floor:
+      case Operation::less:
+      case Operation::less_equal:
+      case Operation::equal:
+      case Operation::conjunction:
+      case Operation::disjunction:
+      case Operation::negation:
+      case Operation::call:
+        if (graph.depends(id, is_it)) return false;
+        break;
+      default:
+        break;
+    }
+  }
+  return true;
+}
+
 gaussian_process::Covariance covariance_of(Process const& process, int first_column) {
   std::vector<gaussian_process::Covariance> built;
   for (Process::Covariance const& each : process.covariance) {
@@ -80,6 +103,7 @@ void ProcessModel::find_coefficients(std::vector<std::vector<int>>& of_channel) 
       continue;
     auto const c = static_cast<std::size_t>(
         std::find_if(read.begin(), read.end(), [&](std::set<int> const& each) { return each.contains(p); }) - read.begin());
+    if (!smooth_in(graph, centre_of(graph, model_.channels[c]), p)) continue;
     // Linear in it, and jointly with those that are in already.
     NodeId const slope = graph.differentiate(centre_of(graph, model_.channels[c]), graph.leaf(LeafKind::parameter, p));
     std::set<int> of_slope;

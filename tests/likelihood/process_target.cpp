@@ -184,8 +184,10 @@ TEST_CASE("only coefficients that nothing else reads are integrated out") {
   };
   using Names = std::vector<std::string>;
   CHECK(integrated("", "a + b*u") == Names{"a", "b"});
-  CHECK(integrated("", "a*b*u") == Names{"a"});                                           // bilinear: one of them
-  CHECK(integrated("", "exp(a*u) + b") == Names{"b"});                                    // not linear
+  CHECK(integrated("", "a*b*u") == Names{"a"});          // bilinear: one of them
+  CHECK(integrated("", "exp(a*u) + b") == Names{"b"});   // not linear
+  CHECK(integrated("", "a*u + sign(b)") == Names{"a"});  // of derivative 0, and not constant
+  CHECK(integrated("", "a*u + (if b < 0 then u else 0)") == Names{"a"});
   CHECK(integrated("  parameter c ~ normal(b, sd = 1)\n", "a + b*u + c") == Names{"a"});  // read by a prior; c's is not constant
   CHECK(integrated("  parameter c ~ uniform(-1, 1)\n", "a + c*u + b") == Names{"a", "b"});
   CHECK(integrated("  parameter c ~ normal(0, sd = 1, lower = 0)\n", "a + c*u + b*u^2") == Names{"a", "b"});
