@@ -120,8 +120,9 @@ void check_command(Page const& page, std::string const& command) {
     } else if (words[i].ends_with(".sysid")) {
       if (words[i].starts_with("results/")) {  // made by an earlier command of the page
         std::string const folder = fs::path(words[i]).parent_path().string();
-        std::string const text = read_file(page.path);
-        CHECK_MESSAGE(text.find("mkdir -p " + folder) != std::string::npos, where << "nothing makes " << folder);
+        std::string const text = read_file(page.path), task = " -o " + fs::path(folder).parent_path().string() + "\n";
+        CHECK_MESSAGE((text.find("mkdir -p " + folder) != std::string::npos || text.find(task) != std::string::npos),
+                      where << "nothing makes " << folder);
         continue;
       }
       REQUIRE_MESSAGE(fs::exists(root / words[i]), where << "no file " << words[i]);
