@@ -202,9 +202,9 @@ Diagnostic not_an_input_of_process(Span span, std::string const& given, std::str
 Diagnostic kernel_input_twice(Span span, std::string const& input);
 Diagnostic kernel_of_one_input(Span span, std::string const& kernel, std::size_t given);
 Diagnostic hyper_parameter_count(Span span, std::string const& name, std::size_t given, std::size_t wanted);
-/// input: that it belongs to; empty: to none.
-Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given,
-                                Unit const& wanted);
+/// input: that it belongs to, given in a unit at a place; empty: to none.
+Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given, Unit const& wanted,
+                                Span input_place, std::optional<Unit> const& of_input);
 Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right);
 Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string const& what);
 Diagnostic hyper_parameter_not_positive(Span span, std::string const& name);

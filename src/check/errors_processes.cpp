@@ -62,11 +62,13 @@ Diagnostic hyper_parameter_count(Span span, std::string const& name, std::size_t
       fmt::format("{} value{} of `{}`, where {} {} needed", given, given == 1 ? "" : "s", name, wanted, wanted == 1 ? "is" : "are"),
       "give one for each input, in their order, or one for all");
 }
-Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given,
-                                Unit const& wanted) {
-  return error("E3206", span,
-               fmt::format("the {}{} must be {}", name, input.empty() ? "" : fmt::format(" of `{}`", input), measure(wanted)),
-               "a length-scale has the unit of its input, an amplitude that of the function's values", measure(given));
+Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given, Unit const& wanted,
+                                Span input_place, std::optional<Unit> const& of_input) {
+  std::string const message =
+      fmt::format("the {}{} must be {}", name, input.empty() ? "" : fmt::format(" of `{}`", input), measure(wanted));
+  std::string const help = "a length-scale has the unit of its input, an amplitude that of the function's values";
+  return of_input ? conflict("E3206", span, measure(given), input_place, measure(*of_input), message, help)
+                  : error("E3206", span, message, help, measure(given));
 }
 Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right) {
   return error("E3206", span, fmt::format("kernels are added whose functions are {} and {}", measure(left), measure(right)),

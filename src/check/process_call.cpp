@@ -236,8 +236,10 @@ bool settle_units(Scope& scope, ast::ProcessDefinition const& definition,
       auto const wanted = product(known, each);
       auto const unit = known_unit(each.value);
       if (wanted && unit && wanted->dimension != unit->dimension) {
-        std::string const of = each.column < 0 ? std::string() : process.inputs[static_cast<std::size_t>(each.column)].name;
-        scope.diagnostics().add(errors::hyper_parameter_unit(each.value.span, std::string(each.row->name), of, *unit, *wanted));
+        Quantity const none, &input = each.column < 0 ? none : process.inputs[static_cast<std::size_t>(each.column)];
+        auto const of_input = each.column < 0 ? std::nullopt : arguments[static_cast<std::size_t>(each.column)];
+        scope.diagnostics().add(errors::hyper_parameter_unit(each.value.span, std::string(each.row->name), input.name, *unit,
+                                                             *wanted, input.span, of_input));
         return false;
       }
       process.kernels[k].hyper_parameters.push_back(adapt(scope.graph(), each.value, wanted));

@@ -101,7 +101,7 @@ class Finder {
       concern.kind = Concern::Kind::too_few_rows;
       concern.value = found_.rows;
       concern.clause = found_.rows == 0 && half > 0
-                           ? fmt::format("no window of {} samples has room in the scored rows", 2 * half + 1)
+                           ? fmt::format("the scored rows are too few for windows of {} samples", 2 * half + 1)
                            : fmt::format("{} {} for {} terms are too few; at least {} are needed", found_.rows,
                                          half > 0 ? "windows" : "samples", terms, 2 * terms + 1);
     } else if (usable_.empty()) {

@@ -131,6 +131,36 @@ std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Ex
   return sds;
 }
 
+namespace {
+
+/// sd of the white noise that a channel consists of, where it is nothing else: neighbours differ as independent samples do, and no
+/// band of the spectrum is quiet. Nothing where something moves.
+std::optional<double> nothing_but_noise(std::span<Experiment const> experiments, std::size_t channel) {
+  constexpr double of_sd = 0.9, of_band = 0.6;
+  DifferenceSum differences;
+  double squares = 0, quietest = std::numeric_limits<double>::infinity();
+  std::size_t count = 0;
+  for (Experiment const& experiment : experiments) {
+    std::vector<double> const& samples = experiment.measured[channel];
+    differences.add(samples);
+    quietest = std::min(quietest, noise_of_quietest_band(samples));
+    double sum = 0, squared = 0;
+    std::size_t finite = 0;
+    for (double const value : samples)
+      if (std::isfinite(value)) sum += value, ++finite;
+    double const mean = finite == 0 ? 0 : sum / static_cast<double>(finite);
+    for (double const value : samples)
+      if (std::isfinite(value)) squared += (value - mean) * (value - mean);
+    squares += squared;
+    count += finite;
+  }
+  double const sd = count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
+  if (!(sd > 0) || differences.sd() < of_sd * sd || quietest < of_band * sd) return std::nullopt;
+  return differences.sd();
+}
+
+}  // namespace
+
 Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used) {
   Concerns concerns;
   for (Experiment const& experiment : experiments)
@@ -157,6 +187,11 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
       Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
       concern.clause =
           fmt::format("`{}` is {:.4g} on the whole record: a system at rest says nothing about its equation", name, low);
+      concerns.push_back(std::move(concern));
+    } else if (dictionary.channels[c].order == 0 && !dictionary.channels[c].noise_sd && nothing_but_noise(experiments, c)) {
+      Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
+      concern.clause =
+          fmt::format("`{}` is noise on the whole record: its samples are as far from their neighbours as from any other", name);
       concerns.push_back(std::move(concern));
     }
   }

@@ -49,14 +49,14 @@ double value_at(std::vector<double> const& values, std::size_t i) {
 
 }  // namespace
 
-std::string csv_head(Report const& report) {
+std::string csv_head(Report const& report, std::string_view model) {
   std::string out;
   auto const add = [&](std::string_view name, std::string const& value) {
     out += fmt::format("# {} = {}\n", name, one_line(value));
   };
   add("program", "sysid");
   add("sysid_version", report.version);
-  add("model", report.model_name);
+  add("model", model.empty() ? report.model_name : std::string(model));
   add("task", report.task);
   add("what", report.what);
   add("seed", std::to_string(report.seed));

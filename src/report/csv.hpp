@@ -14,7 +14,7 @@ std::string csv_field(std::string const& text);
 std::string stan_name(std::string const& name);
 
 /// The comment lines that begin every file: program, model, task, seed, data, settings.
-std::string csv_head(Report const& report);
+std::string csv_head(Report const& report, std::string_view model = {});
 
 /// A chain in the form of Stan's CSV: lp__, accept_stat__, log_prior__, log_likelihood__, then the user's names. `chain` from 0.
 std::string draws_csv(Report const& report, int chain);

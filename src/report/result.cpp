@@ -59,6 +59,8 @@ void prepare_result(fs::path const& folder, bool force) {
 
 void write_result(Report const& report, fs::path const& folder, bool pictures) {
   make_folder(folder);
+  // What an interrupted run left may have more files than its end: chains of models that died later.
+  for (fs::path const& file : files_of_result(folder)) remove_file(file);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
     write_file(folder / fmt::format("draws_{}.csv", c + 1), draws_csv(report, static_cast<int>(c)));
   if (report.selection)

@@ -130,7 +130,7 @@ std::string populations_csv(Report const& report) {
 std::string particles_csv(Report const& report, SelectedModel const& model) {
   auto const population =
       model.died_in > 0 ? static_cast<std::size_t>(model.died_in - 1) : report.selection->result.populations.size();
-  std::string out = csv_head(report) + fmt::format("# candidate = {}\nweight__,distance__,population__", model.name);
+  std::string out = csv_head(report, model.name) + fmt::format("# candidate = {}\nweight__,distance__,population__", model.name);
   for (ParameterInfo const& parameter : model.parameters) out += "," + csv_field(stan_name(parameter.name));
   out += '\n';
   for (std::size_t j = 0; j < model.weight.size(); ++j) {

@@ -134,6 +134,18 @@ TEST_CASE("a record at rest says nothing about its equation") {
   CHECK(contains(answer.finding("record_at_rest").at("message"), "`displacement` is 0.3 on the whole record"));
 }
 
+TEST_CASE("a sensor's noise about a rest says nothing either, whatever the seed") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Made still(900);
+    Stream stream({.seed = seed});
+    for (double& value : still.y) value = 0.3 + 1e-4 * stream.normal();
+    Answer const answer = run(file(oscillator), still.csv());
+    CAPTURE(seed);
+    CHECK(answer.exit == 1);
+    CHECK(answer.codes() == Texts{"record_at_rest"});
+  }
+}
+
 TEST_CASE("a unit that no term can have is an error where it stands") {
   Answer const answer = run(file(oscillator + "\ncoefficients = [N/m], [N/m^3], [N s/m], [N/m^4]"));
   CHECK(answer.exit == 65);

@@ -137,7 +137,17 @@ class Mutator {
                     std::move(names)});
   }
 
+  /// An input of an unknown function: a name for whoever reads the kernel, which need not.
+  bool input_of_process(std::size_t i) const {
+    std::size_t const first = first_of(i);
+    if (!tokens()[first].is("function") || i <= first + 1) return false;
+    for (std::size_t k = i; k < behind(i) && !tokens()[k].is("="); ++k)
+      if (tokens()[k].is("~")) return true;
+    return false;
+  }
+
   void misspell(std::size_t i) {
+    if (input_of_process(i)) return;
     std::string const name = bare(tokens()[i]), primes(tokens()[i].text.substr(name.size()));
     bool const keyword = begins_statement(i) && declaration(i);
     std::string const kind = keyword ? "misspelt keyword" : declares(i) ? "misspelt declaration" : "misspelt use";

@@ -150,6 +150,14 @@ TEST_CASE("distances beyond the range of numbers are failed simulations: they se
   CHECK(k.at("sd").get<double>() == doctest::Approx(width / std::sqrt(3.0)).epsilon(0.2));
 }
 
+TEST_CASE("a distance that is zero at every draw is said to tell nothing") {
+  Line const line(0.0, 0.0);
+  Answer const answer = line.run(
+      "model a { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
+      "answer = select a to line with abc_smc(particles = 200), distance = max(abs(residual(d)) - 1000, 0), seed = 1");
+  CHECK(answer.has("distances_equal"));
+}
+
 TEST_CASE("a model that fits exactly brings the threshold to zero, and the figure and the report bear it") {
   Line const line(0.0, 0.0);
   Answer const answer = line.run(

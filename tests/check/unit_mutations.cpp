@@ -99,7 +99,7 @@ struct Planter {
       plant_binary(**binary, context, top);
     } else if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
       std::string const& name = (*call)->function.text;
-      if (name == "measured") return;  // takes the name of a channel, not a value
+      if (name == "measured" || name == "predicted" || name == "residual") return;  // takes the name of a channel, not a value
       if (name == "sign" || name == "step") context.harmless = "only the sign is used";
       for (ast::Argument const& argument : (*call)->arguments) plant(argument.value, context, false);
     } else if (auto const* choice = std::get_if<ast::Box<ast::Conditional>>(&tree.node)) {
@@ -209,7 +209,7 @@ Finding look(std::string const& name, std::string const& text, Mutant const& mut
   for (Diagnostic const& diagnostic : diagnostics.all()) {
     if (diagnostic.severity != Severity::error || !diagnostic.primary) continue;
     // A count, a shape and a whole number are refused for what they are, which a unit is a part of.
-    static std::set<std::string> const of_kinds{"E2118", "E2701", "E2704", "E3102"};
+    static std::set<std::string> const of_kinds{"E2118", "E2701", "E2704", "E3102", "E3206"};
     bool const about_units = of_kinds.contains(diagnostic.code) || diagnostic.code == "E2103" ||
                              diagnostic.code.starts_with("E22") || diagnostic.code == "E2014" || diagnostic.code == "E2117" ||
                              diagnostic.code == "E4113" || diagnostic.code == "E4114";

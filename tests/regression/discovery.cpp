@@ -50,7 +50,8 @@ TEST_CASE("Duffing's equation from noisy displacement alone") {
           CHECK_FALSE(has(found, Concern::Kind::unexplained));
           if (noise == 0.01 && names == truth)
             for (std::size_t k = 0; k < 4; ++k)
-              CHECK(found.chosen.coefficient(static_cast<Eigen::Index>(k)) == doctest::Approx(coefficients[k]).epsilon(bound[k]));
+              CHECK(found.chosen.coefficient(static_cast<Eigen::Index>(k)) ==
+                    doctest::Approx(coefficients[k]).epsilon(bound[k]).scale(0));
         }
         CHECK((selector == "spike_slab" ? exact : fit) >= 18);
       }
@@ -109,8 +110,8 @@ TEST_CASE("Lorenz and predator and prey, every selector, no rescaling, two secon
             REQUIRE(kept(found.equations[e]) == names);
             for (auto const& [name, value] : system.truth[e])
               for (FoundTerm const& term : found.equations[e].terms)
-                if (term.name == name) CHECK(term.coefficient == doctest::Approx(value).epsilon(0.02));
-            CHECK(found.equations[e].noise_ratio == doctest::Approx(1).epsilon(0.15));
+                if (term.name == name) CHECK(term.coefficient == doctest::Approx(value).epsilon(0.02).scale(0));
+            CHECK(found.equations[e].noise_ratio == doctest::Approx(1).epsilon(0.15).scale(0));
             CHECK_FALSE(has(found.equations[e], Concern::Kind::unexplained));
           }
         }
@@ -154,8 +155,8 @@ TEST_CASE("a target with a free coefficient") {
   equation.terms[0] = split->free[0];
   FoundEquation const found = duffing(duffing_record(4, 500, 0.01), method(), d);
   CHECK(kept(found) == Names{"m", "y'", "y", "y^3"});
-  CHECK(found.terms[0].coefficient == doctest::Approx(1).epsilon(0.005));
-  CHECK(found.terms[2].coefficient == doctest::Approx(-1e4).epsilon(0.005));
+  CHECK(found.terms[0].coefficient == doctest::Approx(1).epsilon(0.005).scale(0));
+  CHECK(found.terms[2].coefficient == doctest::Approx(-1e4).epsilon(0.005).scale(0));
   // Not affine, or not there at all: refused.
   NodeId const square = d.graph.multiply(target, m);
   CHECK_FALSE(split_target(d.graph, square, coefficients).has_value());
@@ -300,7 +301,7 @@ TEST_CASE("noise of the recorded force is told from noise of the displacement, a
   CHECK(exact >= 9);
   MESSAGE("noise of the force " << own / 0.3 << " of what it is; " << exact << " of 10 exact");
   // The force is held: what acts at a sample is the mean of two.
-  CHECK(own == doctest::Approx(0.3).epsilon(0.1));
+  CHECK(own == doctest::Approx(0.3).epsilon(0.1).scale(0));
 }
 
 TEST_CASE("an equation without an error of its own has none") {

@@ -72,6 +72,19 @@ TEST_CASE("a result is not overwritten unless forced, and then nothing of it sta
   CHECK(left.at("checkpoint") == "kept");
 }
 
+TEST_CASE("a result takes the place of what an interrupted run left, files that it no longer has included") {
+  TemporaryFolder const folder;
+  Report report = example::duffing(10);
+  write_result(report, folder.path());
+  auto const whole = contents(folder.path());
+  write_file(folder.path() / "draws_bouc_wen.csv", "of a model that died later");
+  write_file(folder.path() / "notes.txt", "mine");
+  write_result(report, folder.path());
+  auto left = contents(folder.path());
+  CHECK(left.erase("notes.txt") == 1);
+  CHECK(left == whole);
+}
+
 TEST_CASE("predictions of several experiments have a file each") {
   TemporaryFolder const folder;
   Report report = example::duffing(10);
