@@ -38,7 +38,8 @@ auto const divisor_def = '/' > unit_factor[take_reciprocal];
 auto const unit_factor_def =
     located[(unit_name[to(&ast::UnitFactor::base)] | ('(' > nested[unit_expression][to(&ast::UnitFactor::base)] > ')')) >>
             -('^' > exponent[to(&ast::UnitFactor::exponent)])];
-auto const one = x3::lexeme['1' >> !(digit | '.')];
+// No number: `1e3N` is not 1 e3N.
+auto const one = x3::lexeme['1' >> !(digit | '.' | (x3::char_("eE") >> -x3::char_("+-") >> digit))];
 auto const unit_name_def = located[name[take] | one[name_itself("1")] | x3::lit('%')[name_itself("%")]];
 
 // No unit may follow the number of an exponent, and no call its name: `[N^n (m s)]` is a product.

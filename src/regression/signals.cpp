@@ -136,7 +136,7 @@ namespace {
 /// sd of the white noise that a channel consists of, where it is nothing else: neighbours differ as independent samples do, and no
 /// band of the spectrum is quiet. Nothing where something moves.
 std::optional<double> nothing_but_noise(std::span<Experiment const> experiments, std::size_t channel) {
-  constexpr double of_sd = 0.9, of_band = 0.6;
+  constexpr double of_sd = 0.8, of_band = 0.5;
   DifferenceSum differences;
   double squares = 0, quietest = std::numeric_limits<double>::infinity();
   std::size_t count = 0;
@@ -155,7 +155,7 @@ std::optional<double> nothing_but_noise(std::span<Experiment const> experiments,
     count += finite;
   }
   double const sd = count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
-  if (!(sd > 0) || differences.sd() < of_sd * sd || quietest < of_band * sd) return std::nullopt;
+  if (!(sd > 0) || std::isinf(quietest) || differences.sd() < of_sd * sd || quietest < of_band * sd) return std::nullopt;
   return differences.sd();
 }
 

@@ -105,13 +105,14 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
          "take more `particles`"});
   bool const equal = result.populations.size() > 1 && result.threshold == result.next_threshold &&
                      result.threshold != plan.target && plan.schedule.empty();
-  // Every draw of the prior is as near as can be: the distance tells nothing.
+  // Whatever is proposed is as near as can be: the distance tells nothing.
+  bool const none_refused = static_cast<std::uint64_t>(last.accepted) >= last.simulated - last.failed;
   auto const all_zero = [&] {
     return std::all_of(result.models.begin(), result.models.end(), [](SelectedModel const& model) {
       return std::all_of(model.distance.begin(), model.distance.end(), [](double distance) { return distance == 0; });
     });
   };
-  if (equal || (result.populations.size() == 1 && result.threshold == 0 && all_zero()))
+  if (equal || (result.threshold == 0 && none_refused && all_zero()))
     if (auto finding = equal_distances(result)) findings.push_back(std::move(*finding));
   add_failures(result, findings);
   if (result.ran_out || !std::isfinite(result.threshold))
