@@ -11,6 +11,7 @@
 #include "app/drift.hpp"
 #include "app/experiments.hpp"
 #include "app/fit_checks.hpp"
+#include "app/fit_end.hpp"
 #include "app/fit_target.hpp"
 #include "app/preparation.hpp"
 #include "app/process_fit.hpp"
@@ -21,15 +22,11 @@
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
 #include "app/tolerance.hpp"
-#include "core/files.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/checkpoint.hpp"
 #include "inference/refit.hpp"
 #include "inference/search.hpp"
-#include "inference/verdict.hpp"
 #include "likelihood/trajectory.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 
 namespace sysid {
 
@@ -41,32 +38,6 @@ using json = nlohmann::json;
 std::string accuracy(SolverSettings const& solver) {
   return solver.fixed_step() ? fmt::format("{} integrator step{} per sample", solver.substeps, solver.substeps == 1 ? "" : "s")
                              : fmt::format("relative tolerances of {}", solver.relative);
-}
-
-std::vector<double> best_values(FitResult const& result) {
-  if (!result.modes.empty()) return result.modes.front().declared;
-  std::vector<double> const* best = nullptr;
-  double highest = -std::numeric_limits<double>::infinity();
-  for (Chain const& chain : result.draws.chains)
-    for (std::size_t d = 0; d < chain.values.size(); ++d)
-      if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
-  return best == nullptr ? std::vector<double>{} : *best;
-}
-
-ChainValues column_of(Draws const& draws, std::size_t column) {
-  ChainValues values;
-  for (Chain const& chain : draws.chains) {
-    values.emplace_back();
-    for (auto const& draw : chain.values) values.back().push_back(draw[column]);
-  }
-  return values;
-}
-
-// One draw has no spread.
-Summary of_derived(Draws const& draws, std::size_t column) {
-  Summary summary = summarise(draws.names[column], draws.units[column], column_of(draws, column));
-  if (draws.total() == 1) summary.sd = summary.mad = summary.q5 = summary.q95 = std::nan("");
-  return summary;
 }
 
 class Fit {
@@ -97,7 +68,7 @@ class Fit {
                        {}};
     std::optional<json> const stored = checkpoint_.stored();
     if (!stored) {
-      if (!prepare(context)) return stop_early();
+      if (!prepare(context)) return stop_early(session_, task_, checkpoint_);
     } else {
       preparation_ = restore_preparation(stored->at("preparation"));
       if (stored->contains("state")) context.resume = stored->at("state");
@@ -108,8 +79,8 @@ class Fit {
     context.mode_findings = preparation_.findings;
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
     FitResult result = backend_.run(*target_, what_.settings, context);
-    if (result.failure) throw UserError(no_result(*result.failure));
-    if (result.interrupted && result.draws.total() == 0) return stop_early();
+    if (result.failure) throw UserError(no_result(task_, *result.failure));
+    if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
     return finish(std::move(result));
   }
 
@@ -136,7 +107,7 @@ class Fit {
     if (found.interrupted) return false;
     if (found.failure) {
       ledger_.merge(preparation_.ledger);
-      throw UserError(no_result(*found.failure));
+      throw UserError(no_result(task_, *found.failure));
     }
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
@@ -164,18 +135,6 @@ class Fit {
     return true;
   }
 
-  Diagnostic no_result(Finding const& failure) const {
-    std::string const code = failure.code == "no_finite_start" ? "E5002" : "E6206";
-    return {Severity::error, code, failure.message, Label{task_.span, {}}, {}, failure.help};
-  }
-
-  ExitCode stop_early() const {
-    bool const kept = std::filesystem::exists(checkpoint_.path());
-    session_.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task_.name,
-                                    kept ? "goes on from there" : "starts it again");
-    return ExitCode::interrupted;
-  }
-
   // --- the end
   // --------------------------------------------------------------------------------------------------------------------
   ExitCode finish(FitResult result) {
@@ -192,7 +151,7 @@ class Fit {
     report.summary = summarise(result);
     add(check_use(model_));
     Ledger extra;
-    std::vector<double> const best = best_values(result);
+    std::vector<double> const best = result.modes.empty() ? best_draw(result.draws) : result.modes.front().declared;
     if (!interrupted) {
       FitCheck check = check_residuals(*target_, best);
       report.fit = std::move(check.lines);
@@ -201,15 +160,13 @@ class Fit {
         add(check_input_timing(*target_, backend_.aim, preparation_.modes.front(), seed_, extra));
       if (model_.integrated()) add(step_check(result.draws, extra));
     }
-    if (interrupted)
-      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
-                                 "go on with --resume; it ends with the bytes of an unbroken run"});
+    if (interrupted) report.findings.push_back(interrupted_finding());
     if (!interrupted) add(check_hierarchy(model_, result.draws, report.findings));
-    add_failures(report);
+    add(failure_findings(ledger_));
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
     add_derived(*compiled_, *space_, result.draws);
     for (std::size_t c = static_cast<std::size_t>(result.draws.parameter_count); c < result.draws.names.size(); ++c)
-      report.summary.push_back(of_derived(result.draws, c));
+      report.summary.push_back(of_column(result.draws, c));
     for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
       report.predictions.push_back(fitted_rows(result.draws, e, report.findings));
     report.modes = result.modes;
@@ -223,21 +180,7 @@ class Fit {
     report.ledger = preparation_.ledger;
     report.ledger.merge(ledger_);
     report.draws = std::move(result.draws);
-    Verdict const verdict = judge(report.findings);
-    report.verdict = verdict.text;
-    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
-    report.timing = {{"wall_seconds", wall.count()},
-                     {"threads", static_cast<std::int64_t>(session_.threads())},
-                     {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
-    write_result(report, session_.result_folder(task_), session_.options.figures);
-    session_.out << terminal_summary(report);
-    if (interrupted) {
-      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
-      return ExitCode::interrupted;
-    }
-    remove_file(checkpoint_.path());
-    session_.fitted[index_] = {std::move(report.draws), preparation_.solver};
-    return verdict.pass ? ExitCode::success : ExitCode::doubtful;
+    return conclude_fit(session_, index_, task_, checkpoint_, preparation_.solver, std::move(report), began_, interrupted);
   }
 
   // Draws tell by their weights, an optimum by where it moves. A solver that was chosen has settled the modes before.
@@ -251,16 +194,6 @@ class Fit {
     if (findings.empty() && !what_.settle && (draws.total() == 1 || weighty > 1) && !preparation_.modes.empty())
       findings = check_modes(*fine, backend_.aim, preparation_.modes, preparation_.solver, seed_, extra);
     return findings;
-  }
-
-  void add_failures(Report& report) const {
-    Severity const severity = failure_severity(ledger_.failed(), ledger_.solves());
-    if (severity == Severity::note) return;
-    double const share = static_cast<double>(ledger_.failed()) / static_cast<double>(ledger_.solves());
-    report.findings.push_back(
-        {severity, "failed_solves",
-         fmt::format("{:.1f} % of the solves while sampling failed, first in {}", 100 * share, ledger_.failures().front().where),
-         "the posterior reaches where the model diverges: narrow the prior or look at the equation there"});
   }
 
   // Bands over the fitted rows of an experiment, for the report, and how far the trajectories drift from constraints.

@@ -5,14 +5,11 @@
 #include <cmath>
 
 #include "core/diagnostic.hpp"
-#include "gaussian_process/dense.hpp"
-#include "gaussian_process/state_space.hpp"
+#include "gaussian_process/regression.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
 namespace {
-
-constexpr Eigen::Index many_rows = 300;  // as in the likelihood
 
 LaneArray one_column(std::vector<double> const& values, int rows) {
   LaneArray column(rows, 1);
@@ -32,17 +29,11 @@ std::optional<gaussian_process::Coefficients> coefficients_of(ProcessTarget cons
   auto const regression = target.regression(parameters, channel, true);
   if (!regression) return std::nullopt;
   auto const& covariance = target.model().channels()[static_cast<std::size_t>(channel)].covariance;
-  if (regression->observations.values.size() > many_rows && gaussian_process::has_state_space(covariance)) {
-    gaussian_process::Places const none{Eigen::MatrixXd(0, regression->observations.inputs.cols()),
-                                        Eigen::MatrixXd(0, regression->observations.columns.cols())};
-    auto const posterior =
-        gaussian_process::state_space_posterior(covariance, regression->observations, regression->parameters, none);
-    if (posterior.outcome == gaussian_process::Outcome::fine) return posterior.coefficients;
-    return std::nullopt;
-  }
-  gaussian_process::DensePosterior const posterior(covariance, regression->observations, regression->parameters);
-  if (posterior.outcome() == gaussian_process::Outcome::fine) return posterior.coefficients();
-  return std::nullopt;
+  gaussian_process::Places const none{Eigen::MatrixXd(0, regression->observations.inputs.cols()),
+                                      Eigen::MatrixXd(0, regression->observations.columns.cols())};
+  auto conditional = gaussian_process::conditional(covariance, regression->observations, regression->parameters, none);
+  if (conditional.outcome != gaussian_process::Outcome::fine) return std::nullopt;
+  return std::move(conditional.coefficients);
 }
 
 std::size_t place_of(ParameterSpace const& all, std::string const& name) {

@@ -12,6 +12,7 @@
 #include "app/bands.hpp"
 #include "app/derived_draws.hpp"
 #include "app/fit_checks.hpp"
+#include "app/fit_end.hpp"
 #include "app/fit_target.hpp"
 #include "app/preparation.hpp"
 #include "app/process_draws.hpp"
@@ -20,12 +21,8 @@
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/task_checkpoint.hpp"
-#include "core/files.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/search.hpp"
-#include "inference/verdict.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 
 namespace sysid {
 namespace {
@@ -65,8 +62,8 @@ class ProcessFit {
       RunContext searching{
           seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
       SearchResult found = search(*target_, backend_.aim, searching);
-      if (found.interrupted) return stop_early();
-      if (found.failure) throw UserError(no_result(*found.failure));
+      if (found.interrupted) return stop_early(session_, task_, checkpoint_);
+      if (found.failure) throw UserError(no_result(task_, *found.failure));
       preparation_.modes = std::move(found.modes);
       preparation_.findings = std::move(found.findings);
     }
@@ -74,24 +71,12 @@ class ProcessFit {
     context.mode_findings = preparation_.findings;
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
     FitResult result = backend_.run(*target_, what_.settings, context);
-    if (result.failure) throw UserError(no_result(*result.failure));
-    if (result.interrupted && result.draws.total() == 0) return stop_early();
+    if (result.failure) throw UserError(no_result(task_, *result.failure));
+    if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
     return finish(std::move(result));
   }
 
  private:
-  Diagnostic no_result(Finding const& failure) const {
-    std::string const code = failure.code == "no_finite_start" ? "E5002" : "E6206";
-    return {Severity::error, code, failure.message, Label{task_.span, {}}, {}, failure.help};
-  }
-
-  ExitCode stop_early() const {
-    bool const kept = std::filesystem::exists(checkpoint_.path());
-    session_.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task_.name,
-                                    kept ? "goes on from there" : "starts it again");
-    return ExitCode::interrupted;
-  }
-
   ExitCode finish(FitResult result) {
     bool const interrupted = result.interrupted;
     Model const& model = model_->model();
@@ -104,9 +89,8 @@ class ProcessFit {
     report.findings = result.findings;
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     if (!result.search_told) add(preparation_.findings);
-    if (interrupted)
-      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
-                                 "go on with --resume; it ends with the bytes of an unbroken run"});
+    if (interrupted) report.findings.push_back(interrupted_finding());
+    add(failure_findings(ledger_));
     add(check_use(model));
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
     std::vector<Summary> const sampled = summarise(result);
@@ -114,9 +98,9 @@ class ProcessFit {
     report.summary = summaries(*all, sampled, report.draws);
     add_derived(*compiled_white(), *all, report.draws);
     for (std::size_t c = static_cast<std::size_t>(report.draws.parameter_count); c < report.draws.names.size(); ++c)
-      report.summary.push_back(of_draws(report.draws, c));
+      report.summary.push_back(of_column(report.draws, c));
     if (!interrupted) {
-      ProcessScores scores = score_left_out(*target_, *all, best_draw(report.draws), data_);
+      ProcessScores scores = score_left_out(*target_, *all, parameters_of_best(report.draws), data_);
       report.fit = std::move(scores.lines);
       add(scores.findings);
       for (int e = 0; e < static_cast<int>(data_.size()); ++e) report.predictions.push_back(fitted_rows(*all, report.draws, e));
@@ -131,21 +115,7 @@ class ProcessFit {
     report.resolved_text = resolved_fit(session_, task_, what_, result.settings, preparation_.solver, seed_);
     report.ledger = preparation_.ledger;
     report.ledger.merge(ledger_);
-    Verdict const verdict = judge(report.findings);
-    report.verdict = verdict.text;
-    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
-    report.timing = {{"wall_seconds", wall.count()},
-                     {"threads", static_cast<std::int64_t>(session_.threads())},
-                     {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
-    write_result(report, session_.result_folder(task_), session_.options.figures);
-    session_.out << terminal_summary(report);
-    if (interrupted) {
-      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
-      return ExitCode::interrupted;
-    }
-    remove_file(checkpoint_.path());
-    session_.fitted[index_] = {std::move(report.draws), preparation_.solver};
-    return verdict.pass ? ExitCode::success : ExitCode::doubtful;
+    return conclude_fit(session_, index_, task_, checkpoint_, preparation_.solver, std::move(report), began_, interrupted);
   }
 
   std::shared_ptr<CompiledModel const> compiled_white() const {
@@ -154,40 +124,26 @@ class ProcessFit {
     return compile(std::move(white), what_.start.kind == StartRule::Kind::estimated, what_.solver.method);
   }
 
-  static Summary of_draws(Draws const& draws, std::size_t column) {
-    ChainValues values;
-    for (Chain const& chain : draws.chains) {
-      values.emplace_back();
-      for (auto const& draw : chain.values) values.back().push_back(draw[column]);
-    }
-    Summary summary = summarise(draws.names[column], draws.units[column], values);
-    if (draws.total() == 1) summary.sd = summary.mad = summary.q5 = summary.q95 = std::nan("");
-    return summary;
-  }
-
   // Of every parameter in the user's order: of what was sampled as the back end says, of what was integrated out the draws; at an
   // optimum the width that the rest leaves it.
   std::vector<Summary> summaries(ParameterSpace const& all, std::vector<Summary> const& sampled, Draws const& draws) const {
     std::vector<Summary> result;
-    auto const sds =
-        draws.total() == 1 ? coefficient_sds(*target_, all, best_draw(draws)) : std::vector<std::pair<std::string, double>>{};
+    auto const sds = draws.total() == 1 ? coefficient_sds(*target_, all, parameters_of_best(draws))
+                                        : std::vector<std::pair<std::string, double>>{};
     for (std::size_t p = 0; p < all.infos().size(); ++p) {
       std::string const& name = all.infos()[p].name;
       auto const own = std::find_if(sampled.begin(), sampled.end(), [&](Summary const& each) { return each.name == name; });
-      result.push_back(own != sampled.end() ? *own : of_draws(draws, p));
+      result.push_back(own != sampled.end() ? *own : of_column(draws, p));
       for (auto const& [coefficient, sd] : sds)
         if (coefficient == name) result.back().sd = sd;
     }
     return result;
   }
 
-  static std::vector<double> best_draw(Draws const& draws) {
-    std::vector<double> const* best = nullptr;
-    double highest = -std::numeric_limits<double>::infinity();
-    for (Chain const& chain : draws.chains)
-      for (std::size_t d = 0; d < chain.values.size(); ++d)
-        if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
-    return {best->begin(), best->begin() + draws.parameter_count};
+  static std::vector<double> parameters_of_best(Draws const& draws) {
+    std::vector<double> best = best_draw(draws);
+    best.resize(static_cast<std::size_t>(draws.parameter_count));
+    return best;
   }
 
   Prediction fitted_rows(ParameterSpace const& all, Draws const& draws, int e) const {

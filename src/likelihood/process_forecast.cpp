@@ -9,7 +9,7 @@
 
 #include "gaussian_process/concern.hpp"
 #include "gaussian_process/dense.hpp"
-#include "gaussian_process/state_space.hpp"
+#include "gaussian_process/regression.hpp"
 #include "model/past.hpp"
 
 namespace sysid {
@@ -19,8 +19,6 @@ using gaussian_process::DensePosterior;
 
 using gaussian_process::Places;
 using gaussian_process::Prediction;
-
-constexpr Eigen::Index many_rows = 300;  // as in the likelihood
 
 std::vector<int> all_of(int samples) {
   std::vector<int> rows(static_cast<std::size_t>(samples));
@@ -111,8 +109,7 @@ ProcessForecast::ProcessForecast(std::shared_ptr<ProcessTarget const> trained, s
   std::vector<Channel> const& channels = model_->model().channels;
   for (std::size_t c = 0; c < channels.size(); ++c)
     quantities_.push_back({channels[c].name, unit_of(channels[c]), static_cast<int>(c)});
-  for (Channel const& channel : channels)
-    quantities_.push_back({fmt::format("white({})", channel.name), unit_of(channel), -1});
+  for (Channel const& channel : channels) quantities_.push_back({fmt::format("white({})", channel.name), unit_of(channel), -1});
 }
 
 bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count, StreamKey key,
@@ -125,17 +122,9 @@ bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitt
     if (!here.inputs.allFinite() || !here.white.allFinite()) return false;
     auto const& covariance = model_->channels()[c].covariance;
     Places const places{here.inputs, Eigen::MatrixXd(here.inputs.rows(), 0)};
-    Prediction prediction;
-    if (fitted[c].observations.values.size() > many_rows && gaussian_process::has_state_space(covariance)) {
-      auto const posterior =
-          gaussian_process::state_space_posterior(covariance, fitted[c].observations, fitted[c].parameters, places);
-      if (posterior.outcome != gaussian_process::Outcome::fine) return false;
-      prediction = posterior.prediction;
-    } else {
-      DensePosterior const posterior(covariance, fitted[c].observations, fitted[c].parameters);
-      if (posterior.outcome() != gaussian_process::Outcome::fine) return false;
-      prediction = posterior.predict(places);
-    }
+    auto const conditional = gaussian_process::conditional(covariance, fitted[c].observations, fitted[c].parameters, places);
+    if (conditional.outcome != gaussian_process::Outcome::fine) return false;
+    Prediction const& prediction = conditional.prediction;
     double const sd = fitted[c].parameters.back();
     for (int d = 0; d < count; ++d) {
       Stream stream(key.at(key.index + first + static_cast<std::uint64_t>(d), c));

@@ -112,6 +112,12 @@ void ProcessModel::find_coefficients(std::vector<std::vector<int>>& of_channel) 
                                                               [&](int other) { return of_slope.contains(other); });
     if (linear) of_channel[c].push_back(p);
   }
+  // Back ends want something to sample, and a posterior that is normal they have exactly.
+  std::size_t integrated = 0;
+  for (std::vector<int> const& each : of_channel) integrated += each.size();
+  auto const with_prior = std::count_if(model_.parameters.begin(), model_.parameters.end(),
+                                        [](Parameter const& each) { return each.prior && !each.value; });
+  if (integrated == static_cast<std::size_t>(with_prior)) of_channel.assign(read.size(), {});
 }
 
 ProcessModel::ProcessModel(Model model, bool free_start, std::string const& method) : model_(std::move(model)), reduced_(model_) {

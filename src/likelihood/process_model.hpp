@@ -10,7 +10,8 @@
 
 namespace sysid {
 
-/// A parameter with a normal prior that one channel's centre is linear in and nothing else reads: it is integrated out.
+/// A parameter with a normal prior that one channel's centre is linear in and nothing else reads: it is integrated out,
+/// unless nothing would be left to sample.
 struct MarginalCoefficient {
   int parameter = 0;        // of the model
   double mean = 0, sd = 0;  // of its prior, SI

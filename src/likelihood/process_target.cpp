@@ -7,8 +7,7 @@
 
 #include "core/diagnostic.hpp"
 #include "core/elementary.hpp"
-#include "gaussian_process/dense.hpp"
-#include "gaussian_process/state_space.hpp"
+#include "gaussian_process/regression.hpp"
 #include "likelihood/failures.hpp"
 #include "simulate/thread_pool.hpp"
 
@@ -20,9 +19,6 @@ using gaussian_process::Marginal;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Coordinates are of order one: the white part of a step this long loses a third of its digits, no more.
 constexpr double step = 1e-5;
-/// Beyond this many rows the filter is the faster way wherever it exists.
-constexpr Eigen::Index many_rows = 300;
-
 /// Where a sum of squares begins: only that it is fixed matters.
 double offset(int count) { return 100.0 * count + 1000.0; }
 
@@ -125,10 +121,7 @@ std::optional<ProcessTarget::Regression> ProcessTarget::regression(ConstLanes pa
 
 Marginal ProcessTarget::marginal(Regression const& regression, int channel, bool with_gradient) const {
   auto const& covariance = model_->channels()[static_cast<std::size_t>(channel)].covariance;
-  bool const filter = regression.observations.values.size() > many_rows && gaussian_process::has_state_space(covariance);
-  Marginal result =
-      filter ? gaussian_process::state_space_marginal(covariance, regression.observations, regression.parameters, with_gradient)
-             : gaussian_process::dense_marginal(covariance, regression.observations, regression.parameters, with_gradient);
+  Marginal result = gaussian_process::marginal(covariance, regression.observations, regression.parameters, with_gradient);
   // A density is that of the declared unit.
   Channel const& declared = model_->model().channels[static_cast<std::size_t>(channel)];
   if (declared.unit)

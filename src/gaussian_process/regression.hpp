@@ -1,0 +1,20 @@
+// Regression by whichever route is the faster: the matrix of all observations, or filtering where the covariance allows it and they
+// are many. The results are the same to 1e-8.
+#pragma once
+#include "gaussian_process/covariance.hpp"
+#include "gaussian_process/observations.hpp"
+
+namespace sysid::gaussian_process {
+
+/// As `dense_marginal`.
+Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient);
+
+struct Conditional {
+  Outcome outcome = Outcome::fine;
+  Prediction prediction;      // at the places
+  Coefficients coefficients;  // of the mean
+};
+/// The function at the places and the mean's coefficients given the observations, at fixed hyper-parameters.
+Conditional conditional(Covariance const& covariance, Observations const& observations, Numbers parameters, Places const& places);
+
+}  // namespace sysid::gaussian_process
