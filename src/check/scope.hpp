@@ -84,6 +84,11 @@ class Scope {
     Span call;
   };
   std::vector<ProcessName> const& processes() const { return processes_; }
+  /// What a declaration says of a process whose inputs are laid out: kernels, hyper-parameters in SI, the unit of its values. Names
+  /// are the model's, wherever the process is applied. columns: of each declared input those among process.inputs; units: of each
+  /// of these, where it is known, without a zero point. False after a diagnostic.
+  bool process_declaration(ast::ProcessDefinition const& definition, std::vector<std::vector<int>> const& columns,
+                           std::vector<std::optional<Unit>> const& units, Process& process);
 
   /// What is known of samples and channels; the model's checker fills it.
   SampleNames& samples() { return samples_; }
