@@ -18,6 +18,7 @@
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
+#include "app/search_near.hpp"
 #include "app/session.hpp"
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
@@ -103,7 +104,8 @@ class Fit {
     auto const target = make(preparation_.solver);
     RunContext search_context{
         seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
-    SearchResult found = search(*target, backend_.aim, search_context);
+    SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.aim, search_context)
+                                    : search(*target, backend_.aim, search_context);
     if (found.interrupted) return false;
     if (found.failure) {
       ledger_.merge(preparation_.ledger);
@@ -173,6 +175,7 @@ class Fit {
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
+    if (what_.near) report.settings.emplace_back("search", search_text(session_.file, what_));
     if (model_.integrated()) add_solver(preparation_.solver, report.settings);
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));

@@ -113,6 +113,14 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
   auto const asked = [&](Task const& task) {
     return verbs.empty() || std::find(verbs.begin(), verbs.end(), verb_of(task)) != verbs.end();
   };
+  if (std::any_of(file.tasks.begin(), file.tasks.end(), asked)) return run_tasks(session, asked);
+  notices << nothing_to_do(source, file, verbs);
+  return ExitCode::usage;
+}
+
+ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& asked) {
+  CheckedFile const& file = session.file;
+  RunOptions const& options = session.options;
   // A simulate task leaves its record and nothing else.
   auto const kept = [&](Task const& task) {
     auto const* made = std::get_if<SimulateTask>(&task.what);
@@ -123,10 +131,6 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
     if (auto const wrong = stored_otherwise(session, task, seed); wrong && options.resume) throw UserError(*wrong);
     return true;
   };
-  if (std::none_of(file.tasks.begin(), file.tasks.end(), asked)) {
-    notices << nothing_to_do(source, file, verbs);
-    return ExitCode::usage;
-  }
   std::set<Task const*> complete_already;
   for (Task const& task : file.tasks)
     if (asked(task) && options.resume && kept(task)) complete_already.insert(&task);
@@ -146,7 +150,7 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
   ExitCode worst = ExitCode::success;
   for (std::size_t i = 0; i < file.tasks.size(); ++i) {
     Task const& task = file.tasks[i];
-    if (complete_already.contains(&task)) notices << fmt::format("{}: complete, kept\n", task.name);
+    if (complete_already.contains(&task)) session.notices << fmt::format("{}: complete, kept\n", task.name);
     if (!wanted(task)) continue;
     ExitCode const code = std::visit(
         [&](auto const& what) -> ExitCode {

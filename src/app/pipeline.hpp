@@ -1,5 +1,6 @@
 // The stages from text to results, one line each; and what the command line can ask of them.
 #pragma once
+#include <functional>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -10,6 +11,8 @@
 #include "core/diagnostic.hpp"
 
 namespace sysid {
+
+class Session;
 
 /// A file that passed the front end: its text, the checked models, data blocks and tasks.
 struct Loaded {
@@ -28,5 +31,8 @@ std::string dump_stage(Source& source, std::string const& stage, Diagnostics& di
 /// progress to `progress`, notices to `notices`. UserError, IoError and InternalError leave through the caller.
 ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<std::string> const& verbs, RunOptions const& options,
                    Progress& progress, std::ostream& out, std::ostream& notices);
+
+/// Those tasks of a session that are asked for, in order; there is one at least.
+ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& asked);
 
 }  // namespace sysid

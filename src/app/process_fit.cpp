@@ -20,6 +20,7 @@
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
+#include "app/search_near.hpp"
 #include "app/task_checkpoint.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/search.hpp"
@@ -61,7 +62,8 @@ class ProcessFit {
     } else {
       RunContext searching{
           seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
-      SearchResult found = search(*target_, backend_.aim, searching);
+      SearchResult found = what_.near ? search_near(session_, *what_.near, *target_, backend_.aim, searching)
+                                      : search(*target_, backend_.aim, searching);
       if (found.interrupted) return stop_early(session_, task_, checkpoint_);
       if (found.failure) throw UserError(no_result(task_, *found.failure));
       preparation_.modes = std::move(found.modes);
@@ -109,6 +111,7 @@ class ProcessFit {
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
+    if (what_.near) report.settings.emplace_back("search", search_text(session_.file, what_));
     if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));
     auto const marginalised = model_->marginalised();
     if (!marginalised.empty()) report.settings.emplace_back("integrated_out", fmt::format("{}", fmt::join(marginalised, ", ")));

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "app/experiments.hpp"
 #include "report/number.hpp"
 #include "syntax/parse.hpp"
@@ -31,14 +33,33 @@ std::string start_text(StartRule start) {
   return "?";
 }
 
+std::string search_text(CheckedFile const& file, FitTask const& fit) {
+  return fit.near ? fmt::format("near({})", file.tasks[static_cast<std::size_t>(*fit.near)].name) : std::string();
+}
+
 namespace {
 
-// The file as written, without its tasks.
-std::string without_tasks(Session const& session) {
+// The fits, one before the other, near whose draws this one searched.
+std::set<Span, bool (*)(Span, Span)> searched_near(CheckedFile const& file, FitTask const& fit) {
+  std::set<Span, bool (*)(Span, Span)> spans([](Span a, Span b) { return a.begin < b.begin; });
+  for (FitTask const* each = &fit; each->near;) {
+    Task const& earlier = file.tasks[static_cast<std::size_t>(*each->near)];
+    spans.insert(earlier.span);
+    each = &std::get<FitTask>(earlier.what);
+  }
+  return spans;
+}
+
+// The file as written, without its tasks but for those that `fit` refers to.
+std::string without_tasks(Session const& session, FitTask const* fit = nullptr) {
   Diagnostics ignored;
   auto tree = parse(session.source, ignored);
   if (!tree) throw InternalError("a checked file does not parse again");
-  std::erase_if(tree->items, [](ast::Item const& item) { return std::holds_alternative<ast::Task>(item); });
+  auto const kept = searched_near(session.file, fit == nullptr ? FitTask() : *fit);
+  std::erase_if(tree->items, [&](ast::Item const& item) {
+    auto const* task = std::get_if<ast::Task>(&item);
+    return task != nullptr && !kept.contains(task->verb.span);
+  });
   return unparse(*tree);
 }
 
@@ -62,9 +83,10 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
   Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
-      "{}, seed = {}\n",
-      task.name, without_tasks(session), task.name, model.name, data_names(session.file, what.experiments),
-      settings_text(what.backend, settings), simulation_text(model, what, solver.text()), seed);
+      "{}{}, seed = {}\n",
+      task.name, without_tasks(session, &what), task.name, model.name, data_names(session.file, what.experiments),
+      settings_text(what.backend, settings), simulation_text(model, what, solver.text()),
+      what.near ? ", search = " + search_text(session.file, what) : std::string(), seed);
 }
 
 std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed) {

@@ -15,5 +15,7 @@ std::string resolved_discover(Session const& session, Task const& task, Discover
 std::string settings_text(std::string const& backend, Settings const& settings);
 
 std::string start_text(StartRule start);
+/// "near(posterior)"; empty where the search has no such beginning.
+std::string search_text(CheckedFile const& file, FitTask const& fit);
 
 }  // namespace sysid

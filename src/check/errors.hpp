@@ -125,7 +125,7 @@ Diagnostic backend_missing(ast::Task const& task, Names const& known);
 Diagnostic unknown_backend(ast::Name const& name, Names const& known);
 Diagnostic data_missing(ast::Task const& task, std::string const& preposition);
 Diagnostic data_unused(ast::Task const& task, Span data);
-Diagnostic not_a_fit(ast::Name const& name);
+Diagnostic not_a_fit(ast::Name const& name, std::string const& verb);
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration);
 Diagnostic value_missing(Span span, Names const& parameters);
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate);

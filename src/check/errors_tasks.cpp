@@ -74,8 +74,9 @@ Diagnostic data_unused(ast::Task const& task, Span data) {
                "leave the data out, or `predict` a fit on them");
 }
 
-Diagnostic not_a_fit(ast::Name const& name) {
-  return error("E6010", name.span, fmt::format("`{}` is not a fit", name.text), "predict needs the name of a fit task");
+Diagnostic not_a_fit(ast::Name const& name, std::string const& verb) {
+  return error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
+               verb == "predict" ? "predict needs the name of a fit task" : "a search begins near the draws of a fit");
 }
 
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration) {

@@ -48,6 +48,8 @@ class TaskChecker {
 
   // --- task_fit.cpp
   FitTask fit();
+  // `search = near(posterior)`, or `search = everywhere`.
+  void search(ast::Option const& option, std::optional<int>& near);
   // One step ahead, and no differential equations beside it.
   void suit_processes(FitTask const& task, Model const& model);
 
@@ -71,8 +73,8 @@ class TaskChecker {
 
   // --- task_predict.cpp
   PredictTask predict();
-  // Index of the task whose draws are used; nothing when it is none.
-  std::optional<int> fitted_task();
+  // Index of the task above whose draws are used; nothing when it is none.
+  std::optional<int> fitted_task(ast::Name const& name, bool or_selection);
 
   // --- task_simulate.cpp
   SimulateTask simulate();

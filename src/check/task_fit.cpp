@@ -17,9 +17,12 @@ FitTask TaskChecker::fit() {
   task.experiments = experiments(model, "to");
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
-    if (!simulation_option(option, key, models, task) &&
-        !backend_option(option, key, backends_.fitting, task.backend, task.settings))
-      options_.unknown(option, {"start", "solver", "substeps", "prediction", "seed"});
+    if (option.key && key == "search") {
+      if (options_.fresh(option, key)) search(option, task.near);
+    } else if (!simulation_option(option, key, models, task) &&
+               !backend_option(option, key, backends_.fitting, task.backend, task.settings)) {
+      options_.unknown(option, {"start", "solver", "substeps", "prediction", "search", "seed"});
+    }
   }
   if (model != nullptr) {
     suit(task, *model);
@@ -28,6 +31,18 @@ FitTask TaskChecker::fit() {
   if (task.backend.empty() && !diagnostics_.has_errors(before_))
     diagnostics_.add(errors::backend_missing(tree_, names_of(backends_.fitting)));
   return task;
+}
+
+void TaskChecker::search(ast::Option const& option, std::optional<int>& near) {
+  if (as_word(option.value) == "everywhere") return;
+  ast::Call const* call = as_call(option.value);
+  auto const* fit = call != nullptr && call->function.text == "near" && call->arguments.size() == 1 && !call->arguments[0].name
+                        ? std::get_if<ast::Reference>(&call->arguments[0].value.node)
+                        : nullptr;
+  if (fit == nullptr)
+    diagnostics_.add(errors::option_kind(option.value.span, "search", "`everywhere` or near a fit", "search = near(posterior)"));
+  else
+    near = fitted_task({{fit->span}, fit->name.text}, false);
 }
 
 void TaskChecker::suit_processes(FitTask const& task, Model const& model) {

@@ -7,25 +7,25 @@
 
 namespace sysid {
 
-std::optional<int> TaskChecker::fitted_task() {
-  std::string const& name = tree_.subject.text;
+std::optional<int> TaskChecker::fitted_task(ast::Name const& subject, bool or_selection) {
+  std::string const& name = subject.text;
   auto const fit = std::find_if(file_.tasks.begin(), file_.tasks.end(), [&](Task const& each) { return each.name == name; });
   if (fit != file_.tasks.end()) {
-    if (std::holds_alternative<FitTask>(fit->what) || std::holds_alternative<SelectTask>(fit->what))
+    if (std::holds_alternative<FitTask>(fit->what) || (or_selection && std::holds_alternative<SelectTask>(fit->what)))
       return static_cast<int>(fit - file_.tasks.begin());
-    diagnostics_.add(errors::not_a_fit(tree_.subject));
+    diagnostics_.add(errors::not_a_fit(subject, tree_.verb.text));
     return std::nullopt;
   }
   std::vector<std::string> known;
   for (ast::Task const* each : all_tasks_)
-    if (each->verb.text == "fit" || each->verb.text == "select") known.push_back(task_name(*each));
+    if (each->verb.text == "fit" || (or_selection && each->verb.text == "select")) known.push_back(task_name(*each));
   auto const self = std::find(all_tasks_.begin(), all_tasks_.end(), &tree_);
   auto const written = std::find_if(all_tasks_.begin(), all_tasks_.end(),
                                     [&](ast::Task const* each) { return each != &tree_ && task_name(*each) == name; });
   if (written == all_tasks_.end())
-    diagnostics_.add(errors::unknown_item(tree_.subject, "fit", known));
+    diagnostics_.add(errors::unknown_item(subject, "fit", known));
   else if (written > self)
-    diagnostics_.add(errors::task_too_late(tree_.subject));
+    diagnostics_.add(errors::task_too_late(subject));
   else
     unresolved_ = true;  // it failed its own check
   return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<int> TaskChecker::fitted_task() {
 PredictTask TaskChecker::predict() {
   PredictTask task;
   std::vector<FitTask const*> fits;  // of a selection one per candidate
-  if (auto const fit = fitted_task()) {
+  if (auto const fit = fitted_task(tree_.subject, true)) {
     task.fit = *fit;
     Task const& subject = file_.tasks[static_cast<std::size_t>(*fit)];
     if (auto const* selection = std::get_if<SelectTask>(&subject.what))

@@ -169,6 +169,33 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   return result;
 }
 
+SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunContext& context) {
+  SearchResult result;
+  std::uint64_t const before = context.ledger.solves();
+  auto const round = static_cast<std::uint64_t>(target.has_gradient() ? 1 : 2 * target.dimension() + 1 + 4);
+  std::uint64_t const expected = static_cast<std::uint64_t>(starts.width()) * round * usual_rounds;
+  auto const stop = [&] {
+    context.progress.advance(std::min(context.ledger.solves() - before, expected - 1), "");
+    return context.stop_requested();
+  };
+  context.progress.begin("searching near an earlier fit", expected);
+  result.modes =
+      modes_from(target, aim, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger, stop).modes;
+  result.interrupted = stop();
+  context.progress.end(!result.interrupted);
+  if (result.interrupted) {
+    result.modes.clear();
+    return result;
+  }
+  if (result.modes.empty()) {
+    result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(starts.width()));
+    return result;
+  }
+  add_findings(make_objective(target, aim, draw_prior(target, {context.seed, Purpose::start, 0, search_step}, draws_per_pass)),
+               result);
+  return result;
+}
+
 std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains) {
   std::vector<int> count(modes.size(), 0);
   int left = chains;

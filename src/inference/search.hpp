@@ -26,6 +26,10 @@ struct SearchResult {
 /// end. Progress counts simulations against those of a typical search.
 SearchResult search(Target const& target, Aim aim, RunContext& context);
 
+/// Local searches from `starts` [P x N] alone, which need not have a finite density: a search that somebody has aimed. What lies
+/// elsewhere is not looked for, and a note says so.
+SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunContext& context);
+
 /// Spreads `chains` over modes by their shares: every mode above 1 % gets one while chains last, the rest go where the share is
 /// most under-represented. Returns the mode of each chain; modes in order.
 std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains);

@@ -1,0 +1,100 @@
+// `search = near(FIT)`: the same optimum from where an earlier fit ended, with a changed prior, a term more, or a unit changed.
+#include <doctest/doctest.h>
+
+#include "app/running.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::string const text = R"(
+model linear {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter c [N s/m] ~ log_uniform(2, 200)
+  parameter k [N/m] ~ log_uniform(1e3, 1e5)
+  parameter sigma [m] ~ log_uniform(1e-7, 1e-2)
+  1 [kg]*y'' + c*y' + k*y = x
+  observe displacement ~ normal(y, sd = sigma)
+}
+model cubic {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter c [N s/m] ~ log_uniform(2, 200)
+  parameter k [N/mm] ~ log_uniform(1, 100)
+  parameter k3 [N/m^3] ~ log_uniform(1e7, 1e11)
+  parameter sigma [m] ~ log_uniform(1e-7, 1e-2)
+  1 [kg]*y'' + c*y' + k*y + k3*y^3 = x
+  observe displacement ~ normal(y, sd = sigma)
+}
+data bench { file "made.csv"; time t [s]; input x = x [N] hold zero_order; measure displacement = displacement [m] }
+)";
+
+std::string made_record() {
+  static std::string const record =
+      CaseRun(text +
+                  "made = simulate cubic with values(c = 20, k = 10, k3 = 5e9), input x = gaussian(sd = 10), "
+                  "noise = 1 [percent], samples = 400, rate = 500 [Hz], seed = 1\n",
+              {{"made.csv", ""}})
+          .file("made/made.csv");
+  return record;
+}
+
+bool found(nlohmann::json const& summary, std::string const& code) {
+  for (auto const& finding : summary.at("findings"))
+    if (finding.at("code") == code) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("a search near an earlier fit ends where a search everywhere ends, with a fraction of the simulations, and says so") {
+  CaseRun const run(text +
+                        "first = fit linear to bench with map, seed = 1\n"
+                        "everywhere = fit cubic to bench with map, seed = 1\n"
+                        "near = fit cubic to bench with map, search = near(first), seed = 1\n"
+                        "again = fit cubic to bench with map, search = near(near), seed = 2\n",
+                    {{"made.csv", made_record()}});
+  auto const everywhere = run.summary("everywhere");
+  CHECK_FALSE(found(everywhere, "searched_near"));
+  for (char const* task : {"near", "again"}) {
+    auto const near = run.summary(task);
+    CAPTURE(task);
+    CHECK(found(near, "searched_near"));
+    for (auto const& [name, parameter] : everywhere.at("parameters").items()) {
+      double const sd = parameter.at("sd");
+      CHECK(near.at("parameters").at(name).at("mean").get<double>() ==
+            doctest::Approx(parameter.at("mean").get<double>()).scale(sd).epsilon(1e-3));
+    }
+  }
+  CHECK(run.summary("again").at("ledger").at("solves").get<int>() < everywhere.at("ledger").at("solves").get<int>() / 3);
+}
+
+TEST_CASE("what reproduces a fit that searched near another holds that one, too") {
+  CaseRun const run(text +
+                        "first = fit linear to bench with map, seed = 1\n"
+                        "unused = fit linear to bench with ml, seed = 1\n"
+                        "near = fit cubic to bench with map, search = near(first), seed = 1\n",
+                    {{"made.csv", made_record()}});
+  std::string const resolved = run.file("near/resolved.sysid");
+  CHECK(resolved.find("first = fit linear") != std::string::npos);
+  CHECK(resolved.find("unused = ") == std::string::npos);
+  CHECK(resolved.find("search = near(first)") != std::string::npos);
+}
+
+TEST_CASE("a search begins near a fit that stands above it") {
+  auto const refusal = [](std::string const& task) {
+    try {
+      CaseRun(text + task, {{"made.csv", made_record()}});
+    } catch (UserError const& error) {
+      return error.diagnostic().code;
+    }
+    return std::string();
+  };
+  CHECK(refusal("near = fit linear to bench with map, search = near(near), seed = 1\n") != "");
+  CHECK(refusal("near = fit linear to bench with map, search = near(other), seed = 1\n") == "E6001");
+  CHECK(refusal("near = fit linear to bench with map, search = other, seed = 1\n") == "E6004");
+  CHECK(refusal("near = fit linear to bench with map, search = near(b)\nb = fit linear to bench with map\n") == "E6012");
+}
