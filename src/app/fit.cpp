@@ -35,12 +35,6 @@ namespace {
 
 using json = nlohmann::json;
 
-// "8 integrator steps per sample", "cvode(relative = 1e-8)".
-std::string accuracy(SolverSettings const& solver) {
-  return solver.fixed_step() ? fmt::format("{} integrator step{} per sample", solver.substeps, solver.substeps == 1 ? "" : "s")
-                             : fmt::format("relative tolerances of {}", solver.relative);
-}
-
 class Fit {
  public:
   Fit(Session& session, int index, Task const& task, FitTask const& what)

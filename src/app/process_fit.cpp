@@ -21,7 +21,9 @@
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/search_near.hpp"
+#include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
+#include "app/tolerance.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/search.hpp"
 
@@ -43,7 +45,6 @@ class ProcessFit {
         model_(process_model(session, what, what.prediction)),
         data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
                                what.prediction)),
-        target_(process_target(session, what, model_, data_)),
         began_(std::chrono::steady_clock::now()) {
     checkpoint_.of_data(data_);
   }
@@ -62,13 +63,9 @@ class ProcessFit {
     } else {
       RunContext searching{
           seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
-      SearchResult found = what_.near ? search_near(session_, *what_.near, *target_, backend_.aim, searching)
-                                      : search(*target_, backend_.aim, searching);
-      if (found.interrupted) return stop_early(session_, task_, checkpoint_);
-      if (found.failure) throw UserError(no_result(task_, *found.failure));
-      preparation_.modes = std::move(found.modes);
-      preparation_.findings = std::move(found.findings);
+      if (!prepare(searching)) return stop_early(session_, task_, checkpoint_);
     }
+    target_ = make_target(preparation_.solver);
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
@@ -79,6 +76,50 @@ class ProcessFit {
   }
 
  private:
+  std::unique_ptr<ProcessTarget> make_target(SolverSettings const& solver) const {
+    return process_target(session_, what_, model_, data_, solver);
+  }
+
+  // Search and, where equations are integrated and the user did not fix it, the step. False: interrupted.
+  bool prepare(RunContext& context) {
+    preparation_.solver = what_.solver;
+    auto const target = make_target(what_.solver);
+    SearchResult found =
+        what_.near ? search_near(session_, *what_.near, *target, backend_.aim, context) : search(*target, backend_.aim, context);
+    if (found.interrupted) return false;
+    if (found.failure) throw UserError(no_result(task_, *found.failure));
+    preparation_.modes = std::move(found.modes);
+    preparation_.findings = std::move(found.findings);
+    if (!what_.settle || !model_->model().integrated()) return true;
+    SettledSolver settled =
+        settle_solver([this](SolverSettings const& solver) { return make_target(solver); }, backend_.aim, what_.solver,
+                      std::move(preparation_.modes), seed_, preparation_.ledger, context.interrupted);
+    if (context.stop_requested()) return false;
+    preparation_.solver = settled.solver;
+    preparation_.modes = std::move(settled.modes);
+    preparation_.moves = std::move(settled.moves);
+    if (settled.solver != what_.solver)
+      session_.notices << fmt::format("{}: {} (with {}, {} with {})\n", task_.name, accuracy(settled.solver),
+                                      accuracy(what_.solver), moved(preparation_.moves.front()), what_.solver.finer_words());
+    if (!settled.settled)
+      preparation_.findings.push_back({Severity::error, "step_not_settled",
+                                       fmt::format("even {} do not settle the result", accuracy(settled.solver)),
+                                       "where the model is stiff, fit it with `solver = cvode`; it may be chaotic on this record"});
+    return true;
+  }
+
+  // As of a fit without processes: draws tell by their weights, an optimum by where it moves.
+  Findings step_check(Draws const& draws) {
+    auto const fine = make_target(preparation_.solver.finer());
+    Ledger extra;
+    Findings findings;
+    if (draws.total() > 1)
+      findings = tolerance_findings(check_tolerance(*target_, *fine, draws, extra), preparation_.solver, what_.settle);
+    if (findings.empty() && !what_.settle && !preparation_.modes.empty())
+      findings = check_modes(*fine, backend_.aim, preparation_.modes, preparation_.solver, seed_, extra);
+    return findings;
+  }
+
   ExitCode finish(FitResult result) {
     bool const interrupted = result.interrupted;
     Model const& model = model_->model();
@@ -95,6 +136,7 @@ class ProcessFit {
     add(failure_findings(ledger_));
     add(check_use(model));
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
+    if (!interrupted && model.integrated()) add(step_check(result.draws));
     std::vector<Summary> const sampled = summarise(result);
     report.draws = with_coefficients(*target_, *all, result.draws, seed_);
     report.summary = summaries(*all, sampled, report.draws);
@@ -112,6 +154,7 @@ class ProcessFit {
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
     if (what_.near) report.settings.emplace_back("search", search_text(session_.file, what_));
+    if (model.integrated()) add_solver(preparation_.solver, report.settings);
     if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));
     auto const marginalised = model_->marginalised();
     if (!marginalised.empty()) report.settings.emplace_back("integrated_out", fmt::format("{}", fmt::join(marginalised, ", ")));
@@ -150,7 +193,7 @@ class ProcessFit {
   }
 
   Prediction fitted_rows(ParameterSpace const& all, Draws const& draws, int e) const {
-    ProcessForecast const forecast(target_, model_, data_[static_cast<std::size_t>(e)].experiment, what_.solver,
+    ProcessForecast const forecast(target_, model_, data_[static_cast<std::size_t>(e)].experiment, preparation_.solver,
                                    start_rows(what_.start), session_.options.execution);
     LaneArray const columns = spread(draws, 100);
     LaneArray own(static_cast<int>(model_->model().parameters.size()), columns.width());
@@ -182,15 +225,14 @@ std::shared_ptr<ProcessModel const> process_model(Session const& session, FitTas
   return std::make_shared<ProcessModel const>(std::move(*ruled), fit.start.kind == StartRule::Kind::estimated, fit.solver.method);
 }
 
-std::shared_ptr<ProcessTarget const> process_target(Session const& session, FitTask const& fit,
-                                                    std::shared_ptr<ProcessModel const> model,
-                                                    std::vector<ExperimentData> const& data) {
+std::unique_ptr<ProcessTarget> process_target(Session const& session, FitTask const& fit, std::shared_ptr<ProcessModel const> model,
+                                              std::vector<ExperimentData> const& data, SolverSettings const& solver) {
   TargetOptions options;
-  options.solver = fit.solver;
+  options.solver = solver;
   options.start_rows = start_rows(fit.start);
   options.execution = session.options.execution;
   auto const space = parameter_space(model->reduced(), fit.experiments);
-  return std::make_shared<ProcessTarget const>(std::move(model), space, experiments_of(data), std::move(options));
+  return std::make_unique<ProcessTarget>(std::move(model), space, experiments_of(data), std::move(options));
 }
 
 ExitCode run_process_fit(Session& session, int index, Task const& task, FitTask const& what) {

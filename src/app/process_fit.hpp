@@ -12,10 +12,9 @@ namespace sysid {
 /// A model of the file taken apart, under a prediction rule.
 std::shared_ptr<ProcessModel const> process_model(Session const& session, FitTask const& fit, PredictionRule prediction);
 
-/// The target of a fit, holding its samples. data: those of the fit.
-std::shared_ptr<ProcessTarget const> process_target(Session const& session, FitTask const& fit,
-                                                    std::shared_ptr<ProcessModel const> model,
-                                                    std::vector<ExperimentData> const& data);
+/// The target of a fit, holding its samples. data: those of the fit. solver: of differential equations, where there are any.
+std::unique_ptr<ProcessTarget> process_target(Session const& session, FitTask const& fit, std::shared_ptr<ProcessModel const> model,
+                                              std::vector<ExperimentData> const& data, SolverSettings const& solver);
 
 ExitCode run_process_fit(Session& session, int index, Task const& task, FitTask const& what);
 ExitCode run_process_predict(Session& session, Task const& task, PredictTask const& what);

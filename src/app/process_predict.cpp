@@ -11,6 +11,7 @@
 #include "app/process_fit.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
+#include "app/solver_record.hpp"
 #include "app/stored_draws.hpp"
 #include "report/result.hpp"
 #include "report/terminal.hpp"
@@ -28,7 +29,7 @@ class ProcessPredict {
         fit_task_(session.file.tasks[static_cast<std::size_t>(what.fit)]),
         fit_(std::get<FitTask>(fit_task_.what)),
         trained_(process_target(session, fit_, process_model(session, fit_, fit_.prediction),
-                                load(fit_.experiments, fit_.start, fit_.prediction))),
+                                load(fit_.experiments, fit_.start, fit_.prediction), fitted_.solver)),
         model_(process_model(session, fit_, what.prediction)),
         all_(parameter_space(model_->model(), fit_.experiments)),
         data_(load(what.experiments, what.start, what.prediction)),
@@ -51,6 +52,7 @@ class ProcessPredict {
            "fit with mh for bands that hold both"});
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) predict(e, report);
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
+    if (model.integrated()) add_solver(fitted_.solver, report.settings);
     if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));
     bool const missed = add_coverage(report, feeds_back(model));
     report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
@@ -69,7 +71,7 @@ class ProcessPredict {
   void predict(int e, Report& report) const {
     ExperimentData const& data = data_[static_cast<std::size_t>(e)];
     report.data.push_back(describe_data(session_.file, data, model_->model()));
-    ProcessForecast const forecast(trained_, model_, data.experiment, fit_.solver, start_rows(what_.start),
+    ProcessForecast const forecast(trained_, model_, data.experiment, fitted_.solver, start_rows(what_.start),
                                    session_.options.execution);
     LaneArray const columns = spread(fitted_.draws, std::min<int>(what_.draws, static_cast<int>(fitted_.draws.total())));
     int const fitted = what_.fitted[static_cast<std::size_t>(e)];

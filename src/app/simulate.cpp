@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <set>
 
+#include "app/drawn_functions.hpp"
 #include "app/drift.hpp"
 #include "app/experiments.hpp"
 #include "app/session.hpp"
@@ -77,22 +80,57 @@ bool reads_samples(Model const& model) {
   return false;
 }
 
-// A model that goes on from what it measured: noise enters all that follows. Each round makes at least one more sample right, the
-// draws being the same, so this ends; a stable model takes few rounds.
-Trajectory::Result with_feedback(std::shared_ptr<CompiledModel const> const& compiled, Experiment& experiment,
-                                 SimulateTask const& what, LaneArray const& parameters, StreamKey noise_key,
-                                 ExecutionOptions const& execution) {
-  for (auto& channel : experiment.measured) channel.assign(experiment.time.size(), 0.0);
+// Takes from a run what the next one reads; false where that is what this one read.
+using Feedback = std::function<bool(Trajectory::Result const& run, Experiment& experiment)>;
+
+// A model that goes on from what it measured: noise enters all that follows.
+Feedback measured_samples(CompiledModel const& compiled) {
+  return [&compiled](Trajectory::Result const& run, Experiment& experiment) {
+    std::vector<std::vector<double>> const before = experiment.measured;
+    for (std::size_t c = 0; c < before.size(); ++c)
+      for (std::size_t i = 0; i < before[c].size(); ++i) {
+        double const made = compiled.model.channels[c].to_si(run.noisy[c][0][i]);
+        if (std::isfinite(made)) experiment.measured[c][i] = made;
+      }
+    return experiment.measured != before;
+  };
+}
+
+// Processes are the last inputs; before the record they are zero, as all inputs are. Their values may differ by rounding from round
+// to round, since jitter is a share of the mean variance.
+Feedback drawn_values(DrawnFunctions const& functions, std::vector<double> const& time, int history) {
+  return [&functions, &time, history, before = std::vector<std::vector<double>>()](Trajectory::Result const& run,
+                                                                                   Experiment& experiment) mutable {
+    std::vector<std::vector<double>> now = functions.along(run);
+    std::size_t const first = experiment.inputs.size() - now.size();
+    double change = 0, size = 0;
+    for (std::size_t p = 0; p < now.size(); ++p)
+      for (std::size_t i = 0; i < now[p].size(); ++i) {
+        change = std::max(change, std::fabs(now[p][i] - (before.empty() ? 0 : before[p][i])));
+        size = std::max(size, std::fabs(now[p][i]));
+      }
+    for (std::size_t p = 0; p < now.size(); ++p) {
+      std::vector<double> samples(static_cast<std::size_t>(history), 0.0);
+      samples.insert(samples.end(), now[p].begin(), now[p].end());
+      experiment.inputs[first + p] =
+          InputSignal(InputRule::zero_order, time, std::move(samples)).view(history, static_cast<int>(now[p].size()));
+    }
+    before = std::move(now);
+    return change > 1e-9 * size;
+  };
+}
+
+// Each round makes at least one more sample right, the draws being the same, so this ends; a stable model takes few rounds.
+Trajectory::Result in_rounds(std::shared_ptr<CompiledModel const> const& compiled, Experiment& experiment, SimulateTask const& what,
+                             LaneArray const& parameters, StreamKey noise_key, ExecutionOptions const& execution,
+                             std::vector<Feedback>& feedbacks) {
   while (true) {
     Trajectory const trajectory(compiled, experiment, what.solver, 0, execution);
     Trajectory::Result result = trajectory.run(parameters, noise_key);
-    std::vector<std::vector<double>> before = experiment.measured;
-    for (std::size_t c = 0; c < before.size(); ++c)
-      for (std::size_t i = 0; i < before[c].size(); ++i) {
-        double const made = compiled->model.channels[c].to_si(result.noisy[c][0][i]);
-        if (std::isfinite(made)) experiment.measured[c][i] = made;
-      }
-    if (result.failed() > 0 || experiment.measured == before) return result;
+    if (result.failed() > 0) return result;
+    bool changed = false;
+    for (Feedback& feedback : feedbacks) changed = feedback(result, experiment) || changed;
+    if (!changed) return result;
   }
 }
 
@@ -112,11 +150,10 @@ void warn_of_older_data(Session& session, Task const& task, std::filesystem::pat
 
 ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) {
   bool const feeds_back = what.noise_fraction < 0 && reads_samples(session.file.models[static_cast<std::size_t>(what.model)]);
-  bool const discrete = session.file.models[static_cast<std::size_t>(what.model)].dynamics == Dynamics::discrete;
+  Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
   // Noise in percent is added to a response without noise.
-  auto const compiled = session.compiled(what.model, false, what.solver.method,
-                                         discrete && !feeds_back ? PredictionRule::free_run : PredictionRule::as_written);
-  Model const& model = compiled->model;
+  PredictionRule const rule =
+      written.dynamics == Dynamics::discrete && !feeds_back ? PredictionRule::free_run : PredictionRule::as_written;
   std::uint64_t const seed = session.seed(task, what.seed);
   // Several records made in one run with one seed are different records.
   std::uint64_t ordinal = 0;
@@ -125,6 +162,15 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
     if (std::holds_alternative<SimulateTask>(each.what)) ++ordinal;
   }
   std::uint64_t const series = ordinal << 32;
+  LaneArray parameters(static_cast<int>(written.parameters.size()), 1);
+  for (std::size_t p = 0; p < written.parameters.size(); ++p)
+    parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
+  std::optional<DrawnFunctions> functions;
+  if (!written.processes.empty())
+    functions.emplace(with_prediction(written, rule).value(), what.solver.method, parameters,
+                      StreamKey{seed, Purpose::prior, series, 0});
+  auto const compiled = functions ? functions->compiled() : session.compiled(what.model, false, what.solver.method, rule);
+  Model const& model = compiled->model;
 
   Experiment experiment;
   experiment.name = task.name;
@@ -137,26 +183,32 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   experiment.scored.assign(static_cast<std::size_t>(what.samples), 1);
   experiment.measured.resize(model.channels.size());
   std::vector<std::vector<double>> inputs;
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+  for (std::size_t i = 0; i < what.inputs.size(); ++i) {
     inputs.push_back(generate(what.inputs[i], what.samples, what.step, {seed, Purpose::input, i + series, 0}));
     std::vector<double> samples(static_cast<std::size_t>(history), 0.0);
     samples.insert(samples.end(), inputs.back().begin(), inputs.back().end());
     InputRule const rule = model.dynamics == Dynamics::continuous ? what.inputs[i].rule : InputRule::zero_order;
     experiment.inputs.push_back(InputSignal(rule, time, std::move(samples)).view(history, what.samples));
   }
-  LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
-  for (std::size_t p = 0; p < model.parameters.size(); ++p)
-    parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
+  for (std::size_t i = what.inputs.size(); i < model.inputs.size(); ++i)
+    experiment.inputs.push_back(
+        InputSignal(InputRule::zero_order, time, std::vector<double>(time.size(), 0.0)).view(history, what.samples));
+  std::vector<Feedback> feedbacks;
+  if (feeds_back) {
+    for (auto& channel : experiment.measured) channel.assign(experiment.time.size(), 0.0);
+    feedbacks.push_back(measured_samples(*compiled));
+  }
+  if (functions) feedbacks.push_back(drawn_values(*functions, time, history));
   Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
   StreamKey const noise_key{seed, Purpose::noise, series, 0};
   Trajectory::Result const result =
-      feeds_back ? with_feedback(compiled, experiment, what, parameters, noise_key, session.options.execution)
-                 : trajectory.run(parameters, noise_key);
+      in_rounds(compiled, experiment, what, parameters, noise_key, session.options.execution, feedbacks);
   if (result.failed() > 0)
     throw UserError(
         {Severity::error,
          "E5001",
-         fmt::format("the simulation `{}` {}", task.name, first_failure(session, what, *compiled, experiment, parameters)),
+         fmt::format("the simulation `{}` {}", task.name,
+                     functions ? "does not stay finite" : first_failure(session, what, *compiled, experiment, parameters)),
          Label{task.span, {}},
          {},
          "take smaller steps (substeps = 10), `solver = cvode` where the model is stiff, or other values"});
@@ -196,7 +248,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
     channel_columns.back().first = column_name(quantity.name, "_measured");
     channel_columns.back().second = column_name(channel_columns.back().first + "_clean", "");
   }
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+  for (std::size_t i = 0; i < what.inputs.size(); ++i) {
     std::string const name = column_name(model.inputs[i].name, "_input");
     header += "," + csv_field(name);
     comments +=

@@ -74,6 +74,11 @@ Finding shaped(SolverSettings const& solver, bool chosen, std::string const& wha
 
 }  // namespace
 
+std::string accuracy(SolverSettings const& solver) {
+  return solver.fixed_step() ? fmt::format("{} integrator step{} per sample", solver.substeps, solver.substeps == 1 ? "" : "s")
+                             : fmt::format("relative tolerances of {}", solver.relative);
+}
+
 std::string moved(double move) {
   return std::isfinite(move) ? fmt::format("parameters move by up to {:.2g} sd", move)
                              : std::string("the simulation fails at a mode");
@@ -136,12 +141,12 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
   return result;
 }
 
-double move_to_finer(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
+double move_to_finer(Target const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
   return largest_move(modes, refit(fine, aim, modes, seed, ledger));
 }
 
-Findings check_modes(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver,
-                     std::uint64_t seed, Ledger& ledger) {
+Findings check_modes(Target const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver, std::uint64_t seed,
+                     Ledger& ledger) {
   std::vector<Mode> weighty;
   for (Mode const& mode : modes)
     if (weighty.empty() || mode.share > of_weight) weighty.push_back(mode);
@@ -167,7 +172,7 @@ Findings check_modes(ModelTarget const& fine, Aim aim, std::vector<Mode> const& 
   return findings;
 }
 
-ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fine, Draws const& draws, Ledger& ledger) {
+ToleranceCheck check_tolerance(Target const& coarse, Target const& fine, Draws const& draws, Ledger& ledger) {
   LaneArray const declared = spread(draws, checked_draws);
   int const count = declared.width();
   ToleranceCheck result;

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/solver.hpp"
 #include "inference/backend.hpp"
-#include "likelihood/model_target.hpp"
+#include "likelihood/target.hpp"
 
 namespace sysid {
 
@@ -17,7 +18,10 @@ constexpr double tolerable_move = 0.1;
 /// "parameters move by up to 0.3 sd", or that a mode is lost where the move is infinite.
 std::string moved(double move);
 
-using MakeTarget = std::function<std::unique_ptr<ModelTarget>(SolverSettings const& solver)>;
+/// "8 integrator steps per sample", "relative tolerances of 1e-08".
+std::string accuracy(SolverSettings const& solver);
+
+using MakeTarget = std::function<std::unique_ptr<Target>(SolverSettings const& solver)>;
 
 /// Steps for the search, which does not see what fails: `from`, or 4, 16 or 64 times its steps where more than a fifth of 256 prior
 /// draws fail that such steps follow; the first that leaves no more than a fifth, else the first of the best.
@@ -40,12 +44,12 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
                             std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {});
 
 /// How far the weightiest of `modes` moves on `fine` [sd], infinite where it is not finite there.
-double move_to_finer(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger);
+double move_to_finer(Target const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger);
 
 /// The same question of a solver that the task states: do the modes keep place and width with the finer one, of which `fine` is
 /// made, and do they stay apart? Rough steps make false modes and false curvature.
-Findings check_modes(ModelTarget const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver,
-                     std::uint64_t seed, Ledger& ledger);
+Findings check_modes(Target const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver, std::uint64_t seed,
+                     Ledger& ledger);
 
 /// After sampling: by how many sds each posterior mean moves with the finer solver, from the change of log likelihood over up to
 /// 200 draws (to first order the move of a mean is the covariance of the parameter with that change). Names the worst.
@@ -53,7 +57,7 @@ struct ToleranceCheck {
   std::string parameter;
   double move = 0;  // [sd]
 };
-ToleranceCheck check_tolerance(ModelTarget const& coarse, ModelTarget const& fine, Draws const& draws, Ledger& ledger);
+ToleranceCheck check_tolerance(Target const& coarse, Target const& fine, Draws const& draws, Ledger& ledger);
 
 /// Fires above `tolerable_move`. chosen: the guard chose the solver, not the task.
 Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver, bool chosen);

@@ -221,9 +221,14 @@ Diagnostic process_never_applied(ast::Name const& name);
 Diagnostic channel_without_process(Span span, std::string const& channel);
 /// verb: "simulated", "selected among".
 Diagnostic process_task(Span span, std::string const& verb, std::string const& model);
-Diagnostic process_beside_differential_equation(Span span, std::string const& model);
+Diagnostic process_beside_estimated_start(Span span, std::string const& model);
+Diagnostic process_of_many_samples(Span span, std::string const& model, int most);
+Diagnostic process_beside_constraints(Span span, std::string const& model);
 /// rule: "in free run".
 Diagnostic process_feeds_back(Span span, std::string const& rule);
+Diagnostic condition_moves(Span span, std::string const& name, std::string const& what);
+Diagnostic condition_count(Span span, std::string const& name, std::string const& process, std::size_t given, std::size_t wanted);
+Diagnostic condition_without_derivative(Span span, std::string const& kernel);
 Diagnostic process_of_one_experiment(Span span, std::string const& name, std::string const& parameter);
 
 }  // namespace sysid::errors

@@ -135,14 +135,37 @@ Diagnostic process_task(Span span, std::string const& verb, std::string const& m
   return error("E3217", span, fmt::format("`{}` has a Gaussian process and cannot be {}", model, verb),
                "such a model is fitted and predicted: `posterior = fit ... with map`");
 }
-Diagnostic process_beside_differential_equation(Span span, std::string const& model) {
-  return error("E3217", span, fmt::format("`{}` has a Gaussian process beside differential equations", model),
-               "fit the equations first, and the process to what they leave in a model of its own");
+Diagnostic process_beside_estimated_start(Span span, std::string const& model) {
+  return error("E3217", span,
+               fmt::format("the start of `{}` would be estimated from its first rows without its Gaussian process", model),
+               "make the initial values parameters, `initial y = y0` with `parameter y0 ~ normal(0, sd = ...)`");
+}
+Diagnostic process_of_many_samples(Span span, std::string const& model, int most) {
+  return error("E3217", span, fmt::format("the Gaussian process of `{}` is simulated at no more than {} samples", model, most),
+               "make several records, or a shorter one");
+}
+Diagnostic process_beside_constraints(Span span, std::string const& model) {
+  return error("E3217", span,
+               fmt::format("`{}` has a Gaussian process beside constraints, whose drift would not be measured", model),
+               "write the equations in coordinates that meet the constraints, or fit them without the process");
 }
 Diagnostic process_feeds_back(Span span, std::string const& rule) {
   return error(
       "E3218", span, fmt::format("a Gaussian process is not fitted {}: its values would be inputs of its own", rule),
       "fit one step ahead, `prediction = one_step`, or read measured samples, `lag(measured(y), 1)`; predictions may run free");
+}
+Diagnostic condition_moves(Span span, std::string const& name, std::string const& what) {
+  return error("E3225", span, fmt::format("`{}` is a point, it cannot read {}", name, what), "use numbers and constants");
+}
+Diagnostic condition_count(Span span, std::string const& name, std::string const& process, std::size_t given, std::size_t wanted) {
+  return error(
+      "E3225", span,
+      fmt::format("a point of `{}` has {} coordinate{}, `{}` needs {}", name, given, given == 1 ? "" : "s", process, wanted),
+      "give one for each input, `zero_at = (0, 0)`; several points are a list of such lists");
+}
+Diagnostic condition_without_derivative(Span span, std::string const& kernel) {
+  return error("E3226", span, fmt::format("functions of `{}` have no derivative, which `flat_at` sets to zero", kernel),
+               "`matern32` has one, `matern52` two, `squared_exponential` all; `zero_at` needs none");
 }
 
 }  // namespace sysid::errors

@@ -3,6 +3,7 @@
 
 #include "check/errors.hpp"
 #include "check/model_checker.hpp"
+#include "check/process_conditions.hpp"
 #include "check/process_covariance.hpp"
 #include "check/process_units.hpp"
 #include "check/scope.hpp"
@@ -29,9 +30,10 @@ bool Scope::process_declaration(ast::ProcessDefinition const& definition, std::v
   auto const* outer = std::exchange(arguments_, nullptr);
   auto calls = units_.suspend();
   HyperParametersGiven given;
-  auto const arguments = process_arguments(definition, {}, diagnostics_);
+  auto const arguments = process_arguments(definition, {"zero_at", "flat_at"}, diagnostics_);
   bool const good = arguments && read_covariance(*this, definition, *arguments->covariance, columns, process, given) &&
-                    settle_units(*this, definition, given, units, process);
+                    settle_units(*this, definition, given, units, process) &&
+                    read_conditions(*this, definition, *arguments, columns, process);
   units_.resume(std::move(calls));
   arguments_ = outer;
   return good;

@@ -47,7 +47,9 @@ void TaskChecker::search(ast::Option const& option, std::optional<int>& near) {
 
 void TaskChecker::suit_processes(FitTask const& task, Model const& model) {
   if (model.processes.empty()) return;
-  if (model.integrated()) return diagnostics_.add(errors::process_beside_differential_equation(tree_.subject.span, model.name));
+  if (model.integrated() && task.start.kind == StartRule::Kind::estimated)
+    diagnostics_.add(errors::process_beside_estimated_start(tree_.subject.span, model.name));
+  if (!model.invariants.empty()) diagnostics_.add(errors::process_beside_constraints(tree_.subject.span, model.name));
   auto const ruled = with_prediction(model, task.prediction);
   if (ruled && feeds_back(*ruled))
     diagnostics_.add(errors::process_feeds_back(

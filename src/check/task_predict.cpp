@@ -90,7 +90,15 @@ PredictTask TaskChecker::predict() {
       options_.unknown(option, {"draws", "redraw", "start", "prediction", "seed"});
     }
   }
-  for (int const model : models) suit(task.start, file_.models[static_cast<std::size_t>(model)], tree_.options);
+  for (int const m : models) {
+    Model const& model = file_.models[static_cast<std::size_t>(m)];
+    suit(task.start, model, tree_.options);
+    if (model.processes.empty()) continue;
+    if (model.integrated() && task.start.kind == StartRule::Kind::estimated)
+      diagnostics_.add(errors::process_beside_estimated_start(tree_.subject.span, model.name));
+    if (task.redraw_each_step)
+      diagnostics_.add(errors::process_task(tree_.subject.span, "predicted with parameters redrawn at each step", model.name));
+  }
   return task;
 }
 

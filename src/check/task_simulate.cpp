@@ -8,6 +8,12 @@
 #include "check/generator.hpp"
 
 namespace sysid {
+namespace {
+
+/// Of a function drawn from its prior: the factor of so many samples takes some seconds.
+constexpr int most_drawn = 5000;
+
+}  // namespace
 
 SimulateTask TaskChecker::simulate() {
   SimulateTask task;
@@ -18,10 +24,6 @@ SimulateTask TaskChecker::simulate() {
   Model const& model = file_.models[static_cast<std::size_t>(*found)];
   if (model.channels.empty()) {
     diagnostics_.add(errors::nothing_observed(tree_.subject));
-    return task;
-  }
-  if (!model.processes.empty()) {
-    diagnostics_.add(errors::process_task(tree_.subject.span, "simulated", model.name));
     return task;
   }
   for (Parameter const& parameter : model.parameters)
@@ -87,6 +89,8 @@ SimulateTask TaskChecker::simulate() {
   suit(task.solver, model);
   if (task.file.empty()) task.file = task_name(tree_) + ".csv";
   if (diagnostics_.has_errors(before_)) return task;
+  if (!model.processes.empty() && task.samples > most_drawn)
+    diagnostics_.add(errors::process_of_many_samples(tree_.subject.span, model.name, most_drawn));
   if (task.samples == 0) diagnostics_.add(errors::option_missing(tree_, "samples", "samples = 500"));
   if (model.step && task.step > 0 && !same_step(task.step, *model.step))
     diagnostics_.add(errors::other_step(*spacing, task.step, *model.step, model.name));
@@ -120,7 +124,7 @@ void TaskChecker::values(ast::Call const& call, Model const& model, SimulateTask
 }
 
 std::vector<std::string> TaskChecker::values_needed(Model const& model, SimulateTask const& task) const {
-  std::vector<NodeId> roots;
+  std::vector<NodeId> roots = read_by(model.processes);
   for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
   roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());
   for (Unknown const& unknown : model.unknowns) roots.push_back(unknown.guess);

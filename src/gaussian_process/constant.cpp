@@ -15,6 +15,8 @@ void add_gradient(Strip const& strip, Numbers, double const* k, double const* we
   for (int i = 0; i < strip.size; ++i) gradient[0] += 2 * weights[i] * k[i];
 }
 
+Jet jet(Jets, Jets, Jets p) { return p[0] * p[0]; }
+
 void stationary(Numbers p, double* covariance, double* derivatives) {
   covariance[0] = p[0] * p[0];
   derivatives[0] = 2 * covariance[0];
@@ -34,6 +36,7 @@ KernelRow constant_kernel() {
           .hyper_parameters = hyper_parameters,
           .values = &values,
           .add_gradient = &add_gradient,
+          .jet = &jet,
           .state_space = &state_space,
           .summary = "an unknown level"};
 }

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 
+#include "core/diagnostic.hpp"
+#include "gaussian_process/conditions.hpp"
+#include "gaussian_process/jet.hpp"
+#include "linear_algebra/lapack.hpp"
+
 namespace sysid::gaussian_process {
 
 /// Works on one strip after another; holds a strip of values, and of derivatives of the result, for each node.
@@ -92,6 +97,11 @@ void in_strips(Eigen::Index from, Eigen::Index to, Work&& work) {
 
 }  // namespace
 
+Numbers Covariance::own(Known const& known, Numbers parameters) {
+  return parameters.subspan(static_cast<std::size_t>(known.first_parameter),
+                            static_cast<std::size_t>(known.free->parameter_count()));
+}
+
 Covariance::Covariance(KernelRow const& row, std::vector<int> columns)
     : terms_{{&row, std::move(columns), 0, 0}}, nodes_{{Node::Kind::term, 0, 0}} {
   terms_[0].parameter_count = hyper_parameter_count(row, static_cast<int>(terms_[0].columns.size()));
@@ -112,6 +122,11 @@ Covariance Covariance::joined(Node::Kind kind, Covariance const& left, Covarianc
     result.nodes_.push_back(node);
   }
   result.nodes_.push_back({kind, nodes - 1, static_cast<int>(result.nodes_.size()) - 1});
+  for (Known known : right.known_) {
+    known.first_parameter += left.parameter_count();
+    result.known_.push_back(std::move(known));
+  }
+  if (kind == Node::Kind::product && !result.known_.empty()) throw InternalError("a product of a covariance with conditions");
   return result;
 }
 
@@ -122,8 +137,16 @@ Covariance operator*(Covariance const& left, Covariance const& right) {
   return Covariance::joined(Covariance::Node::Kind::product, left, right);
 }
 
+Covariance Covariance::conditioned(std::vector<Condition> conditions) const {
+  if (!known_.empty()) throw InternalError("conditions are given twice");
+  Covariance result = *this;
+  if (!conditions.empty()) result.known_.push_back({std::make_shared<Covariance const>(*this), 0, std::move(conditions)});
+  return result;
+}
+
 bool Covariance::is_sum() const {
-  return std::none_of(nodes_.begin(), nodes_.end(), [](Node const& node) { return node.kind == Node::Kind::product; });
+  return known_.empty() &&
+         std::none_of(nodes_.begin(), nodes_.end(), [](Node const& node) { return node.kind == Node::Kind::product; });
 }
 
 int Covariance::parameter_count() const { return terms_.back().first_parameter + terms_.back().parameter_count; }
@@ -147,6 +170,8 @@ void Covariance::fill_lower(Eigen::MatrixXd const& inputs, Numbers parameters, E
       double const* const values = evaluation.values(first, size, inputs, j);
       std::copy(values, values + size, &out(first, j));
     });
+  for (Known const& each : known_)
+    lapack::add_inner(-1, Conditions(*each.free, each.conditions, own(each, parameters)).whitened(inputs), out);
 }
 
 Eigen::MatrixXd Covariance::between(Eigen::MatrixXd const& inputs, Eigen::MatrixXd const& others, Numbers parameters) const {
@@ -157,6 +182,10 @@ Eigen::MatrixXd Covariance::between(Eigen::MatrixXd const& inputs, Eigen::Matrix
       double const* const values = evaluation.values(first, size, others, j);
       std::copy(values, values + size, &out(first, j));
     });
+  for (Known const& each : known_) {
+    Conditions const conditions(*each.free, each.conditions, own(each, parameters));
+    out -= lapack::inner(conditions.whitened(inputs), conditions.whitened(others));
+  }
   return out;
 }
 
@@ -164,6 +193,8 @@ Eigen::VectorXd Covariance::variances(Eigen::MatrixXd const& inputs, Numbers par
   Eigen::VectorXd out(inputs.rows());
   Evaluation evaluation(*this, inputs, parameters);
   for (Eigen::Index i = 0; i < inputs.rows(); ++i) out[i] = evaluation.values(i, 1, inputs, i)[0];
+  for (Known const& each : known_)
+    out -= Conditions(*each.free, each.conditions, own(each, parameters)).whitened(inputs).colwise().squaredNorm().transpose();
   return out;
 }
 
@@ -177,7 +208,37 @@ Eigen::VectorXd Covariance::gradient(Eigen::MatrixXd const& inputs, Numbers para
       if (first == j) weights[0] *= 0.5;
       evaluation.add_gradient(first, size, j, weights, gradient.data());
     });
+  for (Known const& each : known_)
+    gradient.segment(each.first_parameter, each.free->parameter_count()) -=
+        Conditions(*each.free, each.conditions, own(each, parameters)).gradient(inputs, lower_weight);
   return gradient;
+}
+
+double Covariance::between(Condition const& left, Condition const& right, Numbers parameters, int parameter) const {
+  unsigned part = 0;
+  if (left.derivative >= 0) part |= Jet::left;
+  if (right.derivative >= 0) part |= Jet::right;
+  if (parameter >= 0) part |= Jet::parameter;
+  std::vector<Jet> values, a, b, p;
+  for (Node const& node : nodes_) {
+    if (node.kind != Node::Kind::term) {
+      Jet const &x = values[static_cast<std::size_t>(node.left)], &y = values[static_cast<std::size_t>(node.right)];
+      values.push_back(node.kind == Node::Kind::sum ? x + y : x * y);
+      continue;
+    }
+    Term const& term = terms_[static_cast<std::size_t>(node.left)];
+    a.clear(), b.clear(), p.clear();
+    for (int const c : term.columns) {
+      a.emplace_back(left.point[static_cast<std::size_t>(c)], Jet::left, c == left.derivative ? 1 : 0);
+      b.emplace_back(right.point[static_cast<std::size_t>(c)], Jet::right, c == right.derivative ? 1 : 0);
+    }
+    for (int j = term.first_parameter; j < term.first_parameter + term.parameter_count; ++j) {
+      double const value = parameters[static_cast<std::size_t>(j)];
+      p.emplace_back(value, Jet::parameter, j == parameter ? value : 0);
+    }
+    values.push_back(term.row->jet(a, b, p));
+  }
+  return values.back().part[part];
 }
 
 }  // namespace sysid::gaussian_process

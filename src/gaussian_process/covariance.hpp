@@ -1,6 +1,7 @@
-// A covariance function as an expression: kernels on chosen inputs, their sums and products.
+// A covariance function as an expression: kernels on chosen inputs, their sums and products, and what is known of one beforehand.
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,12 @@ struct HyperParameter {
   UnitPowers unit;        // of the output, of that input (the kernel's first where it belongs to none), and of the kernel's own
 };
 
+/// What is known of a function: its value at a point is 0, or its first derivative there in one input.
+struct Condition {
+  std::vector<double> point;  // by column of the inputs; what no kernel reads may be anything
+  int derivative = -1;        // in which column; -1: the value
+};
+
 /// A value; copies are independent. Inputs are matrices [N x D], one row per point; a kernel reads the columns that it was given.
 class Covariance {
  public:
@@ -24,6 +31,16 @@ class Covariance {
   Covariance(KernelRow const& row, std::vector<int> columns);
   friend Covariance operator+(Covariance const& left, Covariance const& right);
   friend Covariance operator*(Covariance const& left, Covariance const& right);
+
+  /// The process given that all conditions hold; what stands beside it in a sum is free of them. Products of such a covariance are
+  /// not defined.
+  ///
+  ///   k_c(x, x') = k(x, x') - a(x)^T B^-1 a(x'),   a_i(x) = cov(f(x), c_i),   B = cov(c, c)     Rasmussen & Williams 2006,
+  ///   eq. 2.19, sec. 9.4
+  ///
+  /// Conditions that the others imply (to 1e-10 of their variance) are left out of c. Kernels are differentiable where derivatives
+  /// are known.
+  Covariance conditioned(std::vector<Condition> conditions) const;
 
   struct Term {
     KernelRow const* row;
@@ -33,7 +50,7 @@ class Covariance {
   };
   /// From the left, as written.
   std::vector<Term> const& terms() const { return terms_; }
-  /// Whether it is a sum of single kernels.
+  /// Whether it is a sum of single kernels and nothing is known of it.
   bool is_sum() const;
   int parameter_count() const;
   /// In the order of every vector of hyper-parameters here: term by term.
@@ -48,6 +65,8 @@ class Covariance {
   /// Sum over all i and j of weight_ij dk(x_i, x_j)/dlog(parameter), of a symmetric weight whose lower triangle is read;
   /// [parameters].
   Eigen::VectorXd gradient(Eigen::MatrixXd const& inputs, Numbers parameters, Eigen::MatrixXd const& lower_weight) const;
+  /// cov(left, right) of values and derivatives without conditions, or its derivative in the logarithm of a parameter (-1: none).
+  double between(Condition const& left, Condition const& right, Numbers parameters, int parameter = -1) const;
 
  private:
   /// Nodes stand behind their operands; the last one is the whole.
@@ -56,10 +75,20 @@ class Covariance {
     int left, right;  // nodes; of a term, its number and nothing
   };
   Covariance() = default;
+  struct Known;
+  static Numbers own(Known const& known, Numbers parameters);
   static Covariance joined(Node::Kind kind, Covariance const& left, Covariance const& right);
+
+  /// A part of a sum that conditions hold for.
+  struct Known {
+    std::shared_ptr<Covariance const> free;  // the part without them
+    int first_parameter;
+    std::vector<Condition> conditions;
+  };
 
   std::vector<Term> terms_;
   std::vector<Node> nodes_;
+  std::vector<Known> known_;
 
   friend class Evaluation;
 };

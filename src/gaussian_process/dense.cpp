@@ -13,16 +13,12 @@ namespace {
 /// Matrices of this many columns at once when predicting: bounds the memory.
 constexpr Eigen::Index block = 512;
 
-struct Factor {
-  Eigen::MatrixXd lower;
-  double jitter = 0;
-  bool fine = false;
-};
+using Factor = PriorFactor;
 
 /// The Cholesky factor of the matrix whose lower triangle `fill` writes, with as little jitter as the policy needs; `fill` returns
 /// what the jitter is relative to.
 Factor factor(Eigen::Index size, std::function<double(Eigen::MatrixXd&)> const& fill, Jitter const& policy) {
-  Factor result{Eigen::MatrixXd(size, size)};
+  Factor result{Eigen::MatrixXd(size, size), 0, false};
   for (double jitter = 0; jitter <= policy.most * (1 + 1e-9); jitter = jitter == 0 ? policy.first : jitter * policy.growth) {
     double const scale = fill(result.lower);
     result.jitter = jitter;
@@ -52,6 +48,16 @@ double log_determinant(Eigen::MatrixXd const& lower) {
 }
 
 }  // namespace
+
+PriorFactor prior_factor(Covariance const& covariance, Eigen::MatrixXd const& inputs, Numbers parameters, Jitter const& jitter) {
+  return factor(
+      inputs.rows(),
+      [&](Eigen::MatrixXd& out) {
+        covariance.fill_lower(inputs, parameters, out);
+        return out.diagonal().mean();
+      },
+      jitter);
+}
 
 Marginal dense_marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient,
                         Jitter const& policy) {

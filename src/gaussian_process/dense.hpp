@@ -15,6 +15,17 @@ struct Jitter {
   double most = 1e-6;
 };
 
+/// Cholesky's factor of the covariance of the function at the rows of inputs, with as little jitter as it needs: a product with
+/// normal numbers is a function drawn from the prior, each value of which depends on the rows before alone. parameters: without
+/// noise.
+struct PriorFactor {
+  Eigen::MatrixXd lower;
+  double jitter = 0;
+  bool fine = false;
+};
+PriorFactor prior_factor(Covariance const& covariance, Eigen::MatrixXd const& inputs, Numbers parameters,
+                         Jitter const& jitter = {});
+
 /// parameters [P + 1]: the covariance's hyper-parameters, then the noise's sd >= 0. With K the covariance of g + noise, P its
 /// inverse with the mean's coefficients integrated out, alpha = P (y - H b):
 ///

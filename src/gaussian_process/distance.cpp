@@ -15,6 +15,15 @@ void squared_distances(Strip const& strip, Numbers lengths, double* out) {
   }
 }
 
+Jet squared_distance(Jets left, Jets right, Jets lengths) {
+  Jet sum;
+  for (std::size_t d = 0; d < left.size(); ++d) {
+    Jet const u = (left[d] - right[d]) / lengths[d];
+    sum = sum + u * u;
+  }
+  return sum;
+}
+
 void add_length_gradient(Strip const& strip, Numbers lengths, double const* weights, double* gradient) {
   for (std::size_t d = 0; d < lengths.size(); ++d) {
     double const* const left = strip.left[d];

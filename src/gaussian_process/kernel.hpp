@@ -8,6 +8,8 @@
 namespace sysid::gaussian_process {
 
 using Numbers = std::span<double const>;
+struct Jet;
+using Jets = std::span<Jet const>;
 
 /// One point against many: all of a kernel's work is done on such strips.
 struct Strip {
@@ -52,6 +54,10 @@ struct KernelRow {
   void (*values)(Strip const&, Numbers parameters, double* out);
   /// gradient [hyper-parameters] += sum over i of weights_i dk(left_i, right)/dlog(parameter); values: those of `values`.
   void (*add_gradient)(Strip const&, Numbers parameters, double const* values, double const* weights, double* gradient);
+  /// k(left, right) with its derivatives, from points [D] and hyper-parameters that carry theirs; where two points coincide and the
+  /// kernel has a corner, its derivative there is 0.
+  Jet (*jet)(Jets left, Jets right, Jets parameters);
+  bool differentiable = true;                  // whether functions have a first derivative
   StateSpaceRow const* state_space = nullptr;  // nullptr: has none
   /// The Fourier transform of the covariance over the differences of its inputs, at angular frequencies [D]; the convention is
   /// k(0) = (2 pi)^-D times the integral of the density. nullptr: the kernel is not stationary, or has lines in place of a density.

@@ -26,6 +26,12 @@ void add_gradient(Strip const& strip, Numbers p, double const*, double const* we
   }
 }
 
+Jet jet(Jets left, Jets right, Jets p) {
+  Jet sum;
+  for (std::size_t d = 0; d < p.size(); ++d) sum = sum + p[d] * p[d] * left[d] * right[d];
+  return sum;
+}
+
 }  // namespace
 
 KernelRow linear_kernel() {
@@ -33,6 +39,7 @@ KernelRow linear_kernel() {
           .hyper_parameters = hyper_parameters,
           .values = &values,
           .add_gradient = &add_gradient,
+          .jet = &jet,
           .summary = "lines through the origin with unknown slopes"};
 }
 

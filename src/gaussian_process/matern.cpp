@@ -55,6 +55,28 @@ void add_gradient(Strip const& strip, Numbers p, double const* k, double const* 
   add_length_gradient(strip, p.subspan(1), weighted, gradient + 1);
 }
 
+/// As a function of s = r^2, with z = sqrt((2 nu) s) and d/ds = nu/z d/dz. What grows without bound as z goes to 0 multiplies
+/// derivatives of s that vanish faster there; of 1/2 the derivative in both points does not exist, and is never asked for.
+template <int TwiceNu>
+Jet jet(Jets left, Jets right, Jets p) {
+  Jet const square = squared_distance(left, right, p.subspan(1));
+  double const z = std::sqrt(TwiceNu * square.value()), decay = elementary::exp(-z);
+  double const inverse = z > 1e-30 ? 1 / z : 0;  // below, two points are one
+  double first = 0, second = 0, third = 0;
+  if constexpr (TwiceNu == 1) {
+    first = -0.5 * inverse;
+  } else if constexpr (TwiceNu == 3) {
+    first = -1.5;
+    second = 2.25 * inverse;
+    third = -3.375 * inverse * inverse * (1 + inverse);
+  } else {
+    first = -5. / 6 * (1 + z);
+    second = 25. / 12;
+    third = -125. / 24 * inverse;
+  }
+  return p[0] * p[0] * compose(square, polynomial<TwiceNu>(z) * decay, first * decay, second * decay, third * decay);
+}
+
 ///   S = amplitude^2 2^D pi^(D/2) Gamma(nu + D/2)/Gamma(nu) (2 nu)^nu (2 nu + |w|^2)^-(nu + D/2) (product of lengths),
 ///   w_d = length_d frequency_d                                                             Rasmussen & Williams 2006, eq. 4.15
 template <int TwiceNu>
@@ -146,6 +168,8 @@ KernelRow matern(std::string_view name, std::string_view summary) {
           .hyper_parameters = amplitude_and_lengths,
           .values = &values<TwiceNu>,
           .add_gradient = &add_gradient<TwiceNu>,
+          .jet = &jet<TwiceNu>,
+          .differentiable = TwiceNu > 1,
           .state_space = &state_space,
           .spectral_density = &spectral_density<TwiceNu>,
           .summary = summary};

@@ -91,6 +91,28 @@ void add_gradient(Strip const& strip, Numbers p, double const* k, double const* 
   gradient[3] += sum;
 }
 
+/// As `values`, on numbers that carry derivatives: the same free response, its series where damping is nearly critical.
+Jet jet(Jets left, Jets right, Jets p) {
+  Jet const lag = left[0] - right[0], t = lag.value() < 0 ? 0.0 - lag : lag;
+  Jet const a = p[1] / (2.0 * p[0]), square = p[2] / p[0], variance = p[3] / (2.0 * p[1] * p[2]);
+  Jet const delta = square - a * a, x = delta * t * t;
+  if (std::fabs(x.value()) < 0.5) {
+    Jet c = 1.0, s = 1.0, power = 1.0;
+    for (int n = 1; n < 10; ++n) {
+      power = power * x * (-1.0 / ((2 * n - 1) * (2 * n)));
+      c = c + power;
+      s = s + power / (2.0 * n + 1);
+    }
+    return variance * exp(0.0 - a * t) * (c + a * t * s);
+  }
+  if (delta.value() > 0) {
+    Jet const frequency = sqrt(delta);
+    return variance * exp(0.0 - a * t) * (cos(frequency * t) + a * sin(frequency * t) / frequency);
+  }
+  Jet const rate = sqrt(0.0 - delta), slow = exp(0.0 - square / (a + rate) * t), fast = exp(0.0 - (a + rate) * t);
+  return variance * 0.5 * (slow + fast + a * (slow - fast) / rate);
+}
+
 // States y, y': A = [c + a s, s; -w^2 s, c - a s], P = diag(intensity/(2 damping stiffness), intensity/(2 damping mass)).
 void stationary(Numbers p, double* covariance, double* derivatives) {
   double const displacement = p[3] / (2 * p[1] * p[2]), velocity = p[3] / (2 * p[1] * p[0]);
@@ -139,6 +161,7 @@ KernelRow oscillator_kernel() {
           .one_input = true,
           .values = &values,
           .add_gradient = &add_gradient,
+          .jet = &jet,
           .state_space = &state_space,
           .spectral_density = &spectral_density,
           .summary = "the displacement of mass, damper and spring under white noise"};

@@ -52,6 +52,16 @@ void add_gradient(Strip const& strip, Numbers p, double const* k, double const* 
   }
 }
 
+Jet jet(Jets left, Jets right, Jets p) {
+  std::size_t const inputs = left.size();
+  Jet sum;
+  for (std::size_t d = 0; d < inputs; ++d) {
+    Jet const s = sin(std::numbers::pi * (left[d] - right[d]) / p[1 + inputs + d]) / p[1 + d];
+    sum = sum + s * s;
+  }
+  return p[0] * p[0] * exp(-2.0 * sum);
+}
+
 }  // namespace
 
 KernelRow periodic_kernel() {
@@ -59,6 +69,7 @@ KernelRow periodic_kernel() {
           .hyper_parameters = hyper_parameters,
           .values = &values,
           .add_gradient = &add_gradient,
+          .jet = &jet,
           .summary = "functions that repeat themselves; times another kernel, that change slowly from period to period"};
 }
 

@@ -1,5 +1,6 @@
 // What the files of one kernel each share: their rows, and scaled distances.
 #pragma once
+#include "gaussian_process/jet.hpp"
 #include "gaussian_process/kernel.hpp"
 
 namespace sysid::gaussian_process {
@@ -18,6 +19,9 @@ constexpr HyperParameterRow amplitude_and_lengths[] = {{"amplitude", false, {.ou
 
 /// out_i = sum over d of ((left_id - right_d)/length_d)^2.
 void squared_distances(Strip const& strip, Numbers lengths, double* out);
+
+/// The same of one pair of points.
+Jet squared_distance(Jets left, Jets right, Jets lengths);
 
 /// gradient_d += sum over i of weights_i ((left_id - right_d)/length_d)^2: the derivative of a function of the scaled distance r in
 /// the logarithms of its lengths, where weights_i holds -(dk/dr)/r of it.

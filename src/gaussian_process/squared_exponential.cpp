@@ -30,6 +30,8 @@ void add_gradient(Strip const& strip, Numbers p, double const* k, double const* 
   add_length_gradient(strip, p.subspan(1), weighted, gradient + 1);
 }
 
+Jet jet(Jets left, Jets right, Jets p) { return p[0] * p[0] * exp(-0.5 * squared_distance(left, right, p.subspan(1))); }
+
 ///   S = amplitude^2 (2 pi)^(D/2) (product of lengths) exp(-1/2 sum of (length_d w_d)^2)      Rasmussen & Williams 2006, eq. 4.11
 double spectral_density(Numbers p, Numbers frequencies) {
   double density = p[0] * p[0], exponent = 0;
@@ -48,6 +50,7 @@ KernelRow squared_exponential_kernel() {
           .hyper_parameters = amplitude_and_lengths,
           .values = &values,
           .add_gradient = &add_gradient,
+          .jet = &jet,
           .spectral_density = &spectral_density,
           .summary = "smooth functions, with all derivatives"};
 }

@@ -79,7 +79,14 @@ gaussian_process::Covariance covariance_of(Process const& process, int first_col
       built.push_back(each.kind == Process::Covariance::Kind::sum ? left + right : left * right);
     }
   }
-  return built.back();
+  std::vector<gaussian_process::Condition> conditions;
+  for (ProcessCondition const& each : process.conditions) {
+    gaussian_process::Condition condition{std::vector<double>(static_cast<std::size_t>(first_column)), -1};
+    condition.point.insert(condition.point.end(), each.point.begin(), each.point.end());
+    if (each.derivative >= 0) condition.derivative = first_column + each.derivative;
+    conditions.push_back(std::move(condition));
+  }
+  return built.back().conditioned(std::move(conditions));
 }
 
 }  // namespace

@@ -17,8 +17,9 @@ namespace {
 using gaussian_process::Marginal;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Coordinates are of order one: the white part of a step this long loses a third of its digits, no more.
-constexpr double step = 1e-5;
+/// Coordinates are of order one: the white part of a step this long loses a third of its digits, no more. Of a solver that chooses
+/// its steps a value is known to some parts of `roughness`, and the step is as much longer.
+double step_of(double roughness) { return std::clamp(0.1 * std::sqrt(roughness), 1e-5, 1e-3); }
 /// Where a sum of squares begins: only that it is fixed matters.
 double offset(int count) { return 100.0 * count + 1000.0; }
 
@@ -169,6 +170,7 @@ void ProcessTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledg
 
 double ProcessTarget::log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const {
   int const dimension = this->dimension(), width = 2 * dimension + 1;
+  double const step = step_of(roughness());
   std::fill(gradient.begin(), gradient.end(), 0.0);
   LaneArray points(dimension, width);  // theta, then a step ahead and one behind along each coordinate
   for (int p = 0; p < dimension; ++p)

@@ -90,6 +90,11 @@ std::string dump(Model const& model) {
       kernels += fmt::format("{}{}({})", kernels.empty() ? "" : ", ", kernel.row->name, values);
     }
     out += fmt::format("  process {} at ({}), covariance of {}\n", declared(process), arguments, kernels);
+    for (ProcessCondition const& each : process.conditions)
+      out += fmt::format(
+          "    0 = {} at ({})\n",
+          each.derivative < 0 ? "value" : "derivative in " + process.inputs[static_cast<std::size_t>(each.derivative)].name,
+          fmt::join(each.point, ", "));
   }
   for (Channel const& channel : model.channels) out += fmt::format("  observe {} ~ {}\n", declared(channel), call(channel.noise));
   for (Derived const& derived : model.derived)

@@ -17,6 +17,12 @@ struct KernelUse {
   std::vector<NodeId> hyper_parameters;
 };
 
+/// What the function is known to be: 0 at a point, or its first derivative there in one input.
+struct ProcessCondition {
+  std::vector<double> point;  // one for each input, SI
+  int derivative = -1;        // in which input; -1: the value
+};
+
 /// Leaf process(i) is its value at the present sample, at `arguments`. Its unit is that of the function's values.
 struct Process : Quantity {
   std::vector<Quantity> inputs;
@@ -27,6 +33,7 @@ struct Process : Quantity {
     int left = 0, right = 0;
   };
   std::vector<Covariance> covariance;
+  std::vector<ProcessCondition> conditions;
   std::vector<NodeId> arguments;  // one for each input, SI
   int channel = -1;               // whose centre has it as an addend
 };

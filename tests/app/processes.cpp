@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/running.hpp"
+#include "app/tables.hpp"
 #include "core/random.hpp"
 #include "gaussian_process/dense.hpp"
 
@@ -38,29 +39,6 @@ json parameter(json const& summary, std::string const& name) {
     if (key == name || (value.is_object() && value.contains("name") && value.at("name") == name)) return value;
   FAIL("no parameter " << name);
   return {};
-}
-
-/// Columns of a written table by name.
-std::vector<double> column(std::string const& csv, std::string const& name) {
-  std::istringstream lines(csv);
-  std::string line;
-  std::vector<double> values;
-  int wanted = -1;
-  while (std::getline(lines, line)) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream cells(line);
-    std::string cell;
-    for (int i = 0; std::getline(cells, cell, ','); ++i) {
-      if (wanted < 0 && cell == name) {
-        wanted = i;
-        break;
-      }
-      if (i == wanted) values.push_back(std::stod(cell));
-    }
-  }
-  CAPTURE(csv.substr(0, 600));
-  REQUIRE_MESSAGE(wanted >= 0, name);
-  return values;
 }
 
 bool says(json const& summary, std::string const& code) {

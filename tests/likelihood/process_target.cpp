@@ -119,8 +119,23 @@ model narx {
   observe y [mm] ~ normal(c*u + f(lags(u, 0..1), lags(residual(y), 1..2)), sd = sigma)
 }
 )";
-  for (std::string const& text : {two_kernels, lagged}) {
-    Case c(text, 25, text == lagged ? 1 : 2);
+  std::string const moving = R"(
+model slow {
+  input u
+  state x [-]
+  initial x = x0
+  parameter x0 [-] ~ normal(1, sd = 1)
+  parameter a [1/s] ~ log_normal(median = 2, sd = 0.5)
+  parameter s [-] ~ half_normal(sd = 2)
+  parameter lx [-] ~ log_normal(median = 1, sd = 0.5)
+  parameter sigma [-] ~ log_uniform(0.05, 5)
+  function f(now, force) ~ gp(squared_exponential(amplitude = s, length = (lx, 1)), zero_at = (0, 0), flat_at = (0.01, 0))
+  x' = -a*x + 1 [1/s]*u
+  observe y [-] ~ normal(x + f(x, u), sd = sigma)
+}
+)";
+  for (std::string const& text : {two_kernels, lagged, moving}) {
+    Case c(text, 25, text == two_kernels ? 2 : 1);
     if (text == lagged) {  // a missing sample is an input that is missing
       c.experiment.measured[0][5] = 1e-3;
       for (std::size_t i = 0; i < 4; ++i) c.experiment.scored[i] = 0;
