@@ -23,6 +23,7 @@
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
 #include "app/tolerance.hpp"
+#include "app/unknown_functions.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/checkpoint.hpp"
 #include "inference/refit.hpp"
@@ -145,6 +146,7 @@ class Fit {
       report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     report.summary = summarise(result);
+    for (std::size_t p = 0; p < report.summary.size(); ++p) report.summary[p].coefficient = target_->parameters()[p].starts_at_zero;
     add(check_use(model_));
     Ledger extra;
     std::vector<double> const best = result.modes.empty() ? best_draw(result.draws) : result.modes.front().declared;
@@ -156,6 +158,7 @@ class Fit {
         add(check_input_timing(*target_, backend_.aim, preparation_.modes.front(), seed_, extra));
       if (model_.integrated()) add(step_check(result.draws, extra));
     }
+    if (!interrupted && !model_.expansions.empty()) add(look_at_functions(result, best, report));
     if (interrupted) report.findings.push_back(interrupted_finding());
     if (!interrupted) add(check_hierarchy(model_, result.draws, report.findings));
     add(failure_findings(ledger_));
@@ -178,6 +181,26 @@ class Fit {
     report.ledger.merge(ledger_);
     report.draws = std::move(result.draws);
     return conclude_fit(session_, index_, task_, checkpoint_, preparation_.solver, std::move(report), began_, interrupted);
+  }
+
+  // Into the report, with what speaks against them.
+  Findings look_at_functions(FitResult const& result, std::vector<double> const& best, Report& report) const {
+    auto const count = static_cast<int>(model_.parameters.size());
+    LaneArray const draws = function_draws(*target_, result, seed_);
+    LaneArray parameters(count, draws.width());
+    space_->select(space_->values_of_declared(draws), 0, parameters);
+    report.functions = unknown_functions(model_, parameters);
+    Findings findings = check_expansions(model_, parameters);
+    LaneArray declared(static_cast<int>(best.size()), 1), one(count, 1);
+    for (std::size_t p = 0; p < best.size(); ++p) declared(static_cast<int>(p), 0) = best[p];
+    for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
+      space_->select(space_->values_of_declared(declared), e, one);
+      Findings const more =
+          check_ranges(model_, data_[static_cast<std::size_t>(e)].experiment, preparation_.solver,
+                       what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, one, session_.options.execution);
+      findings.insert(findings.end(), more.begin(), more.end());
+    }
+    return findings;
   }
 
   // Draws tell by their weights, an optimum by where it moves. A solver that was chosen has settled the modes before.

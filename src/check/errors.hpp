@@ -208,6 +208,16 @@ Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string 
 Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right);
 Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string const& what);
 Diagnostic hyper_parameter_not_positive(Span span, std::string const& name);
+/// Of `within` and `terms`; inputs: of the process.
+Diagnostic expansion_range(Span span, std::size_t inputs);
+Diagnostic expansion_range_empty(Span span);
+Diagnostic expansion_without_range(Span span);
+Diagnostic expansion_terms(Span span, std::size_t inputs);
+Diagnostic expansion_too_large(Span span, long most);
+/// what: a kernel's name, "a product of kernels".
+Diagnostic no_expansion(Span span, std::string const& what);
+Diagnostic expansion_of_lags(Span span, std::string const& name);
+Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted);
 Diagnostic process_in_differential_equation(Span span, std::string const& name);
 /// what: "lagged", "the argument of another".
 Diagnostic process_out_of_place(Span span, std::string const& what);

@@ -86,7 +86,42 @@ Diagnostic process_in_differential_equation(Span span, std::string const& name) 
   return error(
       "E3208", span,
       fmt::format("`{}` is a Gaussian process: it is known at samples, a differential equation needs it between them", name),
-      "add it to what a channel is centred on, or declare `time discrete`");
+      "say where it is wanted and it becomes a finite sum that an equation can hold: `gp(..., within = (-0.1 [m], 0.1 [m]))`");
+}
+Diagnostic expansion_range(Span span, std::size_t inputs) {
+  return error("E3231", span,
+               inputs == 1 ? std::string("`within` is a range: a low and a high end")
+                           : fmt::format("`within` is a list of {} ranges, one for each input", inputs),
+               inputs == 1 ? "for example `within = (-0.1 [m], 0.1 [m])`"
+                           : "for example `within = ((-0.1 [m], 0.1 [m]), (-2 [m/s], 2 [m/s]))`");
+}
+Diagnostic expansion_range_empty(Span span) {
+  return error("E3231", span, "this range is empty", "its low end comes first: `within = (-0.1 [m], 0.1 [m])`");
+}
+Diagnostic expansion_without_range(Span span) {
+  return error("E3231", span, "`terms` needs `within`: functions are spread over a range",
+               "say where the function is wanted: `within = (-0.1 [m], 0.1 [m])`");
+}
+Diagnostic expansion_terms(Span span, std::size_t inputs) {
+  return error(
+      "E3232", span, "`terms` is how many functions there are along each input: a whole number above 0",
+      inputs == 1 ? "for example `terms = 16`" : "one number for all inputs, or a list with one for each: `terms = (8, 6)`");
+}
+Diagnostic expansion_too_large(Span span, long most) {
+  return error("E3232", span, fmt::format("more than {} coefficients", most),
+               "take fewer terms along each input, or a sum of kernels that read one input each");
+}
+Diagnostic no_expansion(Span span, std::string const& what) {
+  return error("E3233", span, fmt::format("{} has no finite sum that stands for it", what),
+               "take one of squared_exponential, matern12, matern32, matern52, linear, constant, or a sum of them");
+}
+Diagnostic expansion_of_lags(Span span, std::string const& name) {
+  return error("E3233", span, fmt::format("`{}` is a finite sum over a box, which lags have too many sides for", name),
+               "leave `within` out where the model is one of samples, or pass single values");
+}
+Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted) {
+  return error("E3234", span, fmt::format("`{}` was applied to [{}] before, this is [{}]", name, wanted.text, given.text),
+               "declare a second function, or convert");
 }
 Diagnostic process_out_of_place(Span span, std::string const& what) {
   return error("E3209", span, fmt::format("a Gaussian process cannot be {}", what),

@@ -1,10 +1,13 @@
 // Passes over declarations: names into the scope, the order of each state from the primes it carries, places of its components.
 #include "check/model_checker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "check/errors.hpp"
 #include "check/names_used.hpp"
+#include "check/process_expansion.hpp"
 #include "check/units.hpp"
 
 namespace sysid {
@@ -57,6 +60,17 @@ void ModelChecker::declare() {
       scope_.define_process(*process);
     }
   }
+  for (Scope::ProcessName& process : scope_.processes())
+    for (int i = 0, count = is_expanded(*process.definition) ? coefficient_count(*process.definition) : 0; i < count; ++i) {
+      Graph& graph = model_.graph;
+      Parameter coefficient;
+      coefficient.name = fmt::format("{}[{}]", process.definition->name.text, i + 1);
+      coefficient.span = process.definition->name.span;
+      coefficient.prior = Distribution{find_distribution("normal"), {graph.constant(0), graph.constant(1)}, {}, {}};
+      coefficient.coefficient = true;
+      process.coefficients.push_back(static_cast<int>(model_.parameters.size()));
+      model_.parameters.push_back(std::move(coefficient));
+    }
 }
 
 void ModelChecker::declare_step(ast::DiscreteTimeDeclaration const& discrete) {

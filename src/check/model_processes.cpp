@@ -27,6 +27,13 @@ bool same_leaf(Node const& a, Node const& b) { return is_leaf(a, b.leaf_kind) &&
 
 void ModelChecker::processes() {
   for (Scope::ProcessName const& each : scope_.processes()) {
+    if (each.expansion) {
+      Expansion expansion = *each.expansion;
+      for (std::vector<NodeId>& application : expansion.applications)
+        for (NodeId& argument : application) argument = solved(argument);
+      model_.expansions.push_back(std::move(expansion));
+      continue;
+    }
     if (!each.use) {
       diagnostics_.add(errors::process_never_applied(each.definition->name));
       continue;

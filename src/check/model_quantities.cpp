@@ -9,7 +9,7 @@
 namespace sysid {
 
 void ModelChecker::parameters() {
-  for (std::size_t i = 0; i < model_.parameters.size(); ++i) {
+  for (std::size_t i = 0; i < parameter_trees_.size(); ++i) {  // coefficients of expansions follow
     ast::ParameterDeclaration const& tree = *parameter_trees_[i];
     Parameter& parameter = model_.parameters[i];
     if (tree.value) {

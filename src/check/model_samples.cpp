@@ -66,6 +66,9 @@ void ModelChecker::finish_samples() {
     if (own && good) diagnostics_.add(errors::own_sample(channel.span, channel.name));
   }
   for (Derived& derived : model_.derived) derived.value = resolve(resolve, derived.value);
+  for (Expansion& expansion : model_.expansions)
+    for (std::vector<NodeId>& application : expansion.applications)
+      for (NodeId& argument : application) argument = resolve(resolve, argument);
   if (failed()) return;
   resolve_process_arguments(predicted);
   model_.memories = scope_.samples().memories;

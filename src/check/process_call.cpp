@@ -1,10 +1,12 @@
 // A Gaussian process where it is applied: its arguments, and its declaration with the units that they bring.
+#include <algorithm>
 #include <utility>
 
 #include "check/errors.hpp"
 #include "check/model_checker.hpp"
 #include "check/process_conditions.hpp"
 #include "check/process_covariance.hpp"
+#include "check/process_expansion.hpp"
 #include "check/process_units.hpp"
 #include "check/scope.hpp"
 #include "check/units.hpp"
@@ -21,28 +23,35 @@ bool Scope::define_process(ast::ProcessDefinition const& process) {
     diagnostics_.add(errors::duplicate_name(process.name, place->second->name.span));
     return false;
   }
-  processes_.push_back({&process, {}, {}});
+  // Finite sums last: leaves count the others.
+  auto const place = is_expanded(process) ? processes_.end()
+                                          : std::find_if(processes_.begin(), processes_.end(),
+                                                         [](ProcessName const& each) { return is_expanded(*each.definition); });
+  processes_.insert(place, {&process, {}, {}, {}, {}});
   return true;
 }
 
-bool Scope::process_declaration(ast::ProcessDefinition const& definition, std::vector<std::vector<int>> const& columns,
-                                std::vector<std::optional<Unit>> const& units, Process& process) {
+std::optional<ProcessArguments> Scope::process_declaration(ast::ProcessDefinition const& definition,
+                                                           std::vector<std::vector<int>> const& columns,
+                                                           std::vector<std::optional<Unit>> const& units, Process& process) {
   auto const* outer = std::exchange(arguments_, nullptr);
   auto calls = units_.suspend();
   HyperParametersGiven given;
-  auto const arguments = process_arguments(definition, {"zero_at", "flat_at"}, diagnostics_);
-  bool const good = arguments && read_covariance(*this, definition, *arguments->covariance, columns, process, given) &&
-                    settle_units(*this, definition, given, units, process) &&
-                    read_conditions(*this, definition, *arguments, columns, process);
+  auto arguments = process_arguments(definition, {"zero_at", "flat_at", "within", "terms"}, diagnostics_);
+  if (arguments && !(read_covariance(*this, definition, *arguments->covariance, columns, process, given) &&
+                     settle_units(*this, definition, given, units, process) &&
+                     read_conditions(*this, definition, *arguments, columns, process)))
+    arguments.reset();
   units_.resume(std::move(calls));
   arguments_ = outer;
-  return good;
+  return arguments;
 }
 
 std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t index) {
   ast::ProcessDefinition const& definition = *processes_[index].definition;
   std::string const& name = definition.name.text;
-  if (samples_.in_equation && !samples_.discrete) {
+  bool const expanded = is_expanded(definition);
+  if (samples_.in_equation && !samples_.discrete && !expanded) {
     diagnostics_.add(errors::process_in_differential_equation(call.span, name));
     return std::nullopt;
   }
@@ -87,6 +96,7 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
       diagnostics_.add(errors::process_out_of_place(call.span, "the argument of another"));
       return std::nullopt;
     }
+  if (expanded) return expansion_call(call, index, columns, units, std::move(process));
   NodeId const leaf = graph_.leaf(LeafKind::process, static_cast<int>(index));
   if (processes_[index].use) {
     if (processes_[index].use->arguments != process.arguments) {
@@ -100,6 +110,38 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
   processes_[index].use = std::move(process);
   processes_[index].call = call.span;
   return value;
+}
+
+std::optional<Typed> Scope::expansion_call(ast::Call const& call, std::size_t index, std::vector<std::vector<int>> const& columns,
+                                           std::vector<std::optional<Unit>> const& units, Process process) {
+  ProcessName& known = processes_[index];
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (columns[i].size() != 1) {
+      diagnostics_.add(errors::expansion_of_lags(call.arguments[i].span, known.definition->name.text));
+      return std::nullopt;
+    }
+  std::vector<NodeId> arguments = std::exchange(process.arguments, {});
+  if (!known.expansion) {
+    auto const declared = process_declaration(*known.definition, columns, units, process);
+    if (!declared) return std::nullopt;
+    auto const* outer = std::exchange(arguments_, nullptr);
+    known.expansion = expand(*this, *known.definition, *declared, std::move(process), known.coefficients);
+    arguments_ = outer;
+    if (!known.expansion) return std::nullopt;
+    known.call = call.span;
+  }
+  for (std::size_t i = 0; i < units.size(); ++i)
+    if (auto const& wanted = known.expansion->inputs[i].unit; wanted && units[i] && wanted->dimension != units[i]->dimension) {
+      diagnostics_.add(errors::expansion_unit(call.arguments[i].span, known.definition->name.text, *units[i], *wanted));
+      return std::nullopt;
+    }
+  known.expansion->applications.push_back(arguments);
+  NodeId const value = graph_.substitute(known.expansion->value, [&](NodeId leaf) -> std::optional<NodeId> {
+    Node const node = graph_[leaf];
+    if (node.leaf_kind != LeafKind::unknown || node.index >= 0) return std::nullopt;
+    return arguments[static_cast<std::size_t>(-1 - node.index)];
+  });
+  return with_unit(value, known.expansion->unit, call.span);
 }
 
 }  // namespace sysid

@@ -92,6 +92,7 @@ bool read_conditions(Scope& scope, ast::ProcessDefinition const& definition, Pro
                      std::vector<std::vector<int>> const& columns, Process& process) {
   for (auto const& [name, argument] : arguments.named) {
     bool const slope = name == "flat_at";
+    if (!slope && name != "zero_at") continue;
     if (slope)
       for (KernelUse const& kernel : process.kernels)
         if (!kernel.row->differentiable) {

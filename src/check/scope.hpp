@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "check/past.hpp"
+#include "check/process_covariance.hpp"
 #include "check/quantity.hpp"
 #include "check/unit_check.hpp"
 #include "check/units.hpp"
@@ -82,13 +83,16 @@ class Scope {
     ast::ProcessDefinition const* definition;
     std::optional<Process> use;
     Span call;
+    std::vector<int> coefficients{};       // of one that is a finite sum: parameters of the model
+    std::optional<Expansion> expansion{};  // in place of `use`
   };
-  std::vector<ProcessName> const& processes() const { return processes_; }
+  std::vector<ProcessName>& processes() { return processes_; }
   /// What a declaration says of a process whose inputs are laid out: kernels, hyper-parameters in SI, the unit of its values. Names
   /// are the model's, wherever the process is applied. columns: of each declared input those among process.inputs; units: of each
-  /// of these, where it is known, without a zero point. False after a diagnostic.
-  bool process_declaration(ast::ProcessDefinition const& definition, std::vector<std::vector<int>> const& columns,
-                           std::vector<std::optional<Unit>> const& units, Process& process);
+  /// of these, where it is known, without a zero point. Nothing after a diagnostic.
+  std::optional<ProcessArguments> process_declaration(ast::ProcessDefinition const& definition,
+                                                      std::vector<std::vector<int>> const& columns,
+                                                      std::vector<std::optional<Unit>> const& units, Process& process);
 
   /// What is known of samples and channels; the model's checker fills it.
   SampleNames& samples() { return samples_; }
@@ -129,6 +133,8 @@ class Scope {
 
   // process_call.cpp
   std::optional<Typed> process_call(ast::Call const& call, std::size_t index);
+  std::optional<Typed> expansion_call(ast::Call const& call, std::size_t index, std::vector<std::vector<int>> const& columns,
+                                      std::vector<std::optional<Unit>> const& units, Process process);
 
   /// False when expanding functions and definitions takes more work or stack than can be spent.
   bool affordable(Span span);

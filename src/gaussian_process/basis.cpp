@@ -1,60 +1,77 @@
 #include "gaussian_process/basis.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
 
-#include "core/elementary.hpp"
+#include "function/primitive.hpp"
 
 namespace sysid::gaussian_process {
 
-Basis::Basis(Eigen::VectorXd centre, Eigen::VectorXd half_widths, std::vector<int> const& counts)
-    : centre_(std::move(centre)), half_widths_(std::move(half_widths)) {
-  Eigen::Index size = 1;
-  for (int const count : counts) size *= count;
-  frequencies_.resize(size, static_cast<Eigen::Index>(counts.size()));
-  for (Eigen::Index j = 0; j < size; ++j) {
-    Eigen::Index rest = j;
-    for (Eigen::Index d = frequencies_.cols(); d-- > 0;) {
-      int const count = counts[static_cast<std::size_t>(d)];
-      frequencies_(j, d) = std::numbers::pi * static_cast<double>(rest % count + 1) / (2 * half_widths_[d]);
-      rest /= count;
+Basis::Basis(Box box) : box_(std::move(box)) {
+  int const size = std::accumulate(box_.counts.begin(), box_.counts.end(), 1, std::multiplies<>());
+  frequencies_.assign(static_cast<std::size_t>(size), std::vector<double>(box_.counts.size()));
+  for (int j = 0; j < size; ++j) {
+    int rest = j;
+    for (std::size_t d = box_.counts.size(); d-- > 0;) {
+      frequencies_[static_cast<std::size_t>(j)][d] = std::numbers::pi * (rest % box_.counts[d] + 1) / (2 * box_.half_widths[d]);
+      rest /= box_.counts[d];
     }
   }
 }
 
-Eigen::MatrixXd Basis::functions(Eigen::MatrixXd const& inputs) const {
-  Eigen::MatrixXd result(inputs.rows(), frequencies_.rows());
-  double const volume = half_widths_.prod();
-  result.setConstant(1 / std::sqrt(volume));
-  Eigen::VectorXd angle(inputs.rows());
-  for (Eigen::Index j = 0; j < result.cols(); ++j)
-    for (Eigen::Index d = 0; d < inputs.cols(); ++d) {
-      angle = frequencies_(j, d) * (inputs.col(d).array() - centre_[d] + half_widths_[d]);
-      elementary::sin_lanes(angle.data(), angle.data(), static_cast<int>(angle.size()));
-      result.col(j).array() *= angle.array();
-    }
-  return result;
-}
-
-bool has_spectral_density(Covariance const& covariance) {
-  std::vector<Covariance::Term> const& terms = covariance.terms();
-  return covariance.is_sum() && std::all_of(terms.begin(), terms.end(), [&](Covariance::Term const& term) {
-           return term.row->spectral_density != nullptr && term.columns == terms.front().columns;
-         });
-}
-
-Eigen::VectorXd spectral_weights(Covariance const& covariance, Numbers parameters, Basis const& basis) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(basis.size());
-  std::vector<double> frequencies(static_cast<std::size_t>(basis.frequencies().cols()));
-  for (int j = 0; j < basis.size(); ++j) {
-    for (std::size_t d = 0; d < frequencies.size(); ++d) frequencies[d] = basis.frequencies()(j, static_cast<Eigen::Index>(d));
-    for (Covariance::Term const& term : covariance.terms())
-      result[j] += term.row->spectral_density(
-          parameters.subspan(static_cast<std::size_t>(term.first_parameter), static_cast<std::size_t>(term.parameter_count)),
-          frequencies);
+Term Basis::sum(std::vector<std::vector<Term>> const& sines, std::size_t input, std::span<NodeId const>& weights) const {
+  Graph& graph = *sines.front().front().graph;
+  std::optional<Term> total;
+  for (Term const sine : sines[input]) {
+    bool const last = input + 1 == sines.size();
+    Term const factor = last ? Term(graph, weights.front()) : sum(sines, input + 1, weights);
+    if (last) weights = weights.subspan(1);
+    total = total ? *total + factor * sine : factor * sine;
   }
-  return result;
+  return *total;
+}
+
+NodeId Basis::sum(Graph& graph, std::span<NodeId const> inputs, std::span<NodeId const> weights) const {
+  std::vector<std::vector<Term>> sines;
+  for (std::size_t d = 0; d < inputs.size(); ++d) {
+    double const half = box_.half_widths[d];
+    Term const angle = std::numbers::pi / (2 * half) * (Term(graph, inputs[d]) - (box_.centre[d] - half)), twice = 2.0 * cos(angle);
+    // sin((j + 1) a) = 2 cos(a) sin(j a) - sin((j - 1) a)
+    Term before(graph, 0.0), sine = 1 / std::sqrt(half) * sin(angle);
+    sines.emplace_back();
+    for (int j = 0; j < box_.counts[d]; ++j) {
+      sines.back().push_back(sine);
+      before = std::exchange(sine, twice * sine - before);
+    }
+  }
+  return sum(sines, 0, weights).id;
+}
+
+bool has_expansion(KernelRow const& row) { return row.spectral_root != nullptr || row.features != nullptr; }
+
+int expansion_size(KernelRow const& row, std::vector<int> const& counts) {
+  if (row.features != nullptr) return hyper_parameter_count(row, static_cast<int>(counts.size()));
+  return std::accumulate(counts.begin(), counts.end(), 1, std::multiplies<>());
+}
+
+NodeId expansion(KernelRow const& row, Graph& graph, std::span<NodeId const> parameters, std::span<NodeId const> inputs,
+                 std::span<NodeId const> coefficients, Box const& box) {
+  if (row.features != nullptr) {
+    Term sum(graph, 0.0);
+    std::vector<NodeId> const features = row.features(graph, parameters, inputs);
+    for (std::size_t j = 0; j < features.size(); ++j) sum = sum + Term(graph, coefficients[j]) * Term(graph, features[j]);
+    return sum.id;
+  }
+  Basis const basis(box);
+  std::vector<NodeId> weights;
+  for (int j = 0; j < basis.size(); ++j)
+    weights.push_back(
+        graph.multiply(row.spectral_root(graph, parameters, basis.frequencies(j)), coefficients[static_cast<std::size_t>(j)]));
+  return basis.sum(graph, inputs, weights);
 }
 
 }  // namespace sysid::gaussian_process

@@ -1,12 +1,18 @@
 // A stationary Gaussian process on a box as a finite sum of known functions with independent normal coefficients: what an equation
 // in continuous time can hold.
 #pragma once
-#include <Eigen/Core>
 #include <vector>
 
-#include "gaussian_process/covariance.hpp"
+#include "expression/term.hpp"
+#include "gaussian_process/kernel.hpp"
 
 namespace sysid::gaussian_process {
+
+/// Where a basis lies: each [D], half_widths > 0, counts >= 1.
+struct Box {
+  std::vector<double> centre, half_widths;
+  std::vector<int> counts;
+};
 
 /// Eigenfunctions of the Laplace operator on the box of centre c and half-widths L, zero at its faces; for j_d = 1 ... count_d, the
 /// last input's fastest:
@@ -18,24 +24,28 @@ namespace sysid::gaussian_process {
 /// Good where x keeps some length-scales away from the faces and the highest frequencies lie beyond the kernel's.
 class Basis {
  public:
-  /// Each [D]; half_widths > 0, counts >= 1.
-  Basis(Eigen::VectorXd centre, Eigen::VectorXd half_widths, std::vector<int> const& counts);
+  explicit Basis(Box box);
 
-  int size() const { return static_cast<int>(frequencies_.rows()); }
-  /// w_jd, angular frequencies [size x D].
-  Eigen::MatrixXd const& frequencies() const { return frequencies_; }
-  /// phi_j at the rows of inputs [N x D]: [N x size].
-  Eigen::MatrixXd functions(Eigen::MatrixXd const& inputs) const;
+  int size() const { return static_cast<int>(frequencies_.size()); }
+  /// w_j of one function, angular frequencies [D].
+  std::vector<double> const& frequencies(int function) const { return frequencies_[static_cast<std::size_t>(function)]; }
+  /// Sum over j of weights_j phi_j at inputs [D], expressions: one sine and one cosine for each input, the rest are products.
+  NodeId sum(Graph& graph, std::span<NodeId const> inputs, std::span<NodeId const> weights) const;
 
  private:
-  Eigen::VectorXd centre_, half_widths_;
-  Eigen::MatrixXd frequencies_;
+  Term sum(std::vector<std::vector<Term>> const& sines, std::size_t input, std::span<NodeId const>& weights) const;
+
+  Box box_;
+  std::vector<std::vector<double>> frequencies_;
 };
 
-/// Whether the covariance is a sum of kernels that have a spectral density and all read the same inputs.
-bool has_spectral_density(Covariance const& covariance);
-
-/// S(w_j), the variances of the coefficients [size]; the basis is over the inputs in the order in which the kernels read them.
-Eigen::VectorXd spectral_weights(Covariance const& covariance, Numbers parameters, Basis const& basis);
+/// Whether a kernel can be written as such a sum, or is one by itself.
+bool has_expansion(KernelRow const& row);
+/// How many functions it takes over the inputs that the kernel reads, `counts` of them along each [D].
+int expansion_size(KernelRow const& row, std::vector<int> const& counts);
+/// The process at inputs [D] where `coefficients` [expansion_size] are independent and standard normal. box: over the same inputs;
+/// parameters: the kernel's, expressions > 0.
+NodeId expansion(KernelRow const& row, Graph& graph, std::span<NodeId const> parameters, std::span<NodeId const> inputs,
+                 std::span<NodeId const> coefficients, Box const& box);
 
 }  // namespace sysid::gaussian_process

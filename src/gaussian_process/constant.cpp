@@ -27,6 +27,8 @@ void transition(Numbers, double, double* transition, double* derivatives) {
   if (derivatives != nullptr) derivatives[0] = 0;
 }
 
+std::vector<NodeId> features(Graph&, std::span<NodeId const> p, std::span<NodeId const>) { return {p[0]}; }
+
 constexpr StateSpaceRow state_space{1, &stationary, &transition};
 
 }  // namespace
@@ -38,6 +40,7 @@ KernelRow constant_kernel() {
           .add_gradient = &add_gradient,
           .jet = &jet,
           .state_space = &state_space,
+          .features = &features,
           .summary = "an unknown level"};
 }
 

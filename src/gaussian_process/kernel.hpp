@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "expression/graph.hpp"
+
 namespace sysid::gaussian_process {
 
 using Numbers = std::span<double const>;
@@ -59,9 +61,12 @@ struct KernelRow {
   Jet (*jet)(Jets left, Jets right, Jets parameters);
   bool differentiable = true;                  // whether functions have a first derivative
   StateSpaceRow const* state_space = nullptr;  // nullptr: has none
-  /// The Fourier transform of the covariance over the differences of its inputs, at angular frequencies [D]; the convention is
-  /// k(0) = (2 pi)^-D times the integral of the density. nullptr: the kernel is not stationary, or has lines in place of a density.
-  double (*spectral_density)(Numbers parameters, Numbers frequencies) = nullptr;
+  /// The square root of the Fourier transform of the covariance over the differences of its inputs, at angular frequencies [D], as
+  /// an expression of the hyper-parameters; the convention is k(0) = (2 pi)^-D times the integral of its square. nullptr: the
+  /// kernel is not stationary, or has lines in place of a density.
+  NodeId (*spectral_root)(Graph&, std::span<NodeId const> parameters, Numbers frequencies) = nullptr;
+  /// Of a kernel of finite rank: one function of the inputs [D] for each hyper-parameter, with a standard normal coefficient each.
+  std::vector<NodeId> (*features)(Graph&, std::span<NodeId const> parameters, std::span<NodeId const> inputs) = nullptr;
   std::string_view summary;
 };
 

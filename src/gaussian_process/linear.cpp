@@ -32,6 +32,12 @@ Jet jet(Jets left, Jets right, Jets p) {
   return sum;
 }
 
+std::vector<NodeId> features(Graph& graph, std::span<NodeId const> p, std::span<NodeId const> inputs) {
+  std::vector<NodeId> result;
+  for (std::size_t d = 0; d < p.size(); ++d) result.push_back(graph.multiply(p[d], inputs[d]));
+  return result;
+}
+
 }  // namespace
 
 KernelRow linear_kernel() {
@@ -40,6 +46,7 @@ KernelRow linear_kernel() {
           .values = &values,
           .add_gradient = &add_gradient,
           .jet = &jet,
+          .features = &features,
           .summary = "lines through the origin with unknown slopes"};
 }
 

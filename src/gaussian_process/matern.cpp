@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/elementary.hpp"
+#include "expression/term.hpp"
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
@@ -80,16 +81,16 @@ Jet jet(Jets left, Jets right, Jets p) {
 ///   S = amplitude^2 2^D pi^(D/2) Gamma(nu + D/2)/Gamma(nu) (2 nu)^nu (2 nu + |w|^2)^-(nu + D/2) (product of lengths),
 ///   w_d = length_d frequency_d                                                             Rasmussen & Williams 2006, eq. 4.15
 template <int TwiceNu>
-double spectral_density(Numbers p, Numbers frequencies) {
+NodeId spectral_root(Graph& graph, std::span<NodeId const> p, Numbers frequencies) {
   double const nu = 0.5 * TwiceNu, half = 0.5 * static_cast<double>(frequencies.size());
-  double square = TwiceNu, density = p[0] * p[0];
+  Term root(graph, p[0]), square(graph, static_cast<double>(TwiceNu));
   for (std::size_t d = 0; d < frequencies.size(); ++d) {
-    double const length = p[1 + d], product = length * frequencies[d];
-    density *= 2 * std::sqrt(std::numbers::pi) * length;
-    square += product * product;
+    Term const length(graph, p[1 + d]), product = frequencies[d] * length;
+    root = root * sqrt(2 * std::sqrt(std::numbers::pi) * length);
+    square = square + product * product;
   }
-  return density * elementary::exp(elementary::lgamma(nu + half) - elementary::lgamma(nu) + nu * elementary::log(TwiceNu) -
-                                   (nu + half) * elementary::log(square));
+  double const logarithm = elementary::lgamma(nu + half) - elementary::lgamma(nu) + nu * elementary::log(TwiceNu);
+  return (elementary::exp(0.5 * logarithm) * root * pow(square, Term(graph, -0.5 * (nu + half)))).id;
 }
 
 // State-space form: states f, f'/lambda, f''/lambda^2, ... with lambda = sqrt(2 nu)/length. In these units P = amplitude^2 P0 and
@@ -171,7 +172,7 @@ KernelRow matern(std::string_view name, std::string_view summary) {
           .jet = &jet<TwiceNu>,
           .differentiable = TwiceNu > 1,
           .state_space = &state_space,
-          .spectral_density = &spectral_density<TwiceNu>,
+          .spectral_root = &spectral_root<TwiceNu>,
           .summary = summary};
 }
 

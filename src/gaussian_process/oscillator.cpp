@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/elementary.hpp"
+#include "expression/term.hpp"
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
@@ -148,9 +149,10 @@ void transition(Numbers p, double step, double* out, double* derivatives) {
 constexpr StateSpaceRow state_space{2, &stationary, &transition};
 
 ///   S = intensity/((stiffness - mass w^2)^2 + (damping w)^2)
-double spectral_density(Numbers p, Numbers frequencies) {
-  double const w = frequencies[0], real = p[2] - p[0] * w * w, imaginary = p[1] * w;
-  return p[3] / (real * real + imaginary * imaginary);
+NodeId spectral_root(Graph& graph, std::span<NodeId const> p, Numbers frequencies) {
+  double const w = frequencies[0];
+  Term const imaginary = w * Term(graph, p[1]), real = Term(graph, p[2]) - w * w * Term(graph, p[0]);
+  return sqrt(Term(graph, p[3]) / (real * real + imaginary * imaginary)).id;
 }
 
 }  // namespace
@@ -163,7 +165,7 @@ KernelRow oscillator_kernel() {
           .add_gradient = &add_gradient,
           .jet = &jet,
           .state_space = &state_space,
-          .spectral_density = &spectral_density,
+          .spectral_root = &spectral_root,
           .summary = "the displacement of mass, damper and spring under white noise"};
 }
 

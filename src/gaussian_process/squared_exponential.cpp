@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/elementary.hpp"
+#include "function/primitive.hpp"
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
@@ -33,14 +34,14 @@ void add_gradient(Strip const& strip, Numbers p, double const* k, double const* 
 Jet jet(Jets left, Jets right, Jets p) { return p[0] * p[0] * exp(-0.5 * squared_distance(left, right, p.subspan(1))); }
 
 ///   S = amplitude^2 (2 pi)^(D/2) (product of lengths) exp(-1/2 sum of (length_d w_d)^2)      Rasmussen & Williams 2006, eq. 4.11
-double spectral_density(Numbers p, Numbers frequencies) {
-  double density = p[0] * p[0], exponent = 0;
+NodeId spectral_root(Graph& graph, std::span<NodeId const> p, Numbers frequencies) {
+  Term root(graph, p[0]), exponent(graph, 0.0);
   for (std::size_t d = 0; d < frequencies.size(); ++d) {
-    double const length = p[1 + d], product = length * frequencies[d];
-    density *= std::sqrt(2 * std::numbers::pi) * length;
-    exponent += product * product;
+    Term const length(graph, p[1 + d]), product = frequencies[d] * length;
+    root = root * sqrt(std::sqrt(2 * std::numbers::pi) * length);
+    exponent = exponent + product * product;
   }
-  return density * elementary::exp(-0.5 * exponent);
+  return (root * exp(-0.25 * exponent)).id;
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ KernelRow squared_exponential_kernel() {
           .values = &values,
           .add_gradient = &add_gradient,
           .jet = &jet,
-          .spectral_density = &spectral_density,
+          .spectral_root = &spectral_root,
           .summary = "smooth functions, with all derivatives"};
 }
 

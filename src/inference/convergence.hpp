@@ -20,6 +20,7 @@ double mcse_mean(ChainValues const& draws);
 struct Summary {
   std::string name, unit;
   double mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail, mcse_mean;
+  bool coefficient = false;  // of an unknown function: tables leave it out
 };
 Summary summarise(std::string name, std::string unit, ChainValues const& draws);
 

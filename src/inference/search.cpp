@@ -30,6 +30,9 @@ struct Breadth {
 constexpr Breadth broad{draws_per_pass, 96, 32, 16};
 /// Of a likelihood that takes a matrix decomposition each time, and tells its gradient.
 constexpr Breadth narrow{64, 6, 2, 4};
+/// Of an equation with an unknown function in it: what is not linear are the few other parameters, and every round asks for the
+/// slopes of all coefficients.
+constexpr Breadth few{draws_per_pass, 12, 4, 3};
 
 constexpr double notable_share = 0.01;
 
@@ -113,9 +116,22 @@ void add_findings(Objective const& objective, SearchResult& result) {
     result.findings.push_back(flat_direction(objective.target, {modes.front().flat.data() + at, parameters}));
 }
 
+bool has_coefficients(Target const& target) {
+  return std::any_of(target.parameters().begin(), target.parameters().end(),
+                     [](ParameterInfo const& each) { return each.starts_at_zero; });
+}
+
 LaneArray draw_prior(Target const& target, StreamKey key, int count) {
   LaneArray draws(target.dimension(), count);
   target.sample_prior(key, draws);
+  return draws;
+}
+
+LaneArray draw_starts(Target const& target, StreamKey key, int count) {
+  LaneArray draws = draw_prior(target, key, count);
+  for (int p = 0; p < target.dimension(); ++p)
+    if (target.parameters()[static_cast<std::size_t>(p)].starts_at_zero)
+      for (int w = 0; w < count; ++w) draws(p, w) = 0;
   return draws;
 }
 
@@ -123,7 +139,7 @@ LaneArray draw_prior(Target const& target, StreamKey key, int count) {
 
 SearchResult search(Target const& target, Aim aim, RunContext& context) {
   SearchResult result;
-  Breadth const& breadth = target.has_gradient() ? narrow : broad;
+  Breadth const& breadth = target.has_gradient() ? narrow : has_coefficients(target) ? few : broad;
   // All that a search of one pass does but its last rounds, of which a handful is usual.
   auto const dimension = static_cast<std::uint64_t>(target.dimension());
   std::uint64_t const round = target.has_gradient() ? 1 : 2 * dimension + 1 + 4,
@@ -141,7 +157,7 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   std::optional<Objective> objective;
   std::vector<Climber> ended;
   for (int pass = 0; pass < most_passes && !stop(); ++pass) {
-    LaneArray const draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
+    LaneArray const draws = draw_starts(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
     if (!objective) objective.emplace(make_objective(target, aim, draws));
     std::vector<Climber> starts = choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop);
     climb(*objective, starts, early_rounds, context.ledger, stop);

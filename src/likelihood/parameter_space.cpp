@@ -120,7 +120,8 @@ void ParameterSpace::compile() {
       auto const constant = bound ? graph.constant_value(*bound) : std::nullopt;
       return constant ? row.from_si(*constant) : fallback;
     };
-    infos_[k] = {row.name, row.unit_text(), number(bounds.lower, -infinity), number(bounds.upper, infinity)};
+    infos_[k] = {row.name, row.unit_text(), number(bounds.lower, -infinity), number(bounds.upper, infinity),
+                 model_.parameters[static_cast<std::size_t>(row.parameter)].coefficient};
   };
   for (int const p : model_.sampling_order) {
     if (!model_.parameters[static_cast<std::size_t>(p)].per_experiment)

@@ -65,6 +65,8 @@ bool smooth_in(Graph const& graph, NodeId root, int parameter) {
   return true;
 }
 
+}  // namespace
+
 gaussian_process::Covariance covariance_of(Process const& process, int first_column) {
   std::vector<gaussian_process::Covariance> built;
   for (Process::Covariance const& each : process.covariance) {
@@ -88,8 +90,6 @@ gaussian_process::Covariance covariance_of(Process const& process, int first_col
   }
   return built.back().conditioned(std::move(conditions));
 }
-
-}  // namespace
 
 void ProcessModel::find_coefficients(std::vector<std::vector<int>>& of_channel) const {
   Graph graph = model_.graph;

@@ -10,6 +10,9 @@
 
 namespace sysid {
 
+/// The covariance of a process, whose inputs are columns from `first_column` on; hyper-parameters in the order of its kernels.
+gaussian_process::Covariance covariance_of(Process const& process, int first_column);
+
 /// A parameter with a normal prior that one channel's centre is linear in and nothing else reads: it is integrated out,
 /// unless nothing would be left to sample.
 struct MarginalCoefficient {

@@ -6,6 +6,7 @@
 
 #include "distribution/distribution.hpp"
 #include "expression/graph.hpp"
+#include "model/expansion.hpp"
 #include "model/process.hpp"
 #include "model/quantity.hpp"
 
@@ -31,6 +32,7 @@ struct Parameter : Quantity {
   bool per_experiment = false;
   std::optional<Distribution> prior;  // arguments and bounds are SI expressions of constants and other parameters
   std::optional<NodeId> value;        // a constant expression
+  bool coefficient = false;           // of an expansion
 };
 
 /// What is measured: leaf measured(i) is its sample.
@@ -92,6 +94,7 @@ struct Model {
   std::vector<int> sampling_order;    // sampled parameters, each after those its prior refers to
   std::vector<Channel> channels;
   std::vector<Process> processes;
+  std::vector<Expansion> expansions;
   std::vector<Derived> derived;
   std::vector<Unchecked> unchecked;  // in the order of the text
   std::vector<Past> pasts;

@@ -25,6 +25,9 @@ void each_root(Model& model, Visit const& visit) {
   for (Past& past : model.pasts) visit(past.present);
   for (Process& process : model.processes)
     for (NodeId& argument : process.arguments) visit(argument);
+  for (Expansion& expansion : model.expansions)
+    for (std::vector<NodeId>& application : expansion.applications)
+      for (NodeId& argument : application) visit(argument);
 }
 
 bool is_leaf(Node const& node, LeafKind kind) { return node.operation == Operation::leaf && node.leaf_kind == kind; }
@@ -76,6 +79,9 @@ void drop_unread_states(Model& model) {
     roots.insert(roots.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
   for (Derived const& derived : model.derived) roots.push_back(derived.value);
   for (Process const& process : model.processes) roots.insert(roots.end(), process.arguments.begin(), process.arguments.end());
+  for (Expansion const& expansion : model.expansions)
+    for (std::vector<NodeId> const& application : expansion.applications)
+      roots.insert(roots.end(), application.begin(), application.end());
   std::set<int> kept;
   while (true) {
     std::size_t const before = kept.size();

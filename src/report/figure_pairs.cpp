@@ -151,6 +151,7 @@ std::vector<Figure> figures(Report const& report) {
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (!quantity.response.mean.empty() && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
         out.push_back(fit_figure(prediction, quantity));
+  for (FunctionReport const& function : report.functions) out.push_back(function_figure(function));
   if (report.selection) {
     Report const leading = leading_model(report);
     if (leading.draws.total() > 1 && !leading.draws.names.empty()) out.push_back(posterior_figure(leading));

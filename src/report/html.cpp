@@ -97,6 +97,7 @@ std::string summary_section(Report const& report) {
     bool const optimum = report.draws.total() == 1;
     std::vector<std::vector<std::string>> rows;
     for (Summary const& s : report.summary) {
+      if (s.coefficient) continue;
       SummaryText const t = format_summary(s);
       if (optimum)
         rows.push_back({"<b>" + escape(s.name) + "</b>", escape(pretty_unit(s.unit)), pretty_number(t.mean), pretty_number(t.sd)});
@@ -167,6 +168,7 @@ std::string convergence_section(Report const& report) {
   if (report.summary.empty()) return "";
   std::vector<std::vector<std::string>> rows;
   for (Summary const& s : report.summary) {
+    if (s.coefficient) continue;
     SummaryText const t = format_summary(s);
     rows.push_back({"<b>" + escape(s.name) + "</b>", t.rhat, t.ess_bulk, t.ess_tail, pretty_number(significant(s.mcse_mean, 2))});
   }

@@ -14,6 +14,7 @@
 #include "inference/draws.hpp"
 #include "inference/finding.hpp"
 #include "report/discovery.hpp"
+#include "report/function.hpp"
 #include "report/prediction.hpp"
 #include "report/selection.hpp"
 
@@ -66,9 +67,10 @@ struct Report {
   std::vector<Summary> summary;  // of the draws, parameters first
   std::string verdict;           // in plain words, its first line is shown; empty: as `judge` words the findings
   Findings findings;
-  std::vector<FitLine> fit;             // what the task itself has scored
-  std::vector<Prediction> predictions;  // of each experiment: over the fitted rows, or of the predicted ones
-  std::vector<Mode> modes;              // by falling share
+  std::vector<FitLine> fit;               // what the task itself has scored
+  std::vector<Prediction> predictions;    // of each experiment: over the fitted rows, or of the predicted ones
+  std::vector<Mode> modes;                // by falling share
+  std::vector<FunctionReport> functions;  // unknown ones of the equations
   std::vector<ReportTable> tables;
   std::optional<SelectionReport> selection;
   std::optional<DiscoveryReport> discovery;

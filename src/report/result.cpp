@@ -26,7 +26,8 @@ bool is_result_file(std::string const& name) {
   };
   return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "resolved.sysid" ||
          name == "predict.csv" || name == "terms.csv" || name == "found.sysid" || name == "populations.csv" ||
-         between("draws_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") || between("polished_", ".csv");
+         between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
+         between("particles_", ".csv") || between("polished_", ".csv");
 }
 
 bool is_figure_file(std::string const& name) { return name.ends_with(".svg") || name.ends_with(".gnuplot"); }
@@ -67,6 +68,8 @@ void write_result(Report const& report, fs::path const& folder, bool pictures) {
     for (auto const& [name, content] : selection_files(report)) write_file(folder / name, content);
   if (report.discovery)
     for (auto const& [name, content] : discovery_files(report)) write_file(folder / name, content);
+  for (FunctionReport const& function : report.functions)
+    write_file(folder / fmt::format("function_{}.csv", plot::identifier(function.name)), function_csv(function));
   std::set<std::string> taken;
   for (Prediction const& prediction : report.predictions) {
     std::string suffix = report.predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);

@@ -23,11 +23,13 @@ std::string draws_line(Draws const& draws) {
 std::string summary_table(Report const& report) {
   if (report.draws.total() == 1) {
     std::vector<std::vector<std::string>> rows = {{"", "unit", "optimum", "Laplace sd"}};
-    for (Summary const& s : report.summary) rows.push_back({s.name, s.unit, format_summary(s).mean, format_summary(s).sd});
+    for (Summary const& s : report.summary)
+      if (!s.coefficient) rows.push_back({s.name, s.unit, format_summary(s).mean, format_summary(s).sd});
     return align_columns(rows, 2);
   }
   std::vector<std::vector<std::string>> rows = {{"", "unit", "mean", "sd", "q5", "q95", "rhat", "ess_bulk", "ess_tail"}};
   for (Summary const& s : report.summary) {
+    if (s.coefficient) continue;
     SummaryText const t = format_summary(s);
     rows.push_back({s.name, s.unit, t.mean, t.sd, t.q5, t.q95, t.rhat, t.ess_bulk, t.ess_tail});
   }

@@ -20,17 +20,20 @@ std::map<std::string, Folders> const allowed = {
     {"expression", {"expression", "core"}},
     {"function", {"function", "expression", "core"}},
     {"distribution", {"distribution", "function", "expression", "core"}},
-    {"model", {"model", "distribution", "function", "expression", "core"}},
+    {"model", {"model", "gaussian_process", "distribution", "function", "expression", "core"}},
     {"syntax", {"syntax", "core"}},
     {"grammar", {"grammar", "syntax", "core"}},
-    {"check", {"check", "regression", "syntax", "model", "data", "distribution", "function", "expression", "core"}},
+    {"check",
+     {"check", "regression", "syntax", "model", "gaussian_process", "data", "distribution", "function", "expression", "core"}},
     {"program", {"program", "model", "distribution", "function", "expression", "core"}},
     {"simulate", {"simulate", "program", "data", "expression", "core"}},
-    {"likelihood", {"likelihood", "simulate", "program", "model", "data", "distribution", "function", "expression", "core"}},
-    {"regression", {"regression", "data", "expression", "core"}},
+    {"likelihood",
+     {"likelihood", "simulate", "program", "model", "gaussian_process", "linear_algebra", "data", "distribution", "function",
+      "expression", "core"}},
+    {"regression", {"regression", "linear_algebra", "data", "expression", "core"}},
     {"linear_algebra", {"linear_algebra", "core"}},
-    {"gaussian_process", {"gaussian_process", "linear_algebra", "core"}},
-    {"inference", {"inference", "likelihood", "core"}},
+    {"gaussian_process", {"gaussian_process", "linear_algebra", "function", "expression", "core"}},
+    {"inference", {"inference", "likelihood", "linear_algebra", "core"}},
     {"report", {"report", "inference", "likelihood", "core"}},
 };
 
@@ -38,7 +41,7 @@ std::map<std::string, Folders> const allowed = {
 
 TEST_CASE("includes point one way, Boost.Spirit stays in grammar/ and SUNDIALS in src/simulate/") {
   std::filesystem::path const root(SYSID_SOURCE_DIR);
-  std::regex const own("^#include \"([a-z]+)/[^\"]*\"");
+  std::regex const own("^#include \"([a-z_]+)/[^\"]*\"");
   int lines = 0;
   for (auto const& [folder, may] : allowed) {
     auto const place = folder == "grammar" ? root / folder : root / "src" / folder;

@@ -1,0 +1,218 @@
+#include "app/unknown_functions.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "gaussian_process/covariance.hpp"
+#include "likelihood/compiled_model.hpp"
+#include "likelihood/process_model.hpp"
+#include "program/kernel.hpp"
+#include "report/number.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int most_draws = 200, along_a_cut = 101;
+constexpr double much = 0.1;  // of the process's variance
+
+/// An expansion as a program of the model's parameters and its inputs.
+class UnknownFunction {
+ public:
+  UnknownFunction(Model const& model, Expansion const& expansion) : expansion_(expansion), graph_(model.graph) {
+    for (std::size_t p = 0; p < model.parameters.size(); ++p)
+      leaves_.push_back(graph_.leaf(LeafKind::parameter, static_cast<int>(p)));
+    for (std::size_t d = 0; d < expansion.inputs.size(); ++d) leaves_.push_back(Expansion::argument(graph_, static_cast<int>(d)));
+    kernel_ = compile_kernel(graph_, leaves_, {&expansion.value, 1});
+  }
+
+  /// At one place, SI, for every column of parameters.
+  std::vector<double> values(ConstLanes parameters, std::vector<double> const& place) const {
+    int const width = parameters.width(), count = parameters.rows();
+    LaneArray in(static_cast<int>(leaves_.size()), width), out(1, width);
+    for (int w = 0; w < width; ++w) {
+      for (int p = 0; p < count; ++p) in(p, w) = parameters(p, w);
+      for (std::size_t d = 0; d < place.size(); ++d) in(count + static_cast<int>(d), w) = place[d];
+    }
+    sysid::run(kernel_, in, out);
+    std::vector<double> result;
+    for (int w = 0; w < width; ++w) result.push_back(out(0, w));
+    return result;
+  }
+
+  FunctionPoint point(ConstLanes parameters, std::vector<double> const& place) const {
+    std::vector<double> found = values(parameters, place);
+    for (double& value : found) value = expansion_.from_si(value);
+    Eigen::Map<Eigen::ArrayXd const> const all(found.data(), static_cast<Eigen::Index>(found.size()));
+    FunctionPoint result;
+    for (std::size_t d = 0; d < place.size(); ++d) result.inputs.push_back(expansion_.inputs[d].from_si(place[d]));
+    result.mean = all.mean();
+    result.sd = found.size() < 2 ? 0 : std::sqrt((all - result.mean).square().sum() / static_cast<double>(found.size() - 1));
+    result.q5 = quantile(found, 0.05);
+    result.q95 = quantile(found, 0.95);
+    return result;
+  }
+
+ private:
+  Expansion const& expansion_;
+  Graph graph_;
+  std::vector<NodeId> leaves_;
+  Kernel kernel_;
+};
+
+double between(Expansion::Input const& input, int i, int count) { return input.low + (input.high - input.low) * i / (count - 1); }
+
+std::vector<double> middle(Expansion const& expansion) {
+  std::vector<double> place;
+  for (Expansion::Input const& input : expansion.inputs) place.push_back(0.5 * (input.low + input.high));
+  return place;
+}
+
+/// All places of a grid with `count` along each input, the last one's fastest.
+std::vector<std::vector<double>> grid(Expansion const& expansion, int count) {
+  std::vector<std::vector<double>> places{{}};
+  for (Expansion::Input const& input : expansion.inputs) {
+    std::vector<std::vector<double>> longer;
+    for (std::vector<double> const& place : places)
+      for (int i = 0; i < count; ++i) {
+        longer.push_back(place);
+        longer.back().push_back(between(input, i, count));
+      }
+    places = std::move(longer);
+  }
+  return places;
+}
+
+/// The largest difference between the covariance of a sum and that of its process, over the largest variance of the process.
+double error(Model const& model, Expansion const& expansion, ConstLanes parameters) {
+  std::size_t const inputs = expansion.inputs.size();
+  std::vector<std::vector<double>> const places = grid(expansion, inputs == 1 ? 9 : inputs == 2 ? 5 : 3);
+  // One column for each coefficient, which is 1 there and the others 0.
+  auto const count = static_cast<int>(expansion.coefficients.size());
+  LaneArray units(parameters.rows(), count);
+  for (int p = 0; p < parameters.rows(); ++p) {
+    double mean = 0;
+    for (int w = 0; w < parameters.width(); ++w) mean += parameters(p, w) / parameters.width();
+    for (int j = 0; j < count; ++j) units(p, j) = mean;
+  }
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) units(expansion.coefficients[static_cast<std::size_t>(i)], j) = i == j ? 1 : 0;
+  UnknownFunction const function(model, expansion);
+  auto const rows = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd features(rows, count), points(rows, static_cast<Eigen::Index>(inputs));
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    std::vector<double> const& place = places[static_cast<std::size_t>(i)];
+    std::vector<double> const one = function.values(units, place);
+    features.row(i) = Eigen::Map<Eigen::RowVectorXd const>(one.data(), count);
+    points.row(i) = Eigen::Map<Eigen::RowVectorXd const>(place.data(), static_cast<Eigen::Index>(inputs));
+  }
+  Graph const& graph = model.graph;
+  std::vector<double> hyper_parameters;
+  for (KernelUse const& kernel : expansion.process.kernels)
+    for (NodeId const node : kernel.hyper_parameters)
+      hyper_parameters.push_back(graph.evaluate(node, [&](NodeId leaf) { return units(graph[leaf].index, 0); }));
+  Eigen::MatrixXd const exact = covariance_of(expansion.process, 0).between(points, points, hyper_parameters);
+  return (features * features.transpose() - exact).cwiseAbs().maxCoeff() / exact.diagonal().maxCoeff();
+}
+
+}  // namespace
+
+LaneArray function_draws(Target const& target, FitResult const& result, std::uint64_t seed) {
+  if (result.draws.total() != 1 || result.modes.empty() || result.modes.front().covariance.empty())
+    return spread(result.draws, most_draws);
+  Mode const& mode = result.modes.front();
+  auto const dimension = static_cast<Eigen::Index>(mode.theta.size());
+  Eigen::MatrixXd const covariance = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> const>(
+      mode.covariance.data(), dimension, dimension);
+  Eigen::LDLT<Eigen::MatrixXd> const factor(covariance);
+  Eigen::VectorXd const sd = factor.vectorD().cwiseMax(0).cwiseSqrt();
+  LaneArray theta(static_cast<int>(dimension), most_draws), declared(static_cast<int>(dimension), most_draws);
+  for (int w = 0; w < most_draws; ++w) {
+    Stream stream({seed, Purpose::selection, static_cast<std::uint64_t>(w), 0});
+    Eigen::VectorXd move(dimension);
+    for (Eigen::Index p = 0; p < dimension; ++p) move[p] = stream.normal() * sd[p];
+    move = factor.transpositionsP().transpose() * (factor.matrixL() * move).eval();
+    for (Eigen::Index p = 0; p < dimension; ++p) theta(static_cast<int>(p), w) = mode.theta[static_cast<std::size_t>(p)] + move[p];
+  }
+  target.constrain(theta, declared);
+  return declared;
+}
+
+std::vector<FunctionReport> unknown_functions(Model const& model, ConstLanes parameters) {
+  std::vector<FunctionReport> reports;
+  for (Expansion const& expansion : model.expansions) {
+    UnknownFunction const function(model, expansion);
+    FunctionReport report{expansion.name, expansion.unit_text(), {}, {}, {}};
+    std::size_t const inputs = expansion.inputs.size();
+    for (Expansion::Input const& input : expansion.inputs) report.inputs.emplace_back(input.name, input.unit_text());
+    for (std::vector<double> const& place : grid(expansion, inputs == 1 ? along_a_cut : inputs == 2 ? 21 : 7))
+      report.grid.push_back(function.point(parameters, place));
+    for (std::size_t d = 0; d < inputs; ++d) {
+      report.cuts.emplace_back();
+      for (int i = 0; i < along_a_cut; ++i) {
+        std::vector<double> place = middle(expansion);
+        place[d] = between(expansion.inputs[d], i, along_a_cut);
+        report.cuts.back().push_back(function.point(parameters, place));
+      }
+    }
+    reports.push_back(std::move(report));
+  }
+  return reports;
+}
+
+Findings check_expansions(Model const& model, ConstLanes parameters) {
+  Findings findings;
+  for (Expansion const& expansion : model.expansions)
+    if (double const part = error(model, expansion, parameters); part > much)
+      findings.push_back({Severity::warning, "basis_inaccurate",
+                          fmt::format("the finite sum of `{}` differs from its process by {:.0f} % of the process's variance",
+                                      expansion.name, 100 * part),
+                          "take more `terms` where a length is short against the range, or a wider `within` where it is long"});
+  return findings;
+}
+
+Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
+                      ConstLanes parameters, ExecutionOptions const& options) {
+  struct Place {
+    Expansion const* expansion;
+    std::size_t input;
+  };
+  std::vector<Place> places;
+  Model shown = model;
+  shown.derived.clear();
+  for (Expansion const& expansion : model.expansions)
+    for (std::vector<NodeId> const& application : expansion.applications)
+      for (std::size_t d = 0; d < application.size(); ++d) {
+        Derived derived;
+        derived.name = expansion.inputs[d].name;
+        derived.value = application[d];
+        derived.per_sample = true;
+        shown.derived.push_back(std::move(derived));
+        places.push_back({&expansion, d});
+      }
+  Trajectory const trajectory(compile(std::move(shown), start_rows > 0, solver.method), experiment, solver, start_rows, options);
+  Trajectory::Result const result = trajectory.run(parameters, {});
+  Findings findings;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    Expansion const& expansion = *places[k].expansion;
+    Expansion::Input const& input = expansion.inputs[places[k].input];
+    std::vector<double> const& values = result.values[result.values.size() - places.size() + k].front();
+    auto const beyond =
+        std::count_if(values.begin(), values.end(), [&](double value) { return value < input.low || value > input.high; });
+    if (beyond == 0) continue;
+    auto const [low, high] = std::minmax_element(values.begin(), values.end());
+    findings.push_back(
+        {Severity::warning, "outside_range",
+         fmt::format("`{}` is read outside its range at {} of {} samples of {}: {} goes from {} to {}{}, `within` from {} to {}",
+                     expansion.name, beyond, values.size(), experiment.name, input.name, significant(input.from_si(*low), 3),
+                     significant(input.from_si(*high), 3), input.unit ? fmt::format(" [{}]", input.unit->text) : std::string(),
+                     significant(input.from_si(input.low), 3), significant(input.from_si(input.high), 3)),
+         "widen `within`: beyond it the function is led by the shape of its sum, not by the data"});
+  }
+  return findings;
+}
+
+}  // namespace sysid

@@ -1,0 +1,28 @@
+// An unknown function of an equation, as it was found: a table and a figure of it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "report/plot.hpp"
+
+namespace sysid {
+
+/// The function at one place over the draws, declared units.
+struct FunctionPoint {
+  std::vector<double> inputs;  // [D]
+  double mean, sd, q5, q95;
+};
+
+struct FunctionReport {
+  std::string name, unit;
+  std::vector<std::pair<std::string, std::string>> inputs;  // name and unit
+  std::vector<FunctionPoint> grid;                          // over its range, the last input's fastest
+  std::vector<std::vector<FunctionPoint>> cuts;             // along each input, the others in the middle of their range
+};
+
+/// What the file function_NAME.csv holds: a column for each input, then mean, sd, q5, q95; units in a comment.
+std::string function_csv(FunctionReport const& function);
+/// One panel for each cut: mean and 90 % band.
+plot::Figure function_figure(FunctionReport const& function);
+
+}  // namespace sysid
