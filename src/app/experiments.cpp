@@ -8,6 +8,7 @@
 
 #include "app/session.hpp"
 #include "core/files.hpp"
+#include "data/digest.hpp"
 #include "model/past.hpp"
 #include "report/number.hpp"
 
@@ -229,6 +230,40 @@ std::vector<PriorInfo> priors_of(ParameterSpace const& space, std::vector<PriorI
   return all;
 }
 
+std::string scored_rows(Experiment const& experiment) {
+  std::string text;
+  auto const count = static_cast<int>(experiment.scored.size());
+  for (int first = 0; first < count;) {
+    if (experiment.scored[static_cast<std::size_t>(first)] == 0) {
+      ++first;
+      continue;
+    }
+    int last = first;
+    while (last + 1 < count && experiment.scored[static_cast<std::size_t>(last + 1)] != 0) ++last;
+    text += fmt::format("{}{}..{}", text.empty() ? "" : ", ", experiment.first_row + first, experiment.first_row + last);
+    first = last + 1;
+  }
+  return text;
+}
+
+std::string samples_digest(Experiment const& experiment, Model const& model) {
+  std::vector<std::pair<std::string, std::string>> channels;  // by name: models may declare them in any order
+  for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
+    std::string text;
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
+      bool const with_past = c >= experiment.has_past.size() || experiment.has_past[c].empty() || experiment.has_past[c][i] != 0;
+      if (experiment.scored[i] == 0 || !with_past || !std::isfinite(experiment.measured[c][i])) continue;
+      text += fmt::format("{} {}\n", experiment.first_row + static_cast<int>(i),
+                          shortest(model.channels[c].from_si(experiment.measured[c][i])));
+    }
+    if (!text.empty()) channels.emplace_back(model.channels[c].name, std::move(text));
+  }
+  std::sort(channels.begin(), channels.end());
+  std::string all;
+  for (auto const& [name, text] : channels) all += name + "\n" + text;
+  return sha256(all);
+}
+
 DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
   DataInfo info;
@@ -237,6 +272,8 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   info.sha256 = data.record.digest;
   info.rows = data.record.rows();
   info.scored = static_cast<int>(std::count(data.experiment.scored.begin(), data.experiment.scored.end(), 1));
+  info.scored_rows = scored_rows(data.experiment);
+  info.samples_sha256 = samples_digest(data.experiment, model);
   for (Quantity const& input : model.inputs)
     for (DataInputUse const& use : block.inputs)
       if (use.input == input.name)

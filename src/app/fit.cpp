@@ -160,6 +160,10 @@ class Fit {
     }
     if (!interrupted && !model_.expansions.empty()) add(look_at_functions(result, best, report));
     if (interrupted) report.findings.push_back(interrupted_finding());
+    if (!interrupted) {
+      report.evidence = laplace_evidence(*target_, backend_.aim, preparation_.modes, seed_, extra);
+      report.noise = noise_parameters(*space_);
+    }
     if (!interrupted) add(check_hierarchy(model_, result.draws, report.findings));
     add(failure_findings(ledger_));
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));

@@ -10,6 +10,7 @@
 #include "app/reporting.hpp"
 #include "core/files.hpp"
 #include "inference/verdict.hpp"
+#include "likelihood/simulated_parameters.hpp"
 #include "report/result.hpp"
 #include "report/terminal.hpp"
 
@@ -59,6 +60,16 @@ std::vector<double> best_draw(Draws const& draws) {
     for (std::size_t d = 0; d < chain.values.size(); ++d)
       if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
   return best == nullptr ? std::vector<double>{} : *best;
+}
+
+std::vector<std::string> noise_parameters(ParameterSpace const& space) {
+  std::vector<bool> const simulated = simulated_parameters(space.model());
+  std::vector<std::string> names;
+  for (int const r : space.sampled()) {
+    FittedParameter const& row = space.rows()[static_cast<std::size_t>(r)];
+    if (!simulated[static_cast<std::size_t>(row.parameter)]) names.push_back(row.name);
+  }
+  return names;
 }
 
 ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpoint const& checkpoint, SolverSettings const& solver,

@@ -7,6 +7,7 @@
 #include "app/task_checkpoint.hpp"
 #include "core/diagnostic.hpp"
 #include "inference/finding.hpp"
+#include "likelihood/parameter_space.hpp"
 #include "report/report.hpp"
 
 namespace sysid {
@@ -27,6 +28,9 @@ Summary of_column(Draws const& draws, std::size_t column);
 
 /// The draw of highest density, all its columns; empty where there is none.
 std::vector<double> best_draw(Draws const& draws);
+
+/// Sampled parameters that only the noise of the channels reads, as the fit names them.
+std::vector<std::string> noise_parameters(ParameterSpace const& space);
 
 /// Judges, writes and shows the report; the task is over unless it was interrupted: then its checkpoint goes, and its draws stay
 /// for tasks that refer to it.

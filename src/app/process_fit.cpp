@@ -144,6 +144,9 @@ class ProcessFit {
     for (std::size_t c = static_cast<std::size_t>(report.draws.parameter_count); c < report.draws.names.size(); ++c)
       report.summary.push_back(of_column(report.draws, c));
     if (!interrupted) {
+      Ledger extra;
+      report.evidence = laplace_evidence(*target_, backend_.aim, preparation_.modes, seed_, extra);
+      report.noise = noise_parameters(*all);
       ProcessScores scores = score_left_out(*target_, *all, parameters_of_best(report.draws), data_);
       report.fit = std::move(scores.lines);
       add(scores.findings);

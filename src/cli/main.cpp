@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "app/check_file.hpp"
+#include "app/compare.hpp"
 #include "app/experiments.hpp"
 #include "app/explain.hpp"
 #include "app/module_page.hpp"
@@ -153,6 +154,14 @@ int check(CommandLine line) {
   return exit;
 }
 
+int compare(CommandLine const& line) {
+  return guarded(line, Source("sysid", ""), [&] {
+    Comparison const comparison = sysid::compare({line.files.begin(), line.files.end()});
+    std::cout << (line.error_format == "json" ? comparison_json(comparison) : comparison_text(comparison));
+    return code(ExitCode::success);
+  });
+}
+
 std::string read_standard_input() { return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()}; }
 
 int format_one(CommandLine const& line, std::string const& path) {
@@ -264,6 +273,9 @@ int main(int argument_count, char** arguments) {
   checking->add_option("-o,--output", line.run.output, "folder for results, where simulate tasks leave data (default: results)");
   checking->add_option("--seed", line.run.seed, "seed of the prior draws, in place of the file's");
   checking->callback([&] { exit = check(line); });
+  CLI::App* comparing = app.add_subcommand("compare", "set results of fits and predictions side by side: evidence and errors");
+  comparing->add_option("results", line.files, "folders of tasks, or of whole runs")->required();
+  comparing->callback([&] { exit = compare(line); });
   CLI::App* formatting = app.add_subcommand("fmt", "rewrite files in canonical layout");
   formatting->add_option("files", line.files, "the .sysid files; - reads standard input and writes standard output")->required();
   formatting->add_flag("--check", line.only_check, "change nothing; name the files that would change and exit with 1");

@@ -111,6 +111,9 @@ std::string summary_section(Report const& report) {
       out += table({"", "unit", "mean", "sd", "5 %", "median", "95 %"}, rows, 2) +
              "<p class=\"caption\">Digits end where the Monte Carlo error begins.</p>\n";
   }
+  if (report.evidence)
+    if (std::string const text = evidence_text(*report.evidence); !text.empty())
+      out += fmt::format("<p>The model as a whole: {}.</p>\n", escape(text));
   for (ReportTable const& extra : report.tables) {
     std::vector<std::vector<std::string>> rows;
     std::vector<std::string> header;

@@ -45,6 +45,15 @@ Json named_values(std::vector<double> const& values, std::vector<std::string> co
   return out;
 }
 
+/// What a fit says of its model as a whole.
+Json evidence(Evidence const& evidence) {
+  if (!evidence.log_evidence) return {{"log_evidence", nullptr}, {"reason", evidence.reason}};
+  return {{"log_evidence", *evidence.log_evidence},
+          {"method", "laplace"},
+          {"along_axes", evidence.along_axes},
+          {"modes", evidence.modes}};
+}
+
 Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
   Json failures = Json::array();
   for (Failure const& failure : ledger.failures())
@@ -99,6 +108,11 @@ std::string summary_json(Report const& report) {
                             {"share", mode.share},
                             {"values", named_values(mode.declared, report.draws.names)},
                             {"sd", named_values(mode.sd, report.draws.names)}});
+  if (report.evidence) {
+    out["evidence"] = evidence(*report.evidence);
+    out["parameter_count"] = report.draws.parameter_count;
+    out["noise"] = report.noise;
+  }
   for (ReportTable const& table : report.tables) out["tables"][table.title] = {{"header", table.header}, {"rows", table.rows}};
   out["ledger"] = ledger(report.ledger, report.draws.names);
   out["seed"] = report.seed;
@@ -110,6 +124,8 @@ std::string summary_json(Report const& report) {
                            {"sha256", data.sha256},
                            {"rows", data.rows},
                            {"scored", data.scored},
+                           {"scored_rows", data.scored_rows},
+                           {"samples_sha256", data.samples_sha256},
                            {"notes", data.notes}});
   out["settings"] = facts(report.settings);
   return dump(out);

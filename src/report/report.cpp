@@ -1,7 +1,10 @@
 // The verdict, as all writers show it.
 #include "report/report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "inference/verdict.hpp"
 
@@ -18,6 +21,14 @@ bool has_verdict(Report const& report) { return report.draws.total() > 0 || !rep
 std::string verdict_headline(Report const& report) {
   std::string const text = report.verdict.empty() ? judge(report.findings).text : report.verdict;
   return text.substr(0, text.find('\n'));
+}
+
+std::string evidence_text(Evidence const& evidence) {
+  constexpr double rough = 0.5;  // nats: below, no comparison turns on it
+  if (!evidence.log_evidence) return evidence.of_likelihood ? "" : fmt::format("no log evidence: {}", evidence.reason);
+  return fmt::format(
+      "log evidence {:.1f} (Laplace{})", *evidence.log_evidence,
+      std::fabs(evidence.along_axes) < rough ? "" : fmt::format(", rough: {:+.1f} along its axes", evidence.along_axes));
 }
 
 std::vector<FitLine> fit_lines(Report const& report) {

@@ -12,6 +12,7 @@
 #include "inference/backend.hpp"
 #include "inference/convergence.hpp"
 #include "inference/draws.hpp"
+#include "inference/evidence.hpp"
 #include "inference/finding.hpp"
 #include "report/discovery.hpp"
 #include "report/function.hpp"
@@ -34,6 +35,8 @@ struct DataInfo {
   std::string file, sha256;
   int rows = 0;                    // of the file
   int scored = 0;                  // of the split
+  std::string scored_rows;         // which: "101..500", counted from 1
+  std::string samples_sha256;      // of the measured samples that the likelihood reads, with their rows and in their declared units
   std::vector<std::string> notes;  // "input x = force [N], held (zero_order)"
 };
 
@@ -70,6 +73,8 @@ struct Report {
   std::vector<FitLine> fit;               // what the task itself has scored
   std::vector<Prediction> predictions;    // of each experiment: over the fitted rows, or of the predicted ones
   std::vector<Mode> modes;                // by falling share
+  std::optional<Evidence> evidence;       // of a fit that has come to its end
+  std::vector<std::string> noise;         // of a fit: its parameters that only the noise reads
   std::vector<FunctionReport> functions;  // unknown ones of the equations
   std::vector<ReportTable> tables;
   std::optional<SelectionReport> selection;
@@ -91,6 +96,10 @@ std::string verdict_headline(Report const& report);
 
 /// One line per channel and experiment: the task's own scores, then those of the predicted bands that it has not taken itself.
 std::vector<FitLine> fit_lines(Report const& report);
+
+/// "log evidence 293.7 (Laplace)"; with what its axes say where that is more than half a nat, or why there is none. Empty for a fit
+/// of the likelihood alone, which nobody expects to have one.
+std::string evidence_text(Evidence const& evidence);
 
 /// "error", "warning", "note".
 std::string_view severity_word(Severity severity);

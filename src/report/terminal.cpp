@@ -45,6 +45,13 @@ std::string scores_line(FitLine const& line) {
   return out;
 }
 
+// Nothing for what has none by its nature.
+std::string evidence_line(Report const& report) {
+  if (!report.evidence) return "";
+  std::string const text = evidence_text(*report.evidence);
+  return text.empty() ? "" : text + "\n";
+}
+
 // The unit that the records count their time in, and one of it in s.
 std::pair<std::string, double> time_unit(Report const& report) {
   if (report.predictions.empty()) return {"s", 1};
@@ -78,7 +85,7 @@ std::string terminal_summary(Report const& report) {
   }
   std::string facts;
   for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what(), scores_line(line));
-  facts += ledger_text(report);
+  facts += evidence_line(report) + ledger_text(report);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report)) {
     std::string const judged = judge(report.findings).text;

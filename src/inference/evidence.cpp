@@ -1,0 +1,118 @@
+// Laplace's approximation, mode by mode, and how far from it the density is.
+#include "inference/evidence.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/elementary.hpp"
+#include "inference/laplace.hpp"
+#include "inference/refit.hpp"
+#include "linear_algebra/decompositions.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double of_weight = 1e-3;  // share of a mode that is followed; all others together change little
+constexpr double nearer = 0.5;      // widths: modes so near have come together
+constexpr int scale_draws = 512;
+constexpr std::uint64_t evidence_step = 4;  // of Purpose::start
+
+/// Modes of the density on the sampler's coordinates, each once.
+std::vector<Mode> sampled_modes(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
+                                std::function<bool()> const& stop) {
+  std::vector<Mode> of_some_weight;
+  for (Mode const& mode : modes)
+    if (of_some_weight.empty() || mode.share > of_weight) of_some_weight.push_back(mode);
+  if (aim == Aim::posterior) return of_some_weight;
+  std::vector<Mode> distinct;
+  for (Mode& mode : refit(target, Aim::posterior, of_some_weight, seed, ledger, stop)) {
+    if (!std::isfinite(mode.log_density)) continue;
+    bool const known =
+        std::any_of(distinct.begin(), distinct.end(), [&](Mode const& other) { return distance(other, mode) < nearer; });
+    if (!known) distinct.push_back(std::move(mode));
+  }
+  return distinct;
+}
+
+std::vector<std::string> names_along(Target const& target, std::vector<double> const& flat) {
+  auto const parameters = static_cast<std::size_t>(target.dimension());
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < parameters; ++p)
+    for (std::size_t at = p; at < flat.size(); at += parameters)
+      if (flat[at] != 0 && (names.empty() || names.back() != target.parameters()[p].name))
+        names.push_back(target.parameters()[p].name);
+  return names;
+}
+
+/// Parameters that a mode has at the end of their coordinate, where nothing more of it bends.
+std::vector<std::string> names_at_end(Objective const& objective, Mode const& mode) {
+  std::vector<std::string> names;
+  for (Eigen::Index p = 0; p < objective.scale.size(); ++p) {
+    double const u = mode.theta[static_cast<std::size_t>(p)], near = 1e-6 * objective.scale(p);
+    if (u <= objective.low(p) + near || u >= objective.high(p) - near)
+      names.push_back(objective.target.parameters()[static_cast<std::size_t>(p)].name);
+  }
+  return names;
+}
+
+/// log of the integral along each axis of a mode over that of the normal density, summed.
+double along_axes(Objective const& objective, Mode const& mode, Ledger& ledger) {
+  struct Node {
+    double at, weight;
+  };
+  // Five points for the weight of the standard normal, the one at its centre apart: Abramowitz and Stegun 1964, table 25.10.
+  constexpr double at_centre = 8.0 / 15;
+  constexpr std::array<Node, 4> nodes = {{{1.3556261799742659, 0.22207592200561265},
+                                          {-1.3556261799742659, 0.22207592200561265},
+                                          {2.8569700138728056, 0.011257411327720689},
+                                          {-2.8569700138728056, 0.011257411327720689}}};
+  Eigen::MatrixXd const covariance = covariance_of(mode);
+  Eigen::VectorXd const sd = covariance.diagonal().cwiseSqrt(), per_sd = sd.cwiseInverse();
+  auto const [values, vectors] = symmetric_eigen(per_sd.asDiagonal() * covariance * per_sd.asDiagonal());
+  Eigen::VectorXd const centre = theta_of(mode);
+  std::vector<Eigen::VectorXd> points;
+  for (Eigen::Index k = 0; k < centre.size(); ++k) {
+    Eigen::VectorXd const axis = std::sqrt(std::max(0.0, values(k))) * sd.cwiseProduct(vectors.col(k));
+    for (Node const& node : nodes) points.push_back(centre + node.at * axis);
+  }
+  std::vector<double> const density = log_density_in_blocks(objective, to_lanes(points), ledger);
+  double sum = 0;
+  for (std::size_t k = 0; k < density.size() / nodes.size(); ++k) {
+    double ratio = at_centre;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      ratio +=
+          nodes[i].weight * elementary::exp(density[k * nodes.size() + i] - mode.log_density + 0.5 * nodes[i].at * nodes[i].at);
+    sum += elementary::log(ratio);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Evidence laplace_evidence(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
+                          std::function<bool()> const& stop) {
+  if (aim == Aim::likelihood)
+    return {{}, "the likelihood alone was maximised, and an evidence is an average over the prior", 0, 0, true};
+  if (modes.empty() || target.dimension() == 0) return {{}, "no mode was looked for", 0, 0};
+  std::vector<Mode> const found = sampled_modes(target, aim, modes, seed, ledger, stop);
+  if (found.empty()) return {{}, "no mode of the posterior has a finite density", 0, 0};
+  auto const best =
+      std::max_element(found.begin(), found.end(), [](Mode const& a, Mode const& b) { return a.log_mass < b.log_mass; });
+  LaneArray draws(target.dimension(), scale_draws);
+  target.sample_prior({seed, Purpose::start, 0, evidence_step}, draws);
+  Objective const objective = make_objective(target, Aim::posterior, draws);
+  if (auto const names = names_at_end(objective, *best); !names.empty())
+    return {{}, fmt::format("the mode lies at a bound of {}", fmt::join(names, ", ")), 0, 0};
+  if (!best->flat.empty())
+    return {{}, fmt::format("the posterior is flat at its mode in {}", fmt::join(names_along(target, best->flat), ", ")), 0, 0};
+  if (!std::isfinite(best->log_mass)) return {{}, "the curvature at the mode is singular", 0, 0};
+  double sum = 0;
+  for (Mode const& mode : found) sum += elementary::exp(mode.log_mass - best->log_mass);
+  return {best->log_mass + elementary::log(sum), "", along_axes(objective, *best, ledger), static_cast<int>(found.size())};
+}
+
+}  // namespace sysid

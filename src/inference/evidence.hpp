@@ -1,0 +1,35 @@
+// The evidence of a model: likelihood times prior, integrated over the parameters, from the modes that a fit has found.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inference/backend.hpp"
+
+namespace sysid {
+
+struct Evidence {
+  std::optional<double> log_evidence;  // nats, of densities in declared units
+  std::string reason;                  // why there is none
+  /// How far the density is from normal: by the axes of the modes' ellipsoids, one by one, log_evidence would be larger by this.
+  double along_axes = 0;
+  int modes = 0;               // that it is the sum over
+  bool of_likelihood = false;  // there is none by the nature of the fit
+};
+
+/// From the modes of the density that `aim` names, which are followed to those of the density on the sampler's coordinates:
+///
+///   log p(y) = log sum over modes m of p(y | u_m) p(u_m) (2 pi)^(P/2) det(H_m)^(-1/2)         MacKay 2003, eq. 28.6 and ch. 27
+///
+/// u [P] the sampler's coordinates, p(u) with the Jacobian and all constants, H minus the second derivatives of log p(y, u). Exact
+/// where the density is normal in u. Nothing, with a reason, for `likelihood` (which has no prior), where the highest mode is at a
+/// bound or flat in some direction, and where nothing is left of the modes.
+///
+/// along_axes: the density along each axis of the ellipsoid, through its mode, by Gauss-Hermite quadrature of five points against
+/// the normal one, logs summed over the axes.
+Evidence laplace_evidence(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
+                          std::function<bool()> const& stop = {});
+
+}  // namespace sysid

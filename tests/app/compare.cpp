@@ -1,0 +1,164 @@
+// Results side by side: probabilities from evidences, predictions by their rows, and what is refused.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/compare.hpp"
+#include "app/running.hpp"
+#include "core/random.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+std::string record() {
+  Stream stream({.seed = 7, .purpose = Purpose::test, .index = 0, .step = 0});
+  std::ostringstream text;
+  text << "t,x,y\n";
+  double y = 0;
+  for (int i = 0; i < 120; ++i) {
+    double const x = stream.normal();
+    text << 0.5 * i << "," << x << "," << y << "\n";
+    y = 0.6 * y + x + 0.1 * stream.normal();
+  }
+  return text.str();
+}
+
+std::string const models = R"(
+model still {
+  time discrete 0.5 [s]
+  input x
+  parameter b ~ normal(0, sd = 2)
+  parameter sigma ~ log_uniform(0.01, 10)
+  observe y ~ normal(b*lag(x, 1), sd = sigma)
+}
+model arx {
+  time discrete 0.5 [s]
+  input x
+  parameter a ~ normal(0, sd = 2)
+  parameter b ~ normal(0, sd = 2)
+  parameter sigma ~ log_uniform(0.01, 10)
+  observe y ~ normal(a*lag(measured(y), 1) + b*lag(x, 1), sd = sigma)
+}
+model longer {
+  time discrete 0.5 [s]
+  input x
+  parameter a ~ normal(0, sd = 2)
+  parameter c ~ normal(0, sd = 2)
+  parameter b ~ normal(0, sd = 2)
+  parameter sigma ~ log_uniform(0.01, 10)
+  observe y ~ normal(a*lag(measured(y), 1) + c*lag(measured(y), 3) + b*lag(x, 1), sd = sigma)
+}
+data points { file "points.csv"; time t [s]; input x = x; measure y = y; split train = rows 5..80, head = rows 1..80, test = rows 81..120 }
+)";
+
+CaseRun runs(std::string const& tasks) { return CaseRun(models + tasks, {{"points.csv", record()}}); }
+
+}  // namespace
+
+TEST_CASE("models are weighed by their evidence, each once, and predictions stand with those of the same rows") {
+  CaseRun const run = runs(R"(
+a_still = fit still to points.train with map, seed = 1
+b_arx = fit arx to points.train with map, seed = 1
+c_again = fit arx to points.train with map, seed = 2
+d_ml = fit longer to points.train with ml, seed = 1
+one = predict b_arx on points.test with draws(20), seed = 1
+other = predict b_arx on points.train with draws(20), seed = 1
+free = predict b_arx on points.test with draws(20), prediction = free_run, seed = 1
+)");
+  Comparison const found = compare({run.folder.path() / "results"});
+  REQUIRE(found.fits.size() == 4);
+  CHECK(found.data == "points.train, rows 5..80 (76)");
+  auto const log_evidence = [&](char const* task) { return run.summary(task).at("evidence").at("log_evidence").get<double>(); };
+  double const odds = std::exp(log_evidence("a_still") - log_evidence("b_arx"));
+  CHECK(*found.fits[0].probability == doctest::Approx(odds / (1 + odds)));
+  CHECK(*found.fits[1].probability == doctest::Approx(1 / (1 + odds)));
+  CHECK(*found.fits[2].probability == *found.fits[1].probability);
+  CHECK_FALSE(found.fits[3].probability);
+  CHECK(found.fits[1].parameters == 3);
+  CHECK(found.fits[1].noise.starts_with("sigma 0."));
+  REQUIRE(found.predictions.size() == 3);
+  // By name they are free, one, other; free and one are of the same rows.
+  CHECK(found.predictions[0].kind == "free run");
+  CHECK(found.predictions[1].kind == "one step");
+  CHECK(found.predictions[0].samples == found.predictions[1].samples);
+  CHECK(found.predictions[2].rows == "5..80");
+  CHECK(found.predictions[1].nmse == run.summary("one").at("fit").at("nmse").get<double>());
+  std::string const text = comparison_text(found);
+  CAPTURE(text);
+  CHECK(text.find("d_ml has no evidence: the likelihood alone") != std::string::npos);
+  json const printed = json::parse(comparison_json(found));
+  CHECK(printed.at("fits").at(3).at("log_evidence").is_null());
+  CHECK(printed.at("predictions").size() == 3);
+}
+
+TEST_CASE("fits to different samples are refused, also where only the models' own lags make the difference") {
+  CaseRun const run = runs(R"(
+train = fit arx to points.train with map, seed = 1
+head = fit arx to points.head with map, seed = 1
+long = fit longer to points.head with map, seed = 1
+)");
+  auto const results = run.folder.path() / "results";
+  auto const refusal = [&](char const* one, char const* other) {
+    try {
+      compare({results / one, results / other});
+    } catch (UserError const& error) {
+      return error.diagnostic().message + "; " + error.diagnostic().help;
+    }
+    return std::string("not refused");
+  };
+  CHECK(
+      refusal("head", "long") ==
+      "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79) and points.head, rows 4..80 (77); "
+      "evidences are densities of the samples: let the part begin behind the longest lag of all models, and each is fitted to the "
+      "same rows");
+  CHECK(refusal("train", "long").starts_with("`train` and `long` are fitted to different samples"));
+  CHECK_THROWS_AS(compare({run.folder.path()}), UserError);  // holds no results itself
+  CHECK_THROWS_AS(compare({run.folder.path() / "nowhere"}), IoError);
+  CHECK_NOTHROW(compare({results / "head", results / "head"}));
+}
+
+TEST_CASE("the number of lags of a process is found by evidence on the same rows") {
+  // y(t) from y(t - 1) and y(t - 2); candidates look back one to four samples, and all are fitted to rows 5 to 124.
+  int found = 0;
+  constexpr int records = 4;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    CAPTURE(seed);
+    Stream stream({.seed = seed, .purpose = Purpose::test, .index = 0, .step = 0});
+    std::ostringstream text;
+    text << "t,y\n";
+    double last = 0, before = 0;
+    for (int i = 0; i < 124; ++i) {
+      double const y = 0.9 * std::sin(last) - 0.5 * before + 0.3 * stream.normal();
+      text << 0.25 * i << "," << y << "\n";
+      before = last, last = y;
+    }
+    std::string file = R"(
+model narx(n) {
+  time discrete 0.25 [s]
+  parameter s ~ half_normal(sd = 5)
+  parameter l ~ log_normal(median = 3, sd = 1)
+  parameter sigma ~ log_uniform(0.001, 10)
+  function f(past) ~ gp(squared_exponential(amplitude = s, length = l))
+  observe y ~ normal(f(lags(measured(y), 1..n)), sd = sigma)
+}
+data d { file "points.csv"; time t [s]; measure y = y; split train = rows 5..124 }
+)";
+    for (int n = 1; n <= 4; ++n) file += fmt::format("lags_{0} = fit narx(n = {0}) to d.train with map, seed = 1\n", n);
+    CaseRun const run(file, {{"points.csv", text.str()}});
+    Comparison const comparison = compare({run.folder.path() / "results"});
+    REQUIRE(comparison.fits.size() == 4);
+    CHECK(comparison.data == "d.train, rows 5..124 (120)");
+    double best = 0;
+    std::string name;
+    for (ComparedFit const& fit : comparison.fits)
+      if (*fit.probability > best) best = *fit.probability, name = fit.name;
+    CHECK(*comparison.fits[0].probability < 0.01);  // one lag is surely too few
+    found += name == "lags_2" ? 1 : 0;
+  }
+  CHECK(found >= records - 1);
+}
