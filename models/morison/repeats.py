@@ -2,13 +2,14 @@
 """The table of README.md: morison.sysid on the four records beside it and on four more, made by the same recipe.
 
   models/morison/repeats.py                the table
+  models/morison/repeats.py --lags         the table of log evidences of one to six lags
   models/morison/repeats.py --statistics   sds of all records, given and made, by which the recipe can be judged
 
 `--sysid PATH` takes another program, `--keep DIR` keeps the records that are made; nothing but Python's standard library is needed.
 
 The recipe: the particle velocity U is a sum of 150 waves with random phases, of spectrum w^-2.7 exp(-1.25 (0.74/w)^4) up to 0.35 Hz
-(which has the low end and the acceleration of the given records) and an sd of 1.2 m/s. The wake oscillator is van der Pol's, at the shedding
-frequency of a column of 1.5 m and Strouhal number 0.2, driven by the acceleration:
+(which has the low end and the acceleration of the given records) and an sd of 1.2 m/s. The wake oscillator is van der Pol's, at the
+shedding frequency of a column of 1.5 m and Strouhal number 0.2, driven by the acceleration:
 
   q'' + 0.3 w_s (q^2 - 1) q' + w_s^2 q = 1.5 U',    w_s = 2 pi 0.2 |U|/1.5,    q(0) = 0, q'(0) = 0.5
 
@@ -20,6 +21,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import tempfile
@@ -107,26 +109,43 @@ def statistics(record, columns):
     print(record, *(f"{deviation(columns[name]):.3f}" for name in ["U", "dU", "force_clean", "wake"]), *shares, sep=" | ")
 
 
-def errors_of(record, source, program):
+def run(program, text, source):
+    """Summaries by task of the text run on a record."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         shutil.copy(source, folder / "weak_0.csv")
-        shutil.copy(here / "morison.sysid", folder)
-        subprocess.run([program, "run", str(folder / "morison.sysid"), "-o", str(folder / "results"), "--no-figures"],
+        (folder / "case.sysid").write_text(text)
+        subprocess.run([program, "run", str(folder / "case.sysid"), "-o", str(folder / "results"), "--no-figures"],
                        capture_output=True, check=True)
+        return {path.parent.name: json.loads(path.read_text()) for path in folder.glob("results/*/summary.json")}
 
-        def summary(task):
-            return json.loads((folder / "results" / task / "summary.json").read_text())
 
-        errors = [f"{summary(task)['fit']['nmse']:.2f}" for task in forecasts]
-        drag = [f"{summary(task)['parameters']['Cd']['mean']:.3f}" for task in ["white_fit", "force_fit", "residual_fit"]]
-        print(record, *errors, *drag, sep=" | ", flush=True)
+def errors_of(record, source, program):
+    summary = run(program, (here / "morison.sysid").read_text(), source)
+    errors = [f"{summary[task]['fit']['nmse']:.2f}" for task in forecasts]
+    drag = [f"{summary[task]['parameters']['Cd']['mean']:.3f}" for task in ["white_fit", "force_fit", "residual_fit"]]
+    print(record, *errors, *drag, sep=" | ", flush=True)
+
+
+def lags_of(record, source, program):
+    blocks = re.findall(r"^(?:model grey_residual|data flume) .*?^}\n", (here / "morison.sysid").read_text(), re.DOTALL | re.MULTILINE)
+    text = "".join(blocks).replace("model grey_residual", "model grey_residual(n)").replace("0..4", "0..n").replace("1..4", "1..n")
+    for n in range(1, 7):
+        text += f"lags_{n} = fit grey_residual(n = {n}) to flume.train with map, seed = 1\n"
+        text += f"free_{n} = predict lags_{n} on flume.test with draws(20), prediction = free_run, seed = 1\n"
+    summary = run(program, text, source)
+    evidences = [summary[f"lags_{n}"]["evidence"]["log_evidence"] for n in range(1, 7)]
+    best = evidences.index(max(evidences)) + 1
+    probability = 1 / sum(math.exp(each - max(evidences)) for each in evidences)
+    errors = [f"{summary[f'free_{n}']['fit']['nmse']:.2f}" for n in (best, 4)]
+    print(record, *(f"{each:.1f}" for each in evidences), f"{best} ({probability:.2f})", *errors, sep=" | ", flush=True)
 
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--sysid", default=str(here.parent.parent / "sysid"))
     arguments.add_argument("--keep", type=pathlib.Path)
+    arguments.add_argument("--lags", action="store_true")
     arguments.add_argument("--statistics", action="store_true")
     given = arguments.parse_args()
     with tempfile.TemporaryDirectory() as name:
@@ -142,6 +161,11 @@ def main():
             print("record", "sd of U", "U'", "force", "wake", "wake [% of force]", "noise [%]", sep=" | ")
             for record in ordered:
                 statistics(record, read(records[record]))
+            return
+        if given.lags:
+            print("record", *range(1, 7), "most probable", "free run there", "free run of 4", sep=" | ")
+            for record in ordered:
+                lags_of(record, records[record], given.sysid)
             return
         print("record", *forecasts, "C_d white", "C_d grey_force", "C_d grey_residual", sep=" | ")
         for record in ordered:
