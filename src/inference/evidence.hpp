@@ -21,7 +21,7 @@ struct Evidence {
 
 /// From the modes of the density that `aim` names, which are followed to those of the density on the sampler's coordinates:
 ///
-///   log p(y) = log sum over modes m of p(y | u_m) p(u_m) (2 pi)^(P/2) det(H_m)^(-1/2)         MacKay 2003, eq. 28.6 and ch. 27
+///   log p(y) = log sum over modes m of p(y | u_m) p(u_m) (2 pi)^(P/2) det(H_m)^(-1/2)         MacKay 2003, ch. 27 and 28
 ///
 /// u [P] the sampler's coordinates, p(u) with the Jacobian and all constants, H minus the second derivatives of log p(y, u). Exact
 /// where the density is normal in u. Nothing, with a reason, for `likelihood` (which has no prior), where the highest mode is at a
