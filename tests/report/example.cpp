@@ -124,6 +124,8 @@ Report duffing(int draws) {
        "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
        1500,
        500,
+       "1..500",
+       "5994471abb01112afcc18159f6cc74b4f511b99806da59b3caf5a9c173cacfc5",
        {"rows 1..500 of 1500", "input x = force [N], held between samples (zero_order)", "measure displacement = y_noisy [mm]"}});
   report.findings.push_back({Severity::note, "step", "no posterior mean moves by more than 0.01 sd at half the step", ""});
   report.fit = {{"bench.train", "displacement", "mm", {{"nmse", 0.0104}, {"chi_squared_per_sample", 1.01}}}};

@@ -24,6 +24,7 @@ TEST_CASE("the summary holds each parameter with unit and diagnostics, exactly")
   CHECK(json["settings"]["proposal"] == "adaptive");
   CHECK(json["data"][0]["file"] == "duffing.csv");
   CHECK(json["data"][0]["rows"] == 1500);
+  CHECK(json["data"][0]["scored_rows"] == "1..500");
   CHECK(json["fit"]["nmse"] == 0.0104);
   CHECK(json["fit"]["channels"]["bench.train"]["displacement"].contains("coverage_95"));
   CHECK(json["fit"]["channels"]["bench.train"]["displacement"]["chi_squared_per_sample"] == 1.01);
