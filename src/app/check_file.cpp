@@ -114,11 +114,7 @@ CheckResult check_file(Session& session) {
       result.page.models.push_back(describe_structure(*written, session.file.tree, model));
   for (CheckedDictionary const& dictionary : session.file.dictionaries)
     result.page.dictionaries.push_back(describe_dictionary(dictionary));
-  Readiness const readiness = check_readiness(session, [&](Task const& task) {
-    // Data that a simulate task makes anew are checked when they are there.
-    auto const* made = std::get_if<SimulateTask>(&task.what);
-    return made == nullptr || !std::filesystem::exists(session.result_folder(task) / made->file);
-  });
+  Readiness const readiness = check_readiness(session);
   result.diagnostics = readiness.diagnostics;
   result.unreadable = readiness.unreadable;
   for (Task const& task : session.file.tasks) {

@@ -21,8 +21,8 @@ LibraryModule const* in_library(std::string const& name) {
 
 class Loader {
  public:
-  Loader(Source& source, Diagnostics& diagnostics)
-      : source_(source), diagnostics_(diagnostics), folder_(std::filesystem::path(source.name()).parent_path()) {
+  Loader(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved)
+      : source_(source), diagnostics_(diagnostics), unsaved_(unsaved), folder_(std::filesystem::path(source.name()).parent_path()) {
     path_.push_back(std::filesystem::path(source.name()).stem().string());
   }
 
@@ -46,7 +46,8 @@ class Loader {
     if (!seen_.insert(name.text).second) return;
     std::string file = (folder_ / (name.text + ".sysid")).string();
     std::optional<std::string> text;
-    if (!from_library && !own_name && std::filesystem::exists(file)) text = read_file(file, most_text_bytes + 1);
+    if (!from_library && !own_name && unsaved_) text = unsaved_(file);
+    if (!from_library && !own_name && !text && std::filesystem::exists(file)) text = read_file(file, most_text_bytes + 1);
     bool const of_library = !text.has_value();
     if (of_library) {
       LibraryModule const* module = in_library(name.text);
@@ -81,6 +82,7 @@ class Loader {
 
   Source& source_;
   Diagnostics& diagnostics_;
+  UnsavedText const& unsaved_;
   std::filesystem::path folder_;
   std::vector<std::string> path_;  // of the files that are open
   std::set<std::string> seen_;
@@ -89,8 +91,8 @@ class Loader {
 
 }  // namespace
 
-std::vector<Module> load_modules(ast::File const& file, Source& source, Diagnostics& diagnostics) {
-  Loader loader(source, diagnostics);
+std::vector<Module> load_modules(ast::File const& file, Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved) {
+  Loader loader(source, diagnostics, unsaved);
   loader.load(file, false);
   return loader.take();
 }

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "app/check_file.hpp"
-#include "app/modules.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/results.hpp"
@@ -71,12 +70,12 @@ std::string nothing_to_do(Source const& source, CheckedFile const& file, std::ve
 
 }  // namespace
 
-std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics) {
+std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved) {
   ReadableFile const read = parse_readable(source, diagnostics);
   if (!read.tree) return std::nullopt;
   bool const complete = !diagnostics.has_errors();
   Diagnostics found;  // behind the syntax
-  auto const modules = load_modules(*read.tree, source, found);
+  auto const modules = load_modules(*read.tree, source, found, unsaved);
   auto const fitting = settings_of(backends()), selecting = settings_of(selectors());
   auto const discovering = settings_of(regression::selectors()), derivatives = settings_of(regression::forms());
   std::optional<CheckedFile> file;

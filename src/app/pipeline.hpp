@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/modules.hpp"
 #include "app/options.hpp"
 #include "check/check.hpp"
 #include "core/diagnostic.hpp"
@@ -22,7 +23,7 @@ struct Loaded {
 
 /// Parses, puts modules and parts in, checks. Nothing when there are errors in `diagnostics`, which refer to `source`; the texts of
 /// modules join it. IoError when a module cannot be read.
-std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics);
+std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved = {});
 
 /// What `--dump STAGE` prints: ast, flat, model or program.
 std::string dump_stage(Source& source, std::string const& stage, Diagnostics& diagnostics);

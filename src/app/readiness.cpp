@@ -197,4 +197,11 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
   return result;
 }
 
+Readiness check_readiness(Session& session) {
+  return check_readiness(session, [&](Task const& task) {
+    auto const* made = std::get_if<SimulateTask>(&task.what);
+    return made == nullptr || !std::filesystem::exists(session.result_folder(task) / made->file);
+  });
+}
+
 }  // namespace sysid

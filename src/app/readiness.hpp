@@ -32,6 +32,9 @@ struct Readiness {
 /// task of the file makes are left for later.
 Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted);
 
+/// Of all tasks, as far as it can be known before any runs: data that a simulate task makes are looked at where they are there.
+Readiness check_readiness(Session& session);
+
 /// The data of a task, once for each model that reads them, those of a discovery for what its dictionary is bound to; empty for a
 /// simulate task.
 struct TaskData {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "check/errors.hpp"
+#include "core/table.hpp"
 
 namespace sysid {
 namespace {
@@ -40,13 +41,30 @@ std::vector<GeneratorRow> const& generators() {
   return rows;
 }
 
+std::vector<std::string> arguments_of(GeneratorRow const& row) {
+  std::vector<std::string> names;
+  for (GeneratorArgument const& argument : row.arguments) names.emplace_back(argument.name);
+  names.emplace_back("hold");
+  return names;
+}
+
 }  // namespace
+
+std::vector<std::string> signal_names() {
+  std::vector<std::string> names;
+  for (GeneratorRow const& row : generators()) names.emplace_back(row.name);
+  return names;
+}
+
+std::vector<std::string> signal_arguments(std::string_view signal) {
+  GeneratorRow const* row = row_named(generators(), signal);
+  return row == nullptr ? std::vector<std::string>() : arguments_of(*row);
+}
 
 std::optional<InputGenerator> check_generator(ast::Option const& option, Quantity const& input, OptionReader& reader,
                                               Diagnostics& diagnostics) {
   ast::Call const* call = as_call(option.value);
-  std::vector<std::string> names;
-  for (GeneratorRow const& row : generators()) names.emplace_back(row.name);
+  std::vector<std::string> const names = signal_names();
   if (call == nullptr) {
     diagnostics.add(errors::option_kind(option.value.span, "input " + input.name, "a generated signal", "gaussian(sd = 10)"));
     return std::nullopt;
@@ -59,9 +77,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
   }
   InputGenerator result{row->kind, {}, row->rule};
   std::map<std::string, Span> given;  // rightly or not
-  std::vector<std::string> known;
-  for (GeneratorArgument const& argument : row->arguments) known.emplace_back(argument.name);
-  known.emplace_back("hold");
+  std::vector<std::string> const known = arguments_of(*row);
   for (ast::Argument const& argument : call->arguments) {
     std::string const name = argument.name ? argument.name->text : "";
     auto const place =

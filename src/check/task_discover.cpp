@@ -3,6 +3,7 @@
 
 #include "check/errors.hpp"
 #include "check/task_checker.hpp"
+#include "check/task_options.hpp"
 
 namespace sysid {
 
@@ -36,7 +37,7 @@ void TaskChecker::discover_method(ast::Option const& option, std::string const& 
     std::erase_if(arguments, [](ast::Argument const& each) { return each.name && each.name->text == "derivatives"; });
   }
   if (!backend_option(selector, key, backends_.discovering, task.selector, task.selector_settings))
-    options_.unknown(option, {"noise", "top", "candidates", "refit", "seed"});
+    options_.unknown(option, task_option_names("discover"));
 }
 
 void TaskChecker::noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task) {

@@ -1,6 +1,7 @@
 // `fit`: the back end with its settings, and how the model is simulated.
 #include "check/errors.hpp"
 #include "check/task_checker.hpp"
+#include "check/task_options.hpp"
 
 namespace sysid {
 
@@ -21,7 +22,7 @@ FitTask TaskChecker::fit() {
       if (options_.fresh(option, key)) search(option, task.near);
     } else if (!simulation_option(option, key, models, task) &&
                !backend_option(option, key, backends_.fitting, task.backend, task.settings)) {
-      options_.unknown(option, {"start", "solver", "substeps", "prediction", "search", "seed"});
+      options_.unknown(option, task_option_names("fit"));
     }
   }
   if (model != nullptr) {

@@ -1,5 +1,6 @@
 // `predict`: the fit or selection whose draws it uses, and how.
 #include "check/task_checker.hpp"
+#include "check/task_options.hpp"
 
 #include <algorithm>
 
@@ -61,7 +62,7 @@ PredictTask TaskChecker::predict() {
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
     if (option.input || !options_.fresh(option, key)) {
-      if (option.input) options_.unknown(option, {"draws", "redraw", "start", "prediction", "seed"});
+      if (option.input) options_.unknown(option, task_option_names("predict"));
       continue;
     }
     if (key == "draws") {
@@ -87,7 +88,7 @@ PredictTask TaskChecker::predict() {
     } else if (option.key && key == "seed") {
       options_.seed(option, task.seed);
     } else {
-      options_.unknown(option, {"draws", "redraw", "start", "prediction", "seed"});
+      options_.unknown(option, task_option_names("predict"));
     }
   }
   for (int const m : models) {

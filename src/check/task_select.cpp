@@ -5,6 +5,7 @@
 #include "check/elaborate/errors.hpp"
 #include "check/errors.hpp"
 #include "check/task_checker.hpp"
+#include "check/task_options.hpp"
 
 namespace sysid {
 
@@ -102,7 +103,7 @@ SelectTask TaskChecker::select() {
     } else if (!option.input && !option.key && key == "weights") {
       if (options_.fresh(option, key)) distance.weights = &option;
     } else if (!backend_option(option, key, backends_.selecting, task.backend, task.settings)) {
-      options_.unknown(option, {"distance", "weights", "start", "solver", "substeps", "prediction", "seed"});
+      options_.unknown(option, task_option_names("select"));
     }
   }
   task.seed = common.seed;

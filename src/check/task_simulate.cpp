@@ -6,6 +6,7 @@
 #include "check/data.hpp"
 #include "check/errors.hpp"
 #include "check/generator.hpp"
+#include "check/task_options.hpp"
 
 namespace sysid {
 namespace {
@@ -34,8 +35,6 @@ SimulateTask TaskChecker::simulate() {
   std::vector<Span> places(model.inputs.size());
   std::optional<Span> spacing;
   Span noise_place = tree_.verb.span;
-  std::vector<std::string> const options = {"values", "input",  "noise",    "samples", "rate",
-                                            "step",   "solver", "substeps", "seed",    "file"};
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
     if (!options_.fresh(option, key)) continue;
@@ -79,7 +78,7 @@ SimulateTask TaskChecker::simulate() {
         diagnostics_.add(
             errors::option_kind(option.value.span, key, "a file name in quotes, without folders", "file = \"truth.csv\""));
     } else {
-      options_.unknown(option, options);
+      options_.unknown(option, task_option_names("simulate"));
     }
   }
   if (task.noise_fraction >= 0)

@@ -18,6 +18,7 @@
 #include "core/instruction_set.hpp"
 #include "core/interrupt.hpp"
 #include "core/progress_terminal.hpp"
+#include "lsp/server.hpp"
 #include "syntax/format.hpp"
 #include "syntax/parse.hpp"
 
@@ -292,6 +293,13 @@ int main(int argument_count, char** arguments) {
   CLI::App* documenting = app.add_subcommand("document", "print a module of the standard library as a page");
   documenting->add_option("module", line.topic, "a name of `sysid list modules`")->required();
   documenting->callback([&] { exit = document(line); });
+  CLI::App* serving = app.add_subcommand("lsp", "serve an editor on standard input and output: the language server protocol");
+  bool stdio = true;
+  serving->add_flag("--stdio", stdio, "standard input and output; there is no other way");
+  serving->callback([&] {
+    std::ios::sync_with_stdio(false);  // so that what has come already can be told
+    exit = lsp::serve(std::cin, std::cout);
+  });
   CLI::App* version = app.add_subcommand("version", "print the version and the instruction set in use");
   version->callback([] { std::cout << fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())); });
   if (argument_count > 1 && arguments[1][0] != '-') {

@@ -34,6 +34,10 @@ std::map<std::string, Folders> const allowed = {
     {"linear_algebra", {"linear_algebra", "core"}},
     {"gaussian_process", {"gaussian_process", "linear_algebra", "function", "expression", "core"}},
     {"inference", {"inference", "likelihood", "linear_algebra", "core"}},
+    {"assist",
+     {"assist", "app", "check", "grammar", "syntax", "inference", "regression", "gaussian_process", "distribution", "function",
+      "data", "core"}},
+    {"lsp", {"lsp", "assist", "syntax", "core"}},
     {"report", {"report", "inference", "likelihood", "core"}},
 };
 
