@@ -11,14 +11,15 @@
 #include "app/compare.hpp"
 #include "app/experiments.hpp"
 #include "app/explain.hpp"
+#include "app/lists.hpp"
 #include "app/module_page.hpp"
 #include "app/pipeline.hpp"
-#include "cli/lists.hpp"
 #include "core/files.hpp"
 #include "core/instruction_set.hpp"
 #include "core/interrupt.hpp"
 #include "core/progress_terminal.hpp"
 #include "lsp/server.hpp"
+#include "repl/prompt.hpp"
 #include "syntax/format.hpp"
 #include "syntax/parse.hpp"
 
@@ -269,6 +270,15 @@ int main(int argument_count, char** arguments) {
   runs("select", "do its select tasks: which candidate model, with which parameters", {"select"});
   runs("discover", "do its discover tasks: which equation, from the terms of a dictionary", {"discover"});
   runs("predict", "do its predict tasks, from stored draws", {"predict"});
+  CLI::App* prompting =
+      app.add_subcommand("repl", "a prompt for exploring: statements of the language, tasks, expressions over results");
+  prompting->add_option("file", line.file, "a .sysid file to begin with");
+  prompting->add_option("-o,--output", line.run.output, "folder for results (default: results)");
+  prompting->add_flag("--force", line.run.force, "overwrite results of the same name that are there already");
+  prompting->add_option("--seed", line.run.seed, "seed of tasks that state none (default: drawn, and written into them)");
+  prompting->add_option("--threads", line.run.execution.threads, "threads (0: one per processor); results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  prompting->callback([&] { exit = repl::run_prompt(line.run, line.file); });
   CLI::App* checking = app.add_subcommand("check", "say what is wrong with a file and what its data can tell, before any sampling");
   checking->add_option("file", line.file, "the .sysid file")->required();
   checking->add_option("-o,--output", line.run.output, "folder for results, where simulate tasks leave data (default: results)");

@@ -1,5 +1,5 @@
 // Tables as text.
-#include "cli/lists.hpp"
+#include "app/lists.hpp"
 
 #include <fmt/format.h>
 

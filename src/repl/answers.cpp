@@ -1,0 +1,173 @@
+// Expressions over results: a number, a summary of many, or a plot.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "inference/convergence.hpp"
+#include "repl/workbench.hpp"
+#include "report/number.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid::repl {
+namespace {
+
+constexpr int digits = 6;
+
+std::string with_unit(std::string const& number, std::string const& unit) {
+  return unit.empty() ? number : fmt::format("{} [{}]", number, unit);
+}
+
+std::string described(Quantity const& quantity) {
+  std::string const unit = quantity.unit_text();
+  std::vector<double> const values = quantity.all_shown();
+  if (values.size() == 1) {
+    std::string const sd = quantity.sd ? fmt::format(" \u00b1 {}", significant(quantity.shown(*quantity.sd), 2)) : "";
+    return with_unit(significant(values[0], digits) + sd, unit);
+  }
+  if (quantity.kind == Quantity::Kind::draws) {
+    ChainValues chains;
+    std::size_t at = 0;
+    for (std::size_t const length : quantity.chains) {
+      chains.emplace_back(values.begin() + static_cast<std::ptrdiff_t>(at),
+                          values.begin() + static_cast<std::ptrdiff_t>(at + length));
+      at += length;
+    }
+    SummaryText const text = format_summary(summarise(quantity.label, unit, chains));
+    return fmt::format("{}, 90 % between {} and {} ({} draws of {})", with_unit(text.mean + " \u00b1 " + text.sd, unit), text.q5,
+                       text.q95, values.size(), quantity.of);
+  }
+  double sum = 0, squares = 0, low = std::nan(""), high = low;
+  int count = 0;
+  for (double const each : values) {
+    if (!std::isfinite(each)) continue;
+    ++count;
+    sum += each;
+    squares += each * each;
+    low = std::isnan(low) ? each : std::min(low, each);
+    high = std::isnan(high) ? each : std::max(high, each);
+  }
+  return fmt::format("{} samples along {}: between {} and {}, rms {}", count, quantity.of, significant(low, 4),
+                     with_unit(significant(high, 4), unit),
+                     with_unit(significant(std::sqrt(squares / std::max(count, 1)), 4), unit));
+}
+
+AxisName axis_of(Quantity const& quantity) { return {quantity.label, quantity.unit_text()}; }
+
+std::vector<double> numbers_up_to(std::size_t count) {
+  std::vector<double> numbers;
+  for (std::size_t i = 1; i <= count; ++i) numbers.push_back(static_cast<double>(i));
+  return numbers;
+}
+
+/// A series against its time.
+std::string along_time(Quantity const& quantity, PlotSize size) {
+  RecordSeries const* record = quantity.record;
+  std::vector<double> const time = record != nullptr ? record->time : numbers_up_to(quantity.values.size());
+  return plot_curves({{time, quantity.all_shown(), true}},
+                     record != nullptr ? AxisName{record->axis, record->unit} : AxisName{"row", ""}, axis_of(quantity), size);
+}
+
+}  // namespace
+
+bool Workbench::answer(ast::Expression const& tree, std::string const& text) {
+  Diagnostics diagnostics;
+  std::vector<ast::FunctionDefinition const*> functions;
+  if (checked_)
+    for (ast::Item const& item : checked_->file.tree.items)
+      if (auto const* function = std::get_if<ast::FunctionDefinition>(&item)) functions.push_back(function);
+  Evaluator evaluator(results_, functions, diagnostics);
+  auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node);
+  auto const* name = std::get_if<ast::Reference>(&tree.node);
+  std::optional<std::string> said;
+  if (call != nullptr && (*call)->function.text == "plot") {
+    said = plot(**call, evaluator, diagnostics);
+  } else if (call != nullptr && ((*call)->function.text == "trace" || (*call)->function.text == "histogram")) {
+    diagnostics.add({Severity::error,
+                     "",
+                     fmt::format("`{}` is a plot, not a number", (*call)->function.text),
+                     Label{tree.span, {}},
+                     {},
+                     fmt::format("`plot({})`", unparse(tree))});
+  } else if (name != nullptr && name->index.empty() && evaluator.result(name->name.text) != nullptr) {
+    said = evaluator.result(name->name.text)->summary;
+  } else if (name != nullptr && name->index.empty() && work_.find(name->name.text) < work_.items.size()) {
+    return show_text(name->name.text);
+  } else if (auto const quantity = evaluator.value(tree)) {
+    said = described(*quantity) + "\n";
+  }
+  show(diagnostics, text);
+  if (said) voices_.answers << *said << std::flush;
+  return said.has_value();
+}
+
+std::string Workbench::plot_result(Result const& result) const {
+  constexpr std::size_t most_rows = 200;  // more are a black band
+  for (RecordSeries const& record : result.records)
+    for (SeriesColumn const& quantity : record.quantities) {
+      if (quantity.measured.empty()) continue;
+      Curve measured{{}, {}, false}, predicted{{}, {}, true};
+      for (std::size_t i = 0; i < record.time.size() && predicted.x.size() < most_rows; ++i) {
+        if (record.scored[i] == 0) continue;
+        for (auto* curve : {&measured, &predicted}) curve->x.push_back(record.time[i]);
+        measured.y.push_back(quantity.measured[i]);
+        predicted.y.push_back(quantity.mean[i]);
+      }
+      return fmt::format(
+          "{} on {}: measured (dots) and predicted (line), the first {} rows\n{}", quantity.name, record.experiment,
+          predicted.x.size(),
+          plot_curves({predicted, measured}, {record.axis, record.unit}, {quantity.name, quantity.unit}, plot_size_));
+    }
+  return "";
+}
+
+std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& evaluator, Diagnostics& diagnostics) const {
+  auto const refuse = [&](Span span, std::string message, std::string help) -> std::optional<std::string> {
+    diagnostics.add({Severity::error, "", std::move(message), Label{span, {}}, {}, std::move(help)});
+    return std::nullopt;
+  };
+  std::string const examples = "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)";
+  auto const& arguments = call.arguments;
+  if (arguments.empty() || arguments.size() > 2)
+    return refuse(call.span, "plot takes one thing, or two against each other", examples);
+  std::string drawn;
+  if (arguments.size() == 2) {
+    auto const x = evaluator.value(arguments[0].value), y = evaluator.value(arguments[1].value);
+    if (!x || !y) return std::nullopt;
+    if (x->values.size() != y->values.size() || x->values.size() < 2)
+      return refuse(call.span,
+                    fmt::format("`{}` has {} values, `{}` has {}", x->label, x->values.size(), y->label, y->values.size()),
+                    "both are draws of one fit, or samples of one record");
+    drawn = plot_curves({{x->all_shown(), y->all_shown(), false}}, axis_of(*x), axis_of(*y), plot_size_);
+  } else {
+    ast::Expression const& what = arguments[0].value;
+    auto const* name = std::get_if<ast::Reference>(&what.node);
+    if (name != nullptr && name->index.empty() && evaluator.result(name->name.text) != nullptr) {
+      drawn = plot_result(*evaluator.result(name->name.text));
+    } else {
+      auto const* inner = std::get_if<ast::Box<ast::Call>>(&what.node);
+      bool const trace = inner != nullptr && (*inner)->function.text == "trace" && (*inner)->arguments.size() == 1;
+      bool const histogram = inner != nullptr && (*inner)->function.text == "histogram" && (*inner)->arguments.size() == 1;
+      auto const quantity = evaluator.value(trace || histogram ? (*inner)->arguments[0].value : what);
+      if (!quantity) return std::nullopt;
+      if (quantity->values.size() < 2)
+        return refuse(
+            what.span, fmt::format("`{}` is one number", quantity->label),
+            quantity->kind == Quantity::Kind::draws ? "fit with mh for draws, or plot(residual(CHANNEL)), plot(FIT)" : examples);
+      if (trace)
+        drawn = quantity->kind == Quantity::Kind::rows
+                    ? along_time(*quantity, plot_size_)
+                    : plot_curves({{numbers_up_to(quantity->values.size()), quantity->all_shown(), true}},
+                                  {quantity->chains.size() > 1 ? "draw, chain after chain" : "draw", ""}, axis_of(*quantity),
+                                  plot_size_);
+      else if (histogram || quantity->kind == Quantity::Kind::draws)
+        drawn = plot_histogram(quantity->all_shown(), axis_of(*quantity), plot_size_);
+      else
+        drawn = along_time(*quantity, plot_size_);
+    }
+  }
+  if (drawn.empty()) return refuse(call.span, "there is nothing finite to plot", examples);
+  return drawn;
+}
+
+}  // namespace sysid::repl

@@ -1,0 +1,56 @@
+// No word without help.
+#include "repl/help.hpp"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "check/generators.hpp"
+#include "core/solver.hpp"
+#include "distribution/distribution.hpp"
+#include "function/table.hpp"
+#include "gaussian_process/kernel.hpp"
+#include "inference/backend.hpp"
+#include "inference/selector.hpp"
+#include "regression/columns.hpp"
+#include "regression/selector.hpp"
+#include "repl/workbench.hpp"
+#include "syntax/words.hpp"
+
+using namespace sysid;
+
+TEST_CASE("every word of the language, every setting and every code of a message has help") {
+  std::set<std::string> words;
+  auto const add = [&](auto const& table) {
+    for (auto const& each : table) words.insert(std::string(each));
+  };
+  auto const add_rows = [&](auto const& rows) {
+    for (auto const& row : rows) words.insert(std::string(row.name));
+  };
+  auto const add_settings = [&](auto const& rows) {
+    for (auto const& row : rows) {
+      words.insert(std::string(row.name));
+      add_rows(row.settings);
+    }
+  };
+  add(words::reserved), add(words::items), add(words::verbs), add(words::prepositions), add(words::task_words);
+  add(words::model_statements), add(words::model_words), add(words::data_statements), add(words::data_words);
+  add(words::candidate_words), add(words::dictionary_statements);
+  add_rows(functions()), add_rows(distributions()), add_rows(gaussian_process::kernels()), add_rows(generators());
+  add_settings(backends()), add_settings(selectors()), add_settings(solvers());
+  add_settings(regression::selectors()), add_settings(regression::forms());
+  add_rows(repl::commands()), add_rows(repl::statistics()), add_rows(repl::series_functions());
+  for (char const* option : {"start",  "solver",   "substeps", "prediction",      "seed",       "search",  "draws",
+                             "redraw", "distance", "weights",  "values",          "noise",      "samples", "rate",
+                             "file",   "E2103",    "2103",     "chains_disagree", "hysteresis", "plot",    "trace"})
+    words.insert(option);
+  CHECK(words.size() > 150);
+  for (std::string const& word : words) CHECK_MESSAGE(repl::help_on(word).has_value(), word);
+  CHECK_FALSE(repl::help_on("frobnicate").has_value());
+}
+
+TEST_CASE("help on a word says how it is written, and what it does") {
+  CHECK(repl::help_on("log_uniform")->find("log_uniform(lower, upper)") != std::string::npos);
+  CHECK(repl::help_on("burn_in")->find("burn_in of mh") != std::string::npos);
+  CHECK(repl::help_on("e2103")->find("E2103") == 0);
+}

@@ -1,0 +1,200 @@
+// Sessions without a terminal.
+#include "repl/workbench.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/pipeline.hpp"
+#include "core/interrupt.hpp"
+#include "dialogue.hpp"
+#include "repl/prompt.hpp"
+
+using namespace sysid;
+
+namespace {
+
+bool has(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+
+/// The number that an expression is.
+double number(Dialogue& dialogue, std::string const& expression) {
+  CHECK_MESSAGE(dialogue.enter(expression), dialogue.messages());
+  return std::stod(dialogue.answers());
+}
+
+std::string summary_of(std::filesystem::path const& folder) { return read_file(folder / "summary.json"); }
+
+}  // namespace
+
+TEST_CASE("a model, its data, a fit, a term more, a refit: entered one by one, and each is checked when it is entered") {
+  Dialogue d;
+  d.begin();
+  CHECK_MESSAGE(d.enter("first = fit oscillator to bench.train with map"), d.messages());
+  CHECK(has(d.answers(), "first: fit oscillator to bench.train with map"));
+  double const linear = number(d, "rms(residual(displacement))"), sd = number(d, "sd(k)");
+  CHECK(sd > 0);
+  // Both at once, since neither stands alone.
+  CHECK_MESSAGE(d.enter("parameter k3 [N/m^3] ~ log_uniform(1e7, 1e11); 1 [kg]*y'' + c*y' + k*y + k3*y^3 = x"), d.messages());
+  CHECK(has(d.messages(), "the earlier `oscillator` stays as `oscillator_1`"));
+  CHECK_MESSAGE(d.enter("refit"), d.messages());
+  CHECK(has(d.messages(), "first2 = fit oscillator to bench.train with map, seed = 1, search = near(first)"));
+  CHECK(number(d, "rms(residual(displacement))") < 0.5 * linear);
+  CHECK(std::abs(number(d, "mean(k3)") - 5e9) < 4 * number(d, "sd(k3)"));
+  CHECK(number(d, "first.k") != number(d, "k"));
+  CHECK(number(d, "rms(residual(first.displacement))") == linear);
+}
+
+TEST_CASE("a saved session is a file that gives the same numbers, to the last digit") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("first = fit oscillator to bench.train with mh(samples = 400, burn_in = 200, thin = 2, chains = 2)"));
+  REQUIRE(d.enter("parameter c [N s/m] ~ log_uniform(5, 100)"));
+  REQUIRE(d.enter("refit as second with map"));
+  REQUIRE_MESSAGE(d.enter("save " + d.path("saved.sysid")), d.messages());
+  Source source(d.path("saved.sysid"), read_file(d.path("saved.sysid")));
+  CHECK(has(source.all_text(), "first  = fit oscillator_1 to bench.train"));
+  Diagnostics diagnostics;
+  auto const file = load(source, diagnostics);
+  REQUIRE(file);
+  RunOptions options;
+  options.output = d.folder() / "again";
+  options.figures = false;
+  SilentProgress silent;
+  std::ostringstream out, notices;
+  run_tasks(source, *file, {}, options, silent, out, notices);
+  for (char const* task : {"first", "second"}) {
+    auto there = nlohmann::json::parse(summary_of(d.folder() / "results" / task)),
+         again = nlohmann::json::parse(summary_of(options.output / task));
+    CHECK(there.at("parameters") == again.at("parameters"));
+    CHECK(there.at("fit") == again.at("fit"));
+  }
+  CHECK(read_file(options.output / "made" / "made.csv") == read_file(d.folder() / "results" / "made" / "made.csv"));
+}
+
+TEST_CASE("a mistake shows where it stands in what was typed, and leaves the work as it was") {
+  Dialogue d;
+  d.begin();
+  std::string const before = d.workbench().work().text();
+  CHECK_FALSE(d.enter("parameter k [N] ~ log_uniform(1e3, 1e5)"));
+  CHECK(has(d.messages(), "error[E2103]"));
+  CHECK(has(d.messages(), "work.sysid:"));  // the equation, which was not typed now
+  CHECK_FALSE(d.enter("  1 [kg]*y'' + c*y' + kk*y = x"));
+  CHECK_MESSAGE(has(d.messages(), "prompt:1:23: error[E2001]"), d.messages());
+  CHECK(has(d.messages(), "did you mean `k`"));
+  CHECK(has(d.messages(), "more: help E2001"));
+  CHECK_FALSE(d.enter("first = fit oscillator to bench.trai with map"));
+  CHECK_FALSE(d.enter("first = fitt oscillator to bench with map"));
+  CHECK(has(d.messages(), "did you mean `fit`"));
+  CHECK_FALSE(d.enter("mean(kk)"));
+  CHECK_FALSE(d.enter("mean(k"));
+  CHECK_FALSE(d.enter("load nowhere.sysid"));
+  CHECK_FALSE(d.enter("frobnicate"));
+  CHECK(d.workbench().work().text() == before);
+}
+
+TEST_CASE("a task that cannot run is no part of the work") {
+  Dialogue d;
+  d.begin();
+  write_file(d.folder() / "results" / "old" / "summary.json", "{}");
+  CHECK_FALSE(d.enter("old = fit oscillator to bench.train with map"));
+  CHECK_MESSAGE(has(d.messages(), "give the task another name"), d.messages());
+  CHECK(d.workbench().work().find("old") == d.workbench().work().items.size());
+  // Its own results a session may replace.
+  CHECK(d.enter("new = fit oscillator to bench.train with map"));
+  CHECK_MESSAGE(d.enter("new = fit oscillator to bench.train with ml"), d.messages());
+}
+
+TEST_CASE("expressions over draws are computed draw by draw, with units") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("post = fit oscillator to bench.train with mh(samples = 600, burn_in = 200, thin = 2, chains = 2)"));
+  CHECK(number(d, "count(k)") == 400);
+  double const k = number(d, "mean(k)");
+  CHECK(number(d, "mean(k/1000 [N/m])") == doctest::Approx(k / 1000).epsilon(1e-5));
+  CHECK(number(d, "quantile(k, 0.95)") > number(d, "median(k)"));
+  CHECK(number(d, "corr(k, k)") == doctest::Approx(1));
+  CHECK(number(d, "corr(k, -k)") == doctest::Approx(-1));
+  CHECK(number(d, "probability(k > " + std::to_string(k) + ")") == doctest::Approx(0.5).epsilon(0.2));
+  CHECK(number(d, "mean(sqrt(k/1 [kg])/(2*pi))") == doctest::Approx(number(d, "mean(fn)")).epsilon(1e-4));
+  REQUIRE(d.enter("k"));
+  CHECK(has(d.answers(), "draws of post"));
+  REQUIRE(d.enter("post"));
+  CHECK(has(d.answers(), "post: fit oscillator"));
+  CHECK_FALSE(d.enter("k + c"));  // N/m and N s/m
+  CHECK(has(d.messages(), "E2103"));
+  CHECK_FALSE(d.enter("corr(k, displacement)"));
+  CHECK_FALSE(d.enter("quantile(k, 95)"));
+}
+
+TEST_CASE("plots are drawn in the size asked for, of what they are said to be of") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("post = fit oscillator to bench.train with mh(samples = 400, burn_in = 200, thin = 2, chains = 2)"));
+  d.workbench().set_plot_size({30, 6});
+  for (char const* what : {"trace(k)", "histogram(k)", "k", "k, c", "residual(displacement)", "post", "y'",
+                           "predicted(displacement), residual(displacement)"}) {
+    REQUIRE_MESSAGE(d.enter(std::string("plot(") + what + ")"), what);
+    CHECK_MESSAGE(has(d.answers(), "\u2514"), what);
+  }
+  CHECK(has(d.answers(), "residual(displacement) [m]"));
+  CHECK_FALSE(d.enter("plot(mean(k))"));
+  CHECK_FALSE(d.enter("plot(trace(kk))"));
+  CHECK_FALSE(d.enter("trace(k)"));
+  CHECK(has(d.messages(), "plot(trace(k))"));
+}
+
+TEST_CASE("a fit that is stopped keeps its draws, and goes on to the bytes of an unbroken one") {
+  std::string const task = "post = fit oscillator to bench.train with mh(samples = 4000, burn_in = 1000, thin = 5, chains = 2)";
+  auto const draws = [](Dialogue const& d) { return read_file(d.folder() / "results" / "post" / "draws_1.csv"); };
+  Dialogue whole, broken;
+  whole.begin();
+  broken.begin();
+  REQUIRE(whole.enter(task));
+  // In the middle of sampling, as Ctrl-C would be.
+  broken.workbench().interrupt_after(60);
+  REQUIRE(broken.enter(task));
+  CHECK_MESSAGE(has(broken.messages(), "go on with `resume`"), broken.messages());
+  CHECK(number(broken, "count(k)") < 1200);
+  CHECK(number(broken, "count(k)") > 0);
+  CHECK_MESSAGE(broken.enter("forecast = predict post on bench with draws(20)"), broken.messages());
+  REQUIRE_MESSAGE(broken.enter("resume"), broken.messages());
+  CHECK(draws(whole) == draws(broken));
+  CHECK_FALSE(broken.enter("resume"));
+}
+
+TEST_CASE("a file is loaded, changed, loaded again; its paths are those of its folder") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("save " + d.path("sub.sysid")));
+  Dialogue other;
+  REQUIRE_MESSAGE(other.enter("load " + d.path("sub.sysid")), other.messages());
+  CHECK(has(other.messages(), "model oscillator"));
+  REQUIRE_MESSAGE(other.enter("first = fit oscillator to bench.train with map"), other.messages());
+  write_file(d.path("sub.sysid"), read_file(d.path("sub.sysid")) + "\nlast = fit oscillator to bench with map, seed = 1\n");
+  REQUIRE(other.enter("reload"));
+  CHECK(other.workbench().work().find("last") < other.workbench().work().items.size());
+  REQUIRE(other.enter("list"));
+  CHECK(has(other.answers(), "not run"));
+  REQUIRE(other.enter("run"));
+  REQUIRE(other.enter("show last"));
+  CHECK(has(other.answers(), "last: fit oscillator"));
+  REQUIRE(other.enter("drop last"));
+  CHECK_FALSE(other.enter("show last"));
+}
+
+TEST_CASE("from a pipe nothing is repeated, and the exit code says whether an entry has failed") {
+  auto const exit = [](std::string const& text, std::string* answers = nullptr) {
+    Dialogue d;
+    std::istringstream in(text);
+    int const code = repl::read_entries(in, d.workbench());
+    if (answers != nullptr) *answers = d.answers();
+    return code;
+  };
+  std::string answers;
+  CHECK(exit(oscillator + "show oscillator\n", &answers) == 0);
+  CHECK(has(answers, "model oscillator {"));
+  CHECK_FALSE(has(answers, "sysid>"));
+  CHECK(exit("help fit\nmean(k)\nhelp fit\n") == 1);
+  CHECK(exit("quit\nmean(k)\n") == 0);
+  CHECK(exit("model a {\n") == 1);
+}
