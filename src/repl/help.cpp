@@ -209,16 +209,19 @@ std::string help_overview() {
          "\n`help WORD` explains every word of the language and every code of a message: help log_uniform, help fit, help E2103.\n";
 }
 
-std::vector<std::string> words_with_help() {
-  std::vector<std::string> words = {"plot", "trace", "histogram"};
-  for (CommandRow const& row : commands()) words.emplace_back(row.name);
-  for (auto const rows : {statistics(), series_functions()})
-    for (PromptFunction const& row : rows) words.emplace_back(row.name);
-  for (KeywordRow const& row : keyword_rows) words.emplace_back(row.word);
-  for (std::string_view const topic : topics) add_words(topic, words);
-  std::sort(words.begin(), words.end());
-  words.erase(std::unique(words.begin(), words.end()), words.end());
-  return words;
+std::vector<std::string> const& words_with_help() {
+  static std::vector<std::string> const all = [] {
+    std::vector<std::string> words = {"plot", "trace", "histogram"};
+    for (CommandRow const& row : commands()) words.emplace_back(row.name);
+    for (auto const rows : {statistics(), series_functions()})
+      for (PromptFunction const& row : rows) words.emplace_back(row.name);
+    for (KeywordRow const& row : keyword_rows) words.emplace_back(row.word);
+    for (std::string_view const topic : topics) add_words(topic, words);
+    std::sort(words.begin(), words.end());
+    words.erase(std::unique(words.begin(), words.end()), words.end());
+    return words;
+  }();
+  return all;
 }
 
 }  // namespace sysid::repl

@@ -22,6 +22,6 @@ std::optional<std::string> help_on(std::string const& word);
 std::string help_overview();
 
 /// Every word that `help_on` knows, but for codes of messages.
-std::vector<std::string> words_with_help();
+std::vector<std::string> const& words_with_help();
 
 }  // namespace sysid::repl

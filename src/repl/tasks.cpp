@@ -103,7 +103,6 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
     });
     return true;
   });
-  bool const was_interrupted = interrupt_requested();
   clear_interrupt();
   if (claimed && ended) made_.insert(name);
   bool const something = ended && (std::holds_alternative<SimulateTask>(place->what) ||
@@ -112,11 +111,12 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
   if (!something && !std::filesystem::exists(options_.output / name / "summary.json"))
     std::erase_if(results_, [&](Result const& each) { return each.task == name; });
   if (!ended) return false;
-  if (exit == ExitCode::interrupted || was_interrupted)
+  if (exit == ExitCode::interrupted)
     interrupted_[name] = checked;
   else
     interrupted_.erase(name);
-  if (!something) return false;
+  // Stopped before its first draw, a task stays in the work: `resume` goes on with it.
+  if (!something) return exit == ExitCode::interrupted;
   keep(session, *place, index, at_the_prompt(answers.str()));
   voices_.answers << at_the_prompt(answers.str()) << std::flush;
   return true;

@@ -151,7 +151,7 @@ TEST_CASE("a fit that is stopped keeps its draws, and goes on to the bytes of an
   broken.begin();
   REQUIRE(whole.enter(task));
   // In the middle of sampling, as Ctrl-C would be.
-  broken.workbench().interrupt_after(60);
+  broken.workbench().interrupt_after(2500);
   REQUIRE(broken.enter(task));
   CHECK_MESSAGE(has(broken.messages(), "go on with `resume`"), broken.messages());
   CHECK(number(broken, "count(k)") < 1200);
