@@ -155,8 +155,9 @@ std::optional<Span> replaced_equation(ast::Model const& model, ast::Equation con
   for (ast::Equation const* each : equations) note_orders(*each, states, orders);
   std::optional<Span> found;
   int matches = 0;
+  auto const wanted = leads(typed, orders);
   for (ast::Equation const* each : equations)
-    if (leads(*each, orders) == leads(typed, orders)) {
+    if (!wanted.empty() && leads(*each, orders) == wanted) {
       found = each->span;
       ++matches;
     }

@@ -99,7 +99,7 @@ TEST_CASE("Ctrl-C stops a run and keeps its draws; what is not saved is kept, to
       "data bench { file \"results/made/made.csv\"; time t [s]; input x = x [N] hold zero_order; measure displacement = "
       "displacement [m] }");
   // Longer than any patience; once it samples the bar says so.
-  terminal.type("post = fit oscillator to bench with mh(samples = 100000000, thin = 1000), seed = 1\r");
+  terminal.type("post = fit oscillator to bench with mh(samples = 20000000, thin = 100), seed = 1\r");
   terminal.until("sampling", 60);
   terminal.until("%", 60);
   usleep(1500000);
