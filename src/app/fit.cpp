@@ -190,11 +190,9 @@ class Fit {
   // Into the report, with what speaks against them.
   Findings look_at_functions(FitResult const& result, std::vector<double> const& best, Report& report) const {
     auto const count = static_cast<int>(model_.parameters.size());
-    LaneArray const draws = function_draws(*target_, result, seed_);
-    LaneArray parameters(count, draws.width());
-    space_->select(space_->values_of_declared(draws), 0, parameters);
+    FunctionParameters const parameters = function_parameters(*space_, result);
     report.functions = unknown_functions(model_, parameters);
-    Findings findings = check_expansions(model_, parameters);
+    Findings findings = check_expansions(model_, parameters.values);
     LaneArray declared(static_cast<int>(best.size()), 1), one(count, 1);
     for (std::size_t p = 0; p < best.size(); ++p) declared(static_cast<int>(p), 0) = best[p];
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@ namespace sysid {
 namespace {
 
 constexpr int most_draws = 200, along_a_cut = 101;
+constexpr double normal_quantile_95 = 1.6448536269514722;
 constexpr double much = 0.1;  // of the process's variance
 
 /// An expansion as a program of the model's parameters and its inputs.
@@ -43,12 +43,22 @@ class UnknownFunction {
     return result;
   }
 
-  FunctionPoint point(ConstLanes parameters, std::vector<double> const& place) const {
-    std::vector<double> found = values(parameters, place);
+  FunctionPoint point(FunctionParameters const& parameters, std::vector<double> const& place) const {
+    std::vector<double> found = values(parameters.values, place);
     for (double& value : found) value = expansion_.from_si(value);
-    Eigen::Map<Eigen::ArrayXd const> const all(found.data(), static_cast<Eigen::Index>(found.size()));
     FunctionPoint result;
     for (std::size_t d = 0; d < place.size(); ++d) result.inputs.push_back(expansion_.inputs[d].from_si(place[d]));
+    if (Eigen::Index const dimension = parameters.covariance.rows(); dimension > 0) {
+      Eigen::VectorXd slope(dimension);
+      for (Eigen::Index p = 0; p < dimension; ++p)
+        slope[p] = 0.5 * (found[static_cast<std::size_t>(1 + 2 * p)] - found[static_cast<std::size_t>(2 + 2 * p)]);
+      result.mean = found.front();
+      result.sd = std::sqrt(std::max(0.0, slope.dot(parameters.covariance * slope)));
+      result.q5 = result.mean - normal_quantile_95 * result.sd;
+      result.q95 = result.mean + normal_quantile_95 * result.sd;
+      return result;
+    }
+    Eigen::Map<Eigen::ArrayXd const> const all(found.data(), static_cast<Eigen::Index>(found.size()));
     result.mean = all.mean();
     result.sd = found.size() < 2 ? 0 : std::sqrt((all - result.mean).square().sum() / static_cast<double>(found.size() - 1));
     result.q5 = quantile(found, 0.05);
@@ -95,7 +105,8 @@ double error(Model const& model, Expansion const& expansion, ConstLanes paramete
   LaneArray units(parameters.rows(), count);
   for (int p = 0; p < parameters.rows(); ++p) {
     double mean = 0;
-    for (int w = 0; w < parameters.width(); ++w) mean += parameters(p, w) / parameters.width();
+    for (int w = 0; w < parameters.width(); ++w)
+      mean += parameters(p, w) / parameters.width();  // of moves to both sides, the optimum
     for (int j = 0; j < count; ++j) units(p, j) = mean;
   }
   for (int i = 0; i < count; ++i)
@@ -120,28 +131,37 @@ double error(Model const& model, Expansion const& expansion, ConstLanes paramete
 
 }  // namespace
 
-LaneArray function_draws(Target const& target, FitResult const& result, std::uint64_t seed) {
-  if (result.draws.total() != 1 || result.modes.empty() || result.modes.front().covariance.empty())
-    return spread(result.draws, most_draws);
-  Mode const& mode = result.modes.front();
-  auto const dimension = static_cast<Eigen::Index>(mode.theta.size());
-  Eigen::MatrixXd const covariance = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> const>(
-      mode.covariance.data(), dimension, dimension);
-  Eigen::LDLT<Eigen::MatrixXd> const factor(covariance);
-  Eigen::VectorXd const sd = factor.vectorD().cwiseMax(0).cwiseSqrt();
-  LaneArray theta(static_cast<int>(dimension), most_draws), declared(static_cast<int>(dimension), most_draws);
-  for (int w = 0; w < most_draws; ++w) {
-    Stream stream({seed, Purpose::selection, static_cast<std::uint64_t>(w), 0});
-    Eigen::VectorXd move(dimension);
-    for (Eigen::Index p = 0; p < dimension; ++p) move[p] = stream.normal() * sd[p];
-    move = factor.transpositionsP().transpose() * (factor.matrixL() * move).eval();
-    for (Eigen::Index p = 0; p < dimension; ++p) theta(static_cast<int>(p), w) = mode.theta[static_cast<std::size_t>(p)] + move[p];
+FunctionParameters function_parameters(ParameterSpace const& space, FitResult const& result) {
+  FunctionParameters parameters;
+  auto const first_experiment = [&](LaneArray const& rows) {
+    parameters.values = LaneArray(static_cast<int>(space.model().parameters.size()), rows.width());
+    space.select(rows, 0, parameters.values);
+  };
+  if (result.draws.total() != 1 || result.modes.empty() || result.modes.front().covariance.empty()) {
+    first_experiment(space.values_of_declared(spread(result.draws, most_draws)));
+    return parameters;
   }
-  target.constrain(theta, declared);
-  return declared;
+  Mode const& mode = result.modes.front();
+  int const dimension = static_cast<int>(mode.theta.size());
+  using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::VectorXd move(dimension);
+  parameters.covariance = Eigen::Map<ByRows const>(mode.covariance.data(), dimension, dimension);
+  for (int p = 0; p < dimension; ++p) {
+    double const width = std::sqrt(parameters.covariance(p, p));
+    move[p] = width > 0 && std::isfinite(width) ? 1e-3 * width : 1e-6;
+  }
+  parameters.covariance = move.cwiseInverse().asDiagonal() * parameters.covariance * move.cwiseInverse().asDiagonal();
+  LaneArray theta(dimension, 1 + 2 * dimension);
+  for (int p = 0; p < dimension; ++p) {
+    for (int w = 0; w < theta.width(); ++w) theta(p, w) = mode.theta[static_cast<std::size_t>(p)];
+    theta(p, 1 + 2 * p) += move[p];
+    theta(p, 2 + 2 * p) -= move[p];
+  }
+  first_experiment(space.values(theta));
+  return parameters;
 }
 
-std::vector<FunctionReport> unknown_functions(Model const& model, ConstLanes parameters) {
+std::vector<FunctionReport> unknown_functions(Model const& model, FunctionParameters const& parameters) {
   std::vector<FunctionReport> reports;
   for (Expansion const& expansion : model.expansions) {
     UnknownFunction const function(model, expansion);

@@ -127,12 +127,11 @@ LaneArray draw_prior(Target const& target, StreamKey key, int count) {
   return draws;
 }
 
-LaneArray draw_starts(Target const& target, StreamKey key, int count) {
-  LaneArray draws = draw_prior(target, key, count);
+/// Coefficients of unknown functions at zero, where a model is what it is without them.
+void begin_without_functions(Target const& target, LaneArray& draws) {
   for (int p = 0; p < target.dimension(); ++p)
     if (target.parameters()[static_cast<std::size_t>(p)].starts_at_zero)
-      for (int w = 0; w < count; ++w) draws(p, w) = 0;
-  return draws;
+      for (int w = 0; w < draws.width(); ++w) draws(p, w) = 0;
 }
 
 }  // namespace
@@ -157,8 +156,9 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   std::optional<Objective> objective;
   std::vector<Climber> ended;
   for (int pass = 0; pass < most_passes && !stop(); ++pass) {
-    LaneArray const draws = draw_starts(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
+    LaneArray draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
     if (!objective) objective.emplace(make_objective(target, aim, draws));
+    begin_without_functions(target, draws);
     std::vector<Climber> starts = choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop);
     climb(*objective, starts, early_rounds, context.ledger, stop);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
