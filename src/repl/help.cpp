@@ -160,7 +160,8 @@ void add_words(std::string_view topic, std::vector<std::string>& words) {
   std::string const text = list(std::string(topic));
   Lines lines{text};
   for (std::string_view line; lines.next(line);) {
-    if (line.empty() || line.starts_with(' ')) continue;
+    if (line.empty() || line.starts_with("   ")) continue;
+    if (line.starts_with("  ")) line.remove_prefix(2);  // a setting
     std::size_t end = 0;
     while (end < line.size() && words::continues_name(line[end])) ++end;
     bool const heading = line.find("  ") == std::string_view::npos && line.find(':') == std::string_view::npos;

@@ -71,7 +71,7 @@ TEST_CASE("each statement of the language and each expression is what it is in a
 TEST_CASE("a mistake is told as what the statement was meant to be, where it stands in the entry") {
   CHECK(mistake("posterior = fitt a to b") == "E1111 12");
   CHECK(mistake("mean(k); parameter k log_uniform(1, 2)") == "E1113 21");
-  CHECK(mistake("mean(k") == "E1102 4");
+  CHECK(mistake("mean(k") == "E1102 6");
   CHECK(mistake("modle a { }").substr(0, 5) == "E1110");
   CHECK(mistake("m*y'' + k y = x").substr(0, 5) == "E1105");
   CHECK(mistake("measure d y").substr(0, 5) == "E1101");

@@ -40,6 +40,8 @@ class PseudoTerminal {
   PseudoTerminal& operator=(PseudoTerminal const&) = delete;
 
   void type(std::string const& text) const {
+    // The prompt is shown before the terminal hands over key by key: nobody types in that moment, or as fast.
+    usleep(20000);
     for (std::size_t at = 0; at < text.size();) {
       auto const written = write(master_, text.data() + at, text.size() - at);
       if (written <= 0) return;

@@ -81,8 +81,7 @@ TEST_CASE("the dialogue of the documentation comes out as it is shown, and finds
       terminal.until("\n");
       if (i + 1 < statement.lines.size()) terminal.until("...> ");
     }
-    bool const last = statement.lines.front() == "quit";
-    std::string said = last ? "" : settled(terminal.until(terminal.prompt, 300));
+    std::string said = settled(terminal.until(terminal.prompt, 300));
     if (said.ends_with(terminal.prompt)) said.resize(said.size() - std::string(terminal.prompt).size());
     for (std::size_t i = 0; i < statement.lines.size(); ++i)
       transcript += (i == 0 ? "sysid> " : "  ...> ") + statement.lines[i] + "\n";
@@ -97,6 +96,7 @@ TEST_CASE("the dialogue of the documentation comes out as it is shown, and finds
       ++at;
     }
   }
+  terminal.type("\x04");
   CHECK(terminal.ended() == 0);
   // For whoever writes the page: what was said.
   if (char const* path = std::getenv("SYSID_TRANSCRIPT")) write_file(path, transcript);

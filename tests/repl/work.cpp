@@ -48,12 +48,12 @@ TEST_CASE("a statement replaces that of its name; a task goes to the end while n
 }
 
 TEST_CASE("what a task was run on stays with it when it changes, and goes when nothing refers to it any more") {
-  Work w = work({"model spring { }", "model rig { part s = spring }", "candidates set { rig; spring }", "data b { }",
+  Work w = work({"model spring { }", "model rig { part s = spring() }", "candidates set { rig; spring }", "data b { }",
                  "f = fit rig to b with map", "g = fit rig to b with ml", "s = select set to b with abc_smc"});
   auto const notices = w.put(item("model spring { state y }"), {"f"});
   CHECK(notices.size() == 1);
   CHECK(w.text() ==
-        "model spring_1 { }\nmodel spring { state y }\nmodel rig_1 { part s = spring_1 }\nmodel rig { part s = spring }\n"
+        "model spring_1 { }\nmodel spring { state y }\nmodel rig_1 { part s = spring_1() }\nmodel rig { part s = spring() }\n"
         "candidates set { rig; spring }\ndata b { }\nf = fit rig_1 to b with map\ng = fit rig to b with ml\ns = select set to b "
         "with abc_smc\n");
   w.put(item("f = fit rig to b with map"), {"f"});
