@@ -155,7 +155,8 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   StreamKey const key{context.seed, Purpose::start, 0, search_step};
   std::optional<Objective> objective;
   std::vector<Climber> ended;
-  for (int pass = 0; pass < most_passes && !stop(); ++pass) {
+  int const passes = has_coefficients(target) ? 1 : most_passes;
+  for (int pass = 0; pass < passes && !stop(); ++pass) {
     LaneArray draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
     if (!objective) objective.emplace(make_objective(target, aim, draws));
     begin_without_functions(target, draws);
@@ -168,7 +169,7 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
     if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
     if (!result.modes.empty() && (result.modes.front().hits > 1 || ended.size() == 1)) break;
     expected = context.ledger.solves() - before + usual;
-    context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, most_passes), expected);
+    context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), expected);
   }
   bool const stopped = stop();
   context.progress.end(!stopped);

@@ -33,7 +33,7 @@ std::map<std::string, Folders> const allowed = {
     {"regression", {"regression", "linear_algebra", "data", "expression", "core"}},
     {"linear_algebra", {"linear_algebra", "core"}},
     {"gaussian_process", {"gaussian_process", "linear_algebra", "function", "expression", "core"}},
-    {"inference", {"inference", "likelihood", "linear_algebra", "core"}},
+    {"inference", {"inference", "likelihood", "gaussian_process", "linear_algebra", "core"}},
     {"assist",
      {"assist", "app", "check", "grammar", "syntax", "inference", "regression", "gaussian_process", "distribution", "function",
       "data", "core"}},
