@@ -50,7 +50,7 @@ Json evidence(Evidence const& evidence) {
   if (!evidence.log_evidence) return {{"log_evidence", nullptr}, {"reason", evidence.reason}};
   return {{"log_evidence", *evidence.log_evidence},
           {"method", "laplace"},
-          {"along_axes", std::round(1e3 * evidence.along_axes) / 1e3},  // it says how rough the other is, no more
+          {"along_axes", std::round(1e3 * evidence.along_axes) / 1e3 + 0.0},  // how rough the other is, no more; never -0
           {"modes", evidence.modes}};
 }
 
