@@ -20,7 +20,10 @@ class Description {
               Outlook& page)
       : coordinates_(coordinates), locals_(locals), channels_(channels), page_(page) {
     for (JudgedParameter const& each : coordinates)
-      if (each.role == ParameterRole::response) asked_.push_back(each.words);
+      if (each.role == ParameterRole::response) {
+        asked_.push_back(each.words);
+        if (!each.coefficient) named_ = asked_.size();
+      }
     null_.assign(asked_.size(), false);
     for (LocalSlopes const& local : locals) expectations_.push_back(expect(local));
   }
@@ -29,6 +32,10 @@ class Description {
     name_null_directions();
     std::size_t i = 0;
     for (JudgedParameter const& coordinate : coordinates_) {
+      if (coordinate.coefficient) {
+        count_coefficient(coordinate.words.name);
+        continue;
+      }
       InformationPage::Line line{coordinate.words.name, coordinate.words.unit, coordinate.relative, 0, 0, 0, {}};
       line.prior_width = coordinate.relative ? coordinate.spread : coordinate.spread / coordinate.words.scale;
       if (coordinate.role == ParameterRole::response)
@@ -37,8 +44,8 @@ class Description {
         line.instead = unasked(coordinate);
       page_.information->lines.push_back(std::move(line));
     }
-    for (std::size_t a = 0; a < asked_.size(); ++a)
-      for (std::size_t b = a + 1; b < asked_.size(); ++b)
+    for (std::size_t a = 0; a < named_; ++a)
+      for (std::size_t b = a + 1; b < named_; ++b)
         if (!null_[a] && !null_[b]) name_correlation(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
   }
 
@@ -49,8 +56,32 @@ class Description {
     page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
   }
 
+  // An unknown function is one line, whatever the number of its coefficients.
+  void count_coefficient(std::string const& name) {
+    std::string const function = name.substr(0, name.find('['));
+    std::vector<InformationPage::Line>& lines = page_.information->lines;
+    coefficients_ = lines.empty() || lines.back().name != function ? 1 : coefficients_ + 1;
+    if (coefficients_ == 1) lines.push_back({function, "", false, 1, 0, 0, {}});
+    lines.back().instead = fmt::format("an unknown function: {} coefficients", coefficients_);
+  }
+
+  // Slopes in all but coefficients, which are free as far as their prior lets them. They stand last, so of a triangular factor the
+  // leading block is the factor of the others.
+  LocalSlopes without_coefficients(LocalSlopes local) const {
+    auto const n = static_cast<Eigen::Index>(named_);
+    local.sensitivity.slopes = local.sensitivity.slopes.topLeftCorner(n, n).eval();
+    local.sensitivity.error = local.sensitivity.error.head(n).eval();
+    local.sensitivity.others = local.sensitivity.others.topRows(std::min(n, local.sensitivity.others.rows())).eval();
+    local.value = local.value.head(n).eval();
+    local.scale = local.scale.head(n).eval();
+    local.spread = local.spread.head(n).eval();
+    return local;
+  }
+
   void name_null_directions() {
-    NullSpace const space = find_null_space(locals_);
+    std::vector<LocalSlopes> locals;
+    for (LocalSlopes const& local : locals_) locals.push_back(without_coefficients(local));
+    NullSpace const space = find_null_space(locals);
     for (NullDirection const& direction : space.directions) {
       std::string const text = words(direction, asked_, channels_);
       page_.information->null_directions.push_back(text);
@@ -60,7 +91,7 @@ class Description {
               ? "fix it to a value (`=` in place of `~`), measure what it acts on, or excite it"
               : "fix one of them to a known value (`=` in place of `~`), or measure what tells them apart");
     }
-    int const size = static_cast<int>(asked_.size());
+    int const size = static_cast<int>(named_);
     page_.information->rank_low = page_.information->rank_high = size;
     if (space.dimensions.empty()) return;
     auto const [least, most] = std::minmax_element(space.dimensions.begin(), space.dimensions.end());
@@ -140,6 +171,8 @@ class Description {
   std::string const& channels_;
   Outlook& page_;
   std::vector<ParameterWords> asked_;  // those that may show in the response
+  std::size_t named_ = 0;              // of them, that are no coefficients
+  int coefficients_ = 0;               // of the function whose line is the last
   std::vector<bool> null_;             // of them, part of a null direction
   std::vector<Expectation> expectations_;
 };

@@ -12,8 +12,9 @@ namespace sysid {
 struct JudgedParameter {
   ParameterWords words;
   ParameterRole role = ParameterRole::response;
-  bool relative = false;  // by its logarithm
-  double spread = 0;      // the prior's sd: of the logarithm, or SI
+  bool relative = false;     // by its logarithm
+  double spread = 0;         // the prior's sd: of the logarithm, or SI
+  bool coefficient = false;  // of an unknown function; these stand last
 };
 
 /// Fills lines, rank and null directions of `page.information` and adds findings. locals: at two draws or more, with respect to the

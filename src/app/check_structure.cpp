@@ -96,7 +96,15 @@ ModelPage describe_structure(ast::File const& written, ast::File const& flat, Mo
   for (Channel const& channel : model.channels)
     page.channels.push_back({channel.name, channel.unit_text(), text_of(texts.channels, channel.name)});
   for (Parameter const& parameter : model.parameters)
-    page.parameters.push_back({parameter.name, parameter.unit_text(), text_of(texts.parameters, parameter.name)});
+    if (!parameter.coefficient)
+      page.parameters.push_back({parameter.name, parameter.unit_text(), text_of(texts.parameters, parameter.name)});
+  for (Expansion const& expansion : model.expansions) {
+    std::vector<std::string> inputs;
+    for (Expansion::Input const& input : expansion.inputs) inputs.push_back(input.name);
+    page.parameters.push_back(
+        {expansion.name, expansion.unit_text(),
+         fmt::format("an unknown function of {}: {} coefficients", fmt::join(inputs, ", "), expansion.coefficients.size())});
+  }
   auto const is_state = [&](Derived const& derived) {  // its present sample, in discrete time
     return std::any_of(model.pasts.begin(), model.pasts.end(), [&](Past const& past) { return past.name == derived.name; });
   };

@@ -38,13 +38,16 @@ std::vector<Mode> sampled_modes(Target const& target, Aim aim, std::vector<Mode>
   return distinct;
 }
 
+/// Parameters that take part in flat directions; an unknown function stands for all its coefficients.
 std::vector<std::string> names_along(Target const& target, std::vector<double> const& flat) {
   auto const parameters = static_cast<std::size_t>(target.dimension());
   std::vector<std::string> names;
   for (std::size_t p = 0; p < parameters; ++p)
-    for (std::size_t at = p; at < flat.size(); at += parameters)
-      if (flat[at] != 0 && (names.empty() || names.back() != target.parameters()[p].name))
-        names.push_back(target.parameters()[p].name);
+    for (std::size_t at = p; at < flat.size(); at += parameters) {
+      ParameterInfo const& parameter = target.parameters()[p];
+      std::string const name = parameter.starts_at_zero ? parameter.name.substr(0, parameter.name.find('[')) : parameter.name;
+      if (flat[at] != 0 && (names.empty() || names.back() != name)) names.push_back(name);
+    }
   return names;
 }
 

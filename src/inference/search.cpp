@@ -86,6 +86,11 @@ Finding flat_direction(Target const& target, std::span<double const> move) {
   for (std::size_t p = 0; p < move.size(); ++p) {
     ParameterInfo const& parameter = target.parameters()[p];
     if (move[p] == 0) continue;
+    if (parameter.starts_at_zero) {  // an unknown function stands for all its coefficients
+      std::string const function = parameter.name.substr(0, parameter.name.find('['));
+      if (std::find(names.begin(), names.end(), function) == names.end()) names.push_back(function);
+      continue;
+    }
     names.push_back(parameter.name);
     moves.push_back(fmt::format("{} by {:+.2g}{}", parameter.name, move[p], parameter.unit.empty() ? "" : " " + parameter.unit));
   }
@@ -93,6 +98,10 @@ Finding flat_direction(Target const& target, std::span<double const> move) {
     return {Severity::warning, "flat_direction",
             fmt::format("the data leave {} undetermined: its width is the prior's", names.front()),
             "fix it to a value, give it a narrower prior, or measure what tells it"};
+  if (moves.empty())
+    return {Severity::warning, "flat_direction",
+            fmt::format("the data leave a combination of {} undetermined: its width is the prior's", listed(names)),
+            "fix an amplitude or a length, or measure what tells the functions apart"};
   return {
       Severity::warning, "flat_direction",
       fmt::format("the data leave a combination of {} undetermined: moving {} together changes next to nothing, and its width is "

@@ -92,6 +92,10 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
               FAIL_CHECK(page.name << " " << each.candidate << ": " << finding.message);
           }
           if (each.left_out.find("has a Gaussian process") != std::string::npos) continue;
+          if (entry.path().filename() == "grey.sysid") {  // 43 parameters: more than a check has time for, and it says so
+            CHECK(each.left_out.find("43 parameters") != std::string::npos);
+            continue;
+          }
           CHECK(each.left_out == "");
           REQUIRE(each.prior);
           CHECK(each.prior->draws == 128);
