@@ -53,7 +53,8 @@ class UnknownFunction {
       for (Eigen::Index p = 0; p < dimension; ++p)
         slope[p] = 0.5 * (found[static_cast<std::size_t>(1 + 2 * p)] - found[static_cast<std::size_t>(2 + 2 * p)]);
       result.mean = found.front();
-      result.sd = std::sqrt(std::max(0.0, slope.dot(parameters.covariance * slope)));
+      double const variance = slope.dot(parameters.covariance * slope);
+      result.sd = variance < 0 ? 0 : std::sqrt(variance);
       result.q5 = result.mean - normal_quantile_95 * result.sd;
       result.q95 = result.mean + normal_quantile_95 * result.sd;
       return result;
@@ -186,7 +187,7 @@ std::vector<FunctionReport> unknown_functions(Model const& model, FunctionParame
 Findings check_expansions(Model const& model, ConstLanes parameters) {
   Findings findings;
   for (Expansion const& expansion : model.expansions)
-    if (double const part = error(model, expansion, parameters); part > much)
+    if (double const part = error(model, expansion, parameters); !(part <= much))
       findings.push_back({Severity::warning, "basis_inaccurate",
                           fmt::format("the finite sum of `{}` differs from its process by {:.0f} % of the process's variance",
                                       expansion.name, 100 * part),

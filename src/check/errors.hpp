@@ -212,8 +212,13 @@ Diagnostic hyper_parameter_not_positive(Span span, std::string const& name);
 Diagnostic expansion_range(Span span, std::size_t inputs);
 Diagnostic expansion_range_empty(Span span);
 Diagnostic expansion_without_range(Span span);
+Diagnostic expansion_condition_outside(Span span, std::string const& input);
+Diagnostic expansion_of_number(Span span, std::string const& name);
+Diagnostic expansion_beside_process(Span span, std::string const& process, std::string const& expansion);
+Diagnostic expansion_by_likelihood(Span span, std::string const& model);
 Diagnostic expansion_terms(Span span, std::size_t inputs);
 Diagnostic expansion_too_large(Span span, long most);
+Diagnostic expansion_too_small(Span span, std::size_t conditions);
 /// what: a kernel's name, "a product of kernels".
 Diagnostic no_expansion(Span span, std::string const& what);
 Diagnostic expansion_of_lags(Span span, std::string const& name);

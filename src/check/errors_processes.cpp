@@ -102,6 +102,23 @@ Diagnostic expansion_without_range(Span span) {
   return error("E3231", span, "`terms` needs `within`: functions are spread over a range",
                "say where the function is wanted: `within = (-0.1 [m], 0.1 [m])`");
 }
+Diagnostic expansion_condition_outside(Span span, std::string const& input) {
+  return error("E3231", span, fmt::format("a point of `zero_at` or `flat_at` lies outside this range of `{}`", input),
+               "the function is a sum on its range alone: widen it, or leave the condition out");
+}
+Diagnostic expansion_of_number(Span span, std::string const& name) {
+  return error("E3234", span,
+               fmt::format("`{}` is first applied to a plain number, which does not tell the unit of its input", name),
+               "give the number its unit, or apply the function to a quantity before");
+}
+Diagnostic expansion_beside_process(Span span, std::string const& process, std::string const& expansion) {
+  return error("E3217", span, fmt::format("`{}` is a process at samples beside `{}`, a finite sum", process, expansion),
+               fmt::format("give `{}` a range, too: `within = (low, high)`", process));
+}
+Diagnostic expansion_by_likelihood(Span span, std::string const& model) {
+  return error("E3217", span, fmt::format("`{}` has an unknown function, which by likelihood alone is anything that fits", model),
+               "its process is the prior of its coefficients: fit it with map or mh");
+}
 Diagnostic expansion_terms(Span span, std::size_t inputs) {
   return error(
       "E3232", span, "`terms` is how many functions there are along each input: a whole number above 0",
@@ -110,6 +127,10 @@ Diagnostic expansion_terms(Span span, std::size_t inputs) {
 Diagnostic expansion_too_large(Span span, long most) {
   return error("E3232", span, fmt::format("more than {} coefficients", most),
                "take fewer terms along each input, or a sum of kernels that read one input each");
+}
+Diagnostic expansion_too_small(Span span, std::size_t conditions) {
+  return error("E3232", span, fmt::format("{} conditions leave nothing of so few terms", conditions),
+               "give it more terms than `zero_at` and `flat_at` take away");
 }
 Diagnostic no_expansion(Span span, std::string const& what) {
   return error("E3233", span, fmt::format("{} has no finite sum that stands for it", what),

@@ -86,6 +86,8 @@ class ModelChecker {
   // --- model_processes.cpp
   // Where Gaussian processes stand: each applied, an addend of what one channel with normal noise is centred on.
   void processes();
+  // One function for all experiments has no hyper-parameter of one.
+  void shared_by_all(Process const& process, Span call);
   // Inside the arguments of a process, what a channel predicts is without processes: else they would need themselves.
   void resolve_process_arguments(std::vector<NodeId> const& predicted);
   void place_processes();

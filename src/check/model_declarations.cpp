@@ -60,7 +60,14 @@ void ModelChecker::declare() {
       scope_.define_process(*process);
     }
   }
-  for (Scope::ProcessName& process : scope_.processes())
+  for (Scope::ProcessName& process : scope_.processes()) {
+    if (auto const taken =
+            std::find_if(model_.parameters.begin(), model_.parameters.end(),
+                         [&](Parameter const& each) { return each.name.starts_with(process.definition->name.text + "["); });
+        is_expanded(*process.definition) && taken != model_.parameters.end()) {
+      diagnostics_.add(errors::duplicate_name(process.definition->name, taken->span));
+      continue;
+    }
     for (int i = 0, count = is_expanded(*process.definition) ? coefficient_count(*process.definition) : 0; i < count; ++i) {
       Graph& graph = model_.graph;
       Parameter coefficient;
@@ -71,6 +78,7 @@ void ModelChecker::declare() {
       process.coefficients.push_back(static_cast<int>(model_.parameters.size()));
       model_.parameters.push_back(std::move(coefficient));
     }
+  }
 }
 
 void ModelChecker::declare_step(ast::DiscreteTimeDeclaration const& discrete) {

@@ -25,10 +25,20 @@ bool same_leaf(Node const& a, Node const& b) { return is_leaf(a, b.leaf_kind) &&
 
 }  // namespace
 
+void ModelChecker::shared_by_all(Process const& process, Span call) {
+  for (KernelUse const& kernel : process.kernels)
+    for (NodeId const hyper_parameter : kernel.hyper_parameters)
+      for (NodeId const node : model_.graph.reachable({&hyper_parameter, 1}))
+        if (is_leaf(model_.graph[node], LeafKind::parameter) && !failed())
+          if (Parameter const& own = model_.parameters[static_cast<std::size_t>(model_.graph[node].index)]; own.per_experiment)
+            diagnostics_.add(errors::process_of_one_experiment(call, process.name, own.name));
+}
+
 void ModelChecker::processes() {
   for (Scope::ProcessName const& each : scope_.processes()) {
     if (each.expansion) {
       Expansion expansion = *each.expansion;
+      shared_by_all(expansion.process, each.call);
       for (std::vector<NodeId>& application : expansion.applications)
         for (NodeId& argument : application) argument = solved(argument);
       model_.expansions.push_back(std::move(expansion));
@@ -40,14 +50,12 @@ void ModelChecker::processes() {
     }
     Process process = *each.use;
     for (NodeId& argument : process.arguments) argument = solved(argument);
-    for (KernelUse const& kernel : process.kernels)
-      for (NodeId const hyper_parameter : kernel.hyper_parameters)
-        for (NodeId const node : model_.graph.reachable({&hyper_parameter, 1}))
-          if (is_leaf(model_.graph[node], LeafKind::parameter) && !failed())
-            if (Parameter const& own = model_.parameters[static_cast<std::size_t>(model_.graph[node].index)]; own.per_experiment)
-              diagnostics_.add(errors::process_of_one_experiment(each.call, process.name, own.name));
+    shared_by_all(process, each.call);
     model_.processes.push_back(std::move(process));
   }
+  if (!model_.processes.empty() && !model_.expansions.empty())
+    diagnostics_.add(errors::expansion_beside_process(model_.processes.front().span, model_.processes.front().name,
+                                                      model_.expansions.front().name));
 }
 
 void ModelChecker::resolve_process_arguments(std::vector<NodeId> const& predicted) {

@@ -38,9 +38,9 @@ std::optional<ProcessArguments> Scope::process_declaration(ast::ProcessDefinitio
   auto calls = units_.suspend();
   HyperParametersGiven given;
   auto arguments = process_arguments(definition, {"zero_at", "flat_at", "within", "terms"}, diagnostics_);
-  if (arguments && !(read_covariance(*this, definition, *arguments->covariance, columns, process, given) &&
-                     settle_units(*this, definition, given, units, process) &&
-                     read_conditions(*this, definition, *arguments, columns, process)))
+  if (arguments &&
+      !(read_covariance(*this, definition, *arguments->covariance, columns, process, given) &&
+        settle_units(*this, definition, given, units, process) && read_conditions(*this, definition, *arguments, columns, process)))
     arguments.reset();
   units_.resume(std::move(calls));
   arguments_ = outer;
@@ -65,6 +65,7 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
   process.span = definition.name.span;
   std::vector<std::vector<int>> columns;
   std::vector<std::optional<Unit>> units;
+  std::vector<Typed> given;
   bool good = true;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     ast::Argument const& argument = call.arguments[i];
@@ -86,6 +87,7 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
       columns.back().push_back(static_cast<int>(process.inputs.size()));
       process.inputs.push_back({definition.inputs[i].text, known_unit(value), argument.span});
       process.arguments.push_back(value.node);
+      given.push_back(value);
       units.push_back(known_unit(value));
       if (units.back()) units.back() = difference(*units.back());
     }
@@ -96,7 +98,7 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
       diagnostics_.add(errors::process_out_of_place(call.span, "the argument of another"));
       return std::nullopt;
     }
-  if (expanded) return expansion_call(call, index, columns, units, std::move(process));
+  if (expanded) return expansion_call(call, index, columns, given, std::move(process));
   NodeId const leaf = graph_.leaf(LeafKind::process, static_cast<int>(index));
   if (processes_[index].use) {
     if (processes_[index].use->arguments != process.arguments) {
@@ -113,15 +115,24 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
 }
 
 std::optional<Typed> Scope::expansion_call(ast::Call const& call, std::size_t index, std::vector<std::vector<int>> const& columns,
-                                           std::vector<std::optional<Unit>> const& units, Process process) {
+                                           std::vector<Typed> const& given, Process process) {
   ProcessName& known = processes_[index];
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (columns[i].size() != 1) {
       diagnostics_.add(errors::expansion_of_lags(call.arguments[i].span, known.definition->name.text));
       return std::nullopt;
     }
-  std::vector<NodeId> arguments = std::exchange(process.arguments, {});
+  process.arguments.clear();
   if (!known.expansion) {
+    std::vector<std::optional<Unit>> units;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      if (given[i].kind == Typed::Kind::literal) {
+        diagnostics_.add(errors::expansion_of_number(call.arguments[i].span, known.definition->name.text));
+        return std::nullopt;
+      }
+      units.push_back(known_unit(given[i]));
+      if (units.back()) units.back() = difference(*units.back());
+    }
     auto const declared = process_declaration(*known.definition, columns, units, process);
     if (!declared) return std::nullopt;
     auto const* outer = std::exchange(arguments_, nullptr);
@@ -130,11 +141,15 @@ std::optional<Typed> Scope::expansion_call(ast::Call const& call, std::size_t in
     if (!known.expansion) return std::nullopt;
     known.call = call.span;
   }
-  for (std::size_t i = 0; i < units.size(); ++i)
-    if (auto const& wanted = known.expansion->inputs[i].unit; wanted && units[i] && wanted->dimension != units[i]->dimension) {
-      diagnostics_.add(errors::expansion_unit(call.arguments[i].span, known.definition->name.text, *units[i], *wanted));
+  std::vector<NodeId> arguments;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    auto const &wanted = known.expansion->inputs[i].unit, unit = known_unit(given[i]);
+    if (wanted && unit && wanted->dimension != unit->dimension) {
+      diagnostics_.add(errors::expansion_unit(call.arguments[i].span, known.definition->name.text, *unit, *wanted));
       return std::nullopt;
     }
+    arguments.push_back(adapt(graph_, given[i], wanted));
+  }
   known.expansion->applications.push_back(arguments);
   NodeId const value = graph_.substitute(known.expansion->value, [&](NodeId leaf) -> std::optional<NodeId> {
     Node const node = graph_[leaf];

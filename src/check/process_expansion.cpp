@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "check/elaborate/whole_number.hpp"
@@ -76,6 +77,10 @@ class Expander {
     auto const within = arguments.named.find("within");
     if (within == arguments.named.end()) return refuse(errors::expansion_without_range(terms->second->span));
     if (!ranges(within->second->value)) return std::nullopt;
+    for (ProcessCondition const& condition : expansion_.process.conditions)
+      for (std::size_t d = 0; d < condition.point.size(); ++d)
+        if (condition.point[d] < expansion_.inputs[d].low || condition.point[d] > expansion_.inputs[d].high)
+          return refuse(errors::expansion_condition_outside(within->second->value.span, definition_.inputs[d].text));
     for (Process::Covariance const& each : expansion_.process.covariance)
       if (each.kind == Process::Covariance::Kind::product)
         return refuse(errors::no_expansion(arguments.covariance->span, "a product of kernels"));
@@ -86,7 +91,11 @@ class Expander {
       return refuse(errors::expansion_too_large(terms == arguments.named.end() ? within->second->span : terms->second->span,
                                                 most_coefficients));
     expansion_.coefficients = std::move(coefficients);
-    value();
+    std::vector<ProcessCondition> const conditions = independent_conditions();
+    if (conditions.size() >= expansion_.coefficients.size())
+      return refuse(errors::expansion_too_small(terms == arguments.named.end() ? within->second->span : terms->second->span,
+                                                conditions.size()));
+    value(conditions);
     return std::move(expansion_);
   }
 
@@ -140,11 +149,11 @@ class Expander {
     return true;
   }
 
-  /// The sum over all kernels in terms of some coefficients, which need not be leaves.
-  NodeId sum(std::vector<NodeId> const& coefficients) {
+  /// The sum over kernels in terms of some coefficients, which need not be leaves.
+  NodeId sum(std::vector<NodeId> const& coefficients, std::vector<KernelUse> const& kernels) {
     std::vector<NodeId> terms;
     std::span<NodeId const> rest(coefficients);
-    for (KernelUse const& kernel : expansion_.process.kernels) {
+    for (KernelUse const& kernel : kernels) {
       gaussian_process::Box own;
       std::vector<NodeId> inputs;
       for (int const input : kernel.inputs) {
@@ -164,12 +173,12 @@ class Expander {
   }
 
   /// What a condition asks of the coefficients: the factor of each in the value, or the slope, that is to vanish.
-  std::vector<Term> functional(ProcessCondition const& condition) {
+  std::vector<Term> functional(ProcessCondition const& condition, std::vector<KernelUse> const& kernels) {
     std::vector<Term> factors;
     std::vector<NodeId> one(expansion_.coefficients.size(), graph_.constant(0));
     for (NodeId& coefficient : one) {
       coefficient = graph_.constant(1);
-      NodeId factor = sum(one);
+      NodeId factor = sum(one, kernels);
       coefficient = graph_.constant(0);
       if (condition.derivative >= 0) factor = graph_.differentiate(factor, Expansion::argument(graph_, condition.derivative));
       factors.emplace_back(graph_, graph_.substitute(factor, [&](NodeId leaf) -> std::optional<NodeId> {
@@ -181,9 +190,50 @@ class Expander {
     return factors;
   }
 
+  /// The kernels with numbers in place of hyper-parameters, lengths so short that no term vanishes: what depends on what among
+  /// conditions is the same for all positive ones.
+  std::vector<KernelUse> with_numbers() {
+    std::vector<KernelUse> kernels = expansion_.process.kernels;
+    for (KernelUse& kernel : kernels) {
+      std::size_t k = 0;
+      for (gaussian_process::HyperParameterRow const& row : kernel.row->hyper_parameters)
+        for (std::size_t d = 0; d < (row.per_input ? kernel.inputs.size() : 1); ++d) {
+          auto const input = static_cast<std::size_t>(kernel.inputs[d]);
+          double const length = box_.half_widths[input] / box_.counts[input];
+          kernel.hyper_parameters[k++] = graph_.constant(row.per_input && row.unit.input == 1 ? length : 1);
+        }
+    }
+    return kernels;
+  }
+
+  /// Without those that the others imply: the same point twice, a line through the origin that shall vanish there.
+  std::vector<ProcessCondition> independent_conditions() {
+    std::vector<KernelUse> const kernels = with_numbers();
+    std::vector<ProcessCondition> kept;
+    std::vector<std::vector<double>> directions;
+    for (ProcessCondition const& condition : expansion_.process.conditions) {
+      std::vector<double> direction;
+      for (Term const factor : functional(condition, kernels)) direction.push_back(graph_.constant_value(factor.id).value());
+      auto const dot = [](std::vector<double> const& a, std::vector<double> const& b) {
+        return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+      };
+      double const whole = std::sqrt(dot(direction, direction));
+      for (std::vector<double> const& before : directions) {
+        double const part = dot(before, direction);
+        for (std::size_t j = 0; j < direction.size(); ++j) direction[j] -= part * before[j];
+      }
+      double const rest = std::sqrt(dot(direction, direction));
+      if (!(rest > 1e-8 * whole)) continue;
+      for (double& factor : direction) factor /= rest;
+      directions.push_back(std::move(direction));
+      kept.push_back(condition);
+    }
+    return kept;
+  }
+
   /// The sum of its coefficients where conditions hold: independent normal numbers given that linear functionals of them vanish are
   /// such numbers without their parts along the functionals, made orthonormal one after another.
-  void value() {
+  void value(std::vector<ProcessCondition> const& conditions) {
     auto const dot = [&](std::vector<Term> const& a, std::vector<Term> const& b) {
       Term total(graph_, 0.0);
       for (std::size_t j = 0; j < a.size(); ++j) total = total + a[j] * b[j];
@@ -198,17 +248,18 @@ class Expander {
     for (int const parameter : expansion_.coefficients)
       coefficients.emplace_back(graph_, graph_.leaf(LeafKind::parameter, parameter));
     std::vector<std::vector<Term>> directions;
-    for (ProcessCondition const& condition : expansion_.process.conditions) {
-      std::vector<Term> direction = functional(condition);
+    for (ProcessCondition const& condition : conditions) {
+      std::vector<Term> direction = functional(condition, expansion_.process.kernels);
       for (std::vector<Term> const& before : directions) direction = without(std::move(direction), before);
-      Term const length = sqrt(dot(direction, direction));
+      // A length far beyond the range makes a function that is next to nothing: what underflows there takes nothing away.
+      Term const length = sqrt(dot(direction, direction) + 1e-300);
       for (Term& factor : direction) factor = factor / length;
       directions.push_back(std::move(direction));
     }
     for (std::vector<Term> const& direction : directions) coefficients = without(std::move(coefficients), direction);
     std::vector<NodeId> nodes;
     for (Term const coefficient : coefficients) nodes.push_back(coefficient.id);
-    expansion_.value = sum(nodes);
+    expansion_.value = sum(nodes, expansion_.process.kernels);
   }
 
   Scope& scope_;

@@ -134,7 +134,7 @@ class Scope {
   // process_call.cpp
   std::optional<Typed> process_call(ast::Call const& call, std::size_t index);
   std::optional<Typed> expansion_call(ast::Call const& call, std::size_t index, std::vector<std::vector<int>> const& columns,
-                                      std::vector<std::optional<Unit>> const& units, Process process);
+                                      std::vector<Typed> const& given, Process process);
 
   /// False when expanding functions and definitions takes more work or stack than can be spent.
   bool affordable(Span span);

@@ -47,6 +47,8 @@ void TaskChecker::search(ast::Option const& option, std::optional<int>& near) {
 }
 
 void TaskChecker::suit_processes(FitTask const& task, Model const& model) {
+  if (!model.expansions.empty() && task.backend == "ml")
+    diagnostics_.add(errors::expansion_by_likelihood(tree_.subject.span, model.name));
   if (model.processes.empty()) return;
   if (model.integrated() && task.start.kind == StartRule::Kind::estimated)
     diagnostics_.add(errors::process_beside_estimated_start(tree_.subject.span, model.name));

@@ -62,7 +62,7 @@ void warn_of_unused(Model const& model, Diagnostics& diagnostics) {
     mark(model, prior, read);
   }
   for (std::size_t i = 0; i < model.parameters.size(); ++i)
-    if (!read.parameters[i])
+    if (!read.parameters[i] && !model.parameters[i].coefficient)
       add_once(diagnostics,
                errors::unused_parameter(model.parameters[i].span, model.parameters[i].name, model.parameters[i].prior.has_value()));
   for (std::size_t i = 0; i < model.inputs.size(); ++i)

@@ -29,8 +29,9 @@ Figure function_figure(FunctionReport const& function) {
   Figure out;
   out.name = "function_" + identifier(function.name);
   out.title = fmt::format("The function {} that was found", function.name);
-  out.caption = fmt::format("Mean and the band that holds 90 % of the draws{}.",
-                            count == 1 ? "" : ", along each input with the others in the middle of their range");
+  out.caption =
+      fmt::format("The function and the band that holds it with 90 %: of the draws, at an optimum by its Laplace approximation{}.",
+                  count == 1 ? "" : ", along each input with the others in the middle of their range");
   out.script = preamble(out.name, width, height);
   std::pair<double, double> values{0, 0};
   for (auto const& cut : function.cuts)

@@ -152,11 +152,38 @@ TEST_CASE("an unknown spring force inside an equation of motion is found, and it
   CHECK(rmse < 1.1 * 2e-5);
 }
 
+TEST_CASE("conditions that others imply take nothing away") {
+  auto const found = [](std::string const& conditions) {
+    CaseRun const run(R"(
+model curve {
+  input x
+  function f(u) ~ gp(squared_exponential(amplitude = 2, length = 1) + linear(slope = 0.5), )" +
+                          conditions + R"(,
+      within = (-2, 2), terms = 12)
+  observe y ~ normal(f(x), sd = 0.2)
+}
+data points { file "points.csv"; input x = x; measure y = y }
+best = fit curve to points with map, seed = 1
+)",
+                      {{"points.csv", "x,y\n-2,-2.5\n-1,-0.5\n0.5,0.1\n1,0.4\n1.5,1\n2,2.6\n"}});
+    return column(run.file("best/function_f.csv"), "mean");
+  };
+  std::vector<double> const once = found("zero_at = (0, 1)"), twice = found("zero_at = (0, 1, 0, 1)");
+  REQUIRE(once.size() == twice.size());
+  for (std::size_t i = 0; i < once.size(); ++i) CHECK(std::fabs(once[i] - twice[i]) < 1e-8);
+}
+
 TEST_CASE("a range that the motion leaves, and too few terms, are said") {
-  std::string model = unknown_spring;
-  model.replace(model.find("(-2e-3, 2e-3)"), 13, "(-4e-4, 4e-4)");
-  model.replace(model.find("terms = 12"), 10, "terms = 2");
-  CaseRun const run(model + bench, {{"made.csv", hardening()}});
-  CHECK(says(run.summary("best"), "outside_range"));
-  CHECK(says(run.summary("best"), "basis_inaccurate"));
+  std::string const model = unknown_spring;
+  std::string const record = hardening();
+  auto const found = [&](std::string const& range, std::string const& terms) {
+    return CaseRun(with(with(model, "(-2e-3, 2e-3)", range), "terms = 12", terms) + bench, {{"made.csv", record}}).summary("best");
+  };
+  json const enough = found("(-2e-3, 2e-3)", "terms = 12"), few = found("(-2e-3, 2e-3)", "terms = 3"),
+             narrow = found("(-8e-4, 8e-4)", "terms = 12");
+  CHECK(!says(enough, "outside_range"));
+  CHECK(!says(enough, "basis_inaccurate"));
+  CHECK(says(few, "basis_inaccurate"));
+  CHECK(!says(few, "outside_range"));
+  CHECK(says(narrow, "outside_range"));
 }
