@@ -45,10 +45,10 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
     last = name;
     findings.push_back(
         {Severity::note, "length_beyond_range",
-         fmt::format("the length-scale of {} is {:.2g} times the range that was fitted: the process hardly depends on "
-                     "it, and how long the length is its prior says",
+         fmt::format("the length-scale of {} is {:.2g} times the range that was fitted: along it the process "
+                     "is constant or a line, and how long the length is its prior says",
                      name, regression.parameters[k] / range),
-         "leave the input out, or look whether the white part has its effect already"});
+         "where leaving the input out makes the fit no worse it is constant; else put the line into the white part"});
   }
 }
 

@@ -216,6 +216,8 @@ Diagnostic expansion_condition_outside(Span span, std::string const& input);
 Diagnostic expansion_of_number(Span span, std::string const& name);
 Diagnostic expansion_beside_process(Span span, std::string const& process, std::string const& expansion);
 Diagnostic expansion_by_likelihood(Span span, std::string const& model);
+/// parameter: that an amplitude or a length of `function` reads, which has a prior.
+Diagnostic expansion_by_optimum(Span span, std::string const& function, std::string const& parameter);
 Diagnostic expansion_terms(Span span, std::size_t inputs);
 Diagnostic expansion_too_large(Span span, long most);
 Diagnostic expansion_too_small(Span span, std::size_t conditions);

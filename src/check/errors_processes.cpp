@@ -119,6 +119,12 @@ Diagnostic expansion_by_likelihood(Span span, std::string const& model) {
   return error("E3217", span, fmt::format("`{}` has an unknown function, which by likelihood alone is anything that fits", model),
                "its process is the prior of its coefficients: fit it with map or mh");
 }
+Diagnostic expansion_by_optimum(Span span, std::string const& function, std::string const& parameter) {
+  return error("E3235", span,
+               fmt::format("`map` would find `{}` together with the function `{}` that it scales, which follows the noise",
+                           parameter, function),
+               fmt::format("give `{}` a value (fits with several are weighed by `sysid compare`), or fit with mh", parameter));
+}
 Diagnostic expansion_terms(Span span, std::size_t inputs) {
   return error(
       "E3232", span, "`terms` is how many functions there are along each input: a whole number above 0",

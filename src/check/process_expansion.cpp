@@ -121,7 +121,7 @@ class Expander {
   bool range(ast::Expression const& tree, Quantity const& input) {
     auto const* pair = std::get_if<ast::Box<ast::List>>(&tree.node);
     if (pair == nullptr || (*pair)->items.size() != 2) {
-      refuse(errors::expansion_range(tree.span, 1));
+      refuse(errors::expansion_range(tree.span, definition_.inputs.size()));
       return false;
     }
     double bound[2] = {};

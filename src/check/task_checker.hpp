@@ -52,6 +52,7 @@ class TaskChecker {
   void search(ast::Option const& option, std::optional<int>& near);
   // One step ahead, and no differential equations beside it.
   void suit_processes(FitTask const& task, Model const& model);
+  void suit_scales(Model const& model);
 
   // --- task_select.cpp
   SelectTask select();

@@ -1,5 +1,6 @@
 // `fit`: the back end with its settings, and how the model is simulated.
 #include "check/errors.hpp"
+#include "check/model_checker.hpp"
 #include "check/task_checker.hpp"
 #include "check/task_options.hpp"
 
@@ -46,9 +47,23 @@ void TaskChecker::search(ast::Option const& option, std::optional<int>& near) {
     near = fitted_task({{fit->span}, fit->name.text}, false);
 }
 
+// The mode over a function's coefficients and their scale together is not near where the posterior of the scale lies.
+void TaskChecker::suit_scales(Model const& model) {
+  for (Expansion const& expansion : model.expansions)
+    for (KernelUse const& kernel : expansion.process.kernels)
+      for (NodeId const node : model.graph.reachable(kernel.hyper_parameters)) {
+        if (!is_leaf(model.graph[node], LeafKind::parameter)) continue;
+        Parameter const& parameter = model.parameters[static_cast<std::size_t>(model.graph[node].index)];
+        if (!parameter.prior || parameter.value) continue;
+        diagnostics_.add(errors::expansion_by_optimum(tree_.subject.span, expansion.name, parameter.name));
+        return;
+      }
+}
+
 void TaskChecker::suit_processes(FitTask const& task, Model const& model) {
   if (!model.expansions.empty() && task.backend == "ml")
     diagnostics_.add(errors::expansion_by_likelihood(tree_.subject.span, model.name));
+  if (task.backend == "map") suit_scales(model);
   if (model.processes.empty()) return;
   if (model.integrated() && task.start.kind == StartRule::Kind::estimated)
     diagnostics_.add(errors::process_beside_estimated_start(tree_.subject.span, model.name));

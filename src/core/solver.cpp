@@ -2,6 +2,7 @@
 #include "core/solver.hpp"
 
 #include <fmt/format.h>
+#include <cstdlib>
 
 #include <algorithm>
 #include <string>
@@ -25,7 +26,7 @@ constexpr SettingRow adaptive_settings[] = {
 };
 
 // To the digits that a person would write: 1e-5/100 is not the number nearest to 1e-7.
-double hundredth(double value) { return std::stod(fmt::format("{:.12e}", value / 100)); }
+double hundredth(double value) { return std::strtod(fmt::format("{:.12e}", value / 100).c_str(), nullptr); }
 
 }  // namespace
 

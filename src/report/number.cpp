@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace sysid {
 
@@ -39,7 +40,8 @@ std::string significant(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   if (value == 0) return "0";
   // Rounding may lift the value into the next decade: 9.996 has four digits as 10.00.
-  double const rounded = std::stod(fmt::format("{:.{}e}", value, digits - 1));
+  // (`stod` would throw where a value is denormal.)
+  double const rounded = std::strtod(fmt::format("{:.{}e}", value, digits - 1).c_str(), nullptr);
   int const power = decade(rounded);
   int const exponent = needs_exponent(power) ? power : 0;
   return with_exponent(rounded, digits - 1 - power + exponent, exponent);
