@@ -111,7 +111,7 @@ struct FitTask {
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;
   SolverSettings solver;
-  bool settle = true;  // the tolerance guard chooses how fine the solver is, from `solver` on
+  bool settle = true;       // the tolerance guard chooses how fine the solver is, from `solver` on
   std::optional<int> near;  // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
   std::optional<std::uint64_t> seed;
 };

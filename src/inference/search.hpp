@@ -23,8 +23,8 @@ struct SearchResult {
 /// parameter that happens to match the misfit decides which draw is likeliest; to convergence from the best 16 distinct ones. When
 /// a single one of them reaches the best mode the search is repeated on further draws, up to four times in all: a mode met once may
 /// have a better neighbour that was not met. Where the target has a gradient, fewer: 64 draws, 8 of them climbed from, 4 to the
-/// end; where an equation holds an unknown function, 16 are climbed from, its coefficients at zero, 3 to the end, in one pass. Progress counts
-/// simulations against those of a typical search.
+/// end; where an equation holds an unknown function, 16 are climbed from, its coefficients at zero, 3 to the end, in one pass.
+/// Progress counts simulations against those of a typical search.
 SearchResult search(Target const& target, Aim aim, RunContext& context);
 
 /// Local searches from `starts` [P x N] alone, which need not have a finite density: a search that somebody has aimed. What lies
