@@ -6,6 +6,7 @@
 `--sysid PATH` takes another program; nothing but Python's standard library is needed.
 """
 import argparse
+import csv
 import json
 import math
 import pathlib
@@ -48,18 +49,28 @@ def scores(sysid, straight, curved):
         def fit(task):
             return json.loads((folder / "results" / task / "summary.json").read_text())["fit"]
 
+        def inside_bands(task):
+            """The share of the fitted samples in their own 95 % bands, given all of them; `coverage_95` leaves each sample out of its own."""
+            with open(folder / "results" / task / "predict.csv") as file:
+                rows = [row for row in csv.DictReader(line for line in file if not line.startswith("#")) if row["deflection_measured"]]
+            within = [float(row["deflection_noisy_q2.5"]) <= float(row["deflection_measured"]) <= float(row["deflection_noisy_q97.5"])
+                      for row in rows]
+            return sum(within) / len(within)
+
         rows = []
         for kind in ["straight", "curved"]:
             alone, line = fit(f"alone_{kind}_winter"), fit(f"line_{kind}_winter")
-            rows.append((kind, alone["nmse"], line["nmse"], fit(f"alone_{kind}")["coverage_95"], fit(f"line_{kind}")["coverage_95"],
-                         alone["coverage_95"], line["coverage_95"]))
+            rows.append((kind, alone["nmse"], line["nmse"], inside_bands(f"alone_{kind}"), inside_bands(f"line_{kind}"),
+                         fit(f"alone_{kind}")["coverage_95"], fit(f"line_{kind}")["coverage_95"], alone["coverage_95"],
+                         line["coverage_95"]))
         return rows
 
 
 arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 arguments.add_argument("--sysid", default=str(here.parent.parent / "sysid"))
 given = arguments.parse_args()
-print("record | outside: process alone | with the line | ratio | 95 % inside: alone | with the line | outside: alone | with the line")
+print("record | outside: process alone | with the line | ratio | 95 % inside: alone | with the line |"
+      " each left out: alone | with the line | outside: alone | with the line")
 ratios = []
 for number in range(7):
     if number < 2:
@@ -72,5 +83,5 @@ for number in range(7):
         if kind == "straight":
             ratios.append(ratio)
         name = f"{kind}_{number}" if number < 2 else f"made, {kind}, seed {number if kind == 'straight' else 100 + number}"
-        print(name, f"{alone:.1f}", f"{line:.2f}", f"{ratio:.3f}", *(f"{each:.2f}" for each in coverage), sep=" | ", flush=True)
+        print(name, f"{alone:.1f}", f"{line:.2f}", f"{ratio:.3f}", *(f"{each:.3f}" for each in coverage), sep=" | ", flush=True)
 print(f"median ratio of the straight ones: {statistics.median(ratios):.3f}")

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/experiments.hpp"
@@ -10,6 +11,7 @@
 #include "data/digest.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
+#include "typeset/typeset.hpp"
 
 namespace sysid {
 namespace {
@@ -107,17 +109,17 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   Diagnostics ignored;
   auto const tree = parse(session.source, ignored);
   ast::Model const* written = tree ? as_written(*tree, flat->span) : nullptr;
-  auto const add = [&](ast::Equation const& equation) {
-    report.equations.push_back(unparse(equation.left) + " = " + unparse(equation.right));
+  // The user's own statements as they stand there, those of parts with their names in the whole. Parameters have a table.
+  auto const add = [&](ast::ModelStatement const& statement) {
+    if (has_formula(statement) && !std::holds_alternative<ast::ParameterDeclaration>(statement))
+      report.equations.push_back(unparse(statement));
   };
-  // The user's own equations as they stand there, those of parts with their names in the whole.
-  if (written != nullptr)
-    for (ast::ModelStatement const& statement : written->statements)
-      if (auto const* equation = std::get_if<ast::Equation>(&statement)) add(*equation);
-  for (ast::ModelStatement const& statement : flat->statements) {
-    if (auto const* equation = std::get_if<ast::Equation>(&statement))
-      if (written == nullptr || !within(equation->span, flat->span)) add(*equation);
-  }
+  auto const place = [](ast::ModelStatement const& statement) {
+    return std::visit([](auto const& each) { return each.span; }, statement);
+  };
+  if (written != nullptr) std::for_each(written->statements.begin(), written->statements.end(), add);
+  for (ast::ModelStatement const& statement : flat->statements)
+    if (written == nullptr || !within(place(statement), flat->span)) add(statement);
   report.priors = declared_priors(session, model_index);
   return report;
 }

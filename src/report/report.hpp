@@ -61,7 +61,7 @@ struct Report {
   std::string task;     // "posterior"
   std::string what;     // "fit duffing to bench.train with mh"
   std::string model_name, model_title;
-  std::vector<std::string> equations;  // in the language, one each
+  std::vector<std::string> equations;  // statements of the model in the language, one each; of a discovery, what it found
   std::string model_text;              // the user's text
   std::string resolved_text;           // the file that reproduces this run, every setting spelt out
   std::vector<PriorInfo> priors;

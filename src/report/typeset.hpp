@@ -1,4 +1,4 @@
-// Text of the user as HTML: escaped, and equations as a printed page shows them.
+// Text of the user as HTML: escaped, and statements of models as formulas.
 #pragma once
 #include <string>
 #include <string_view>
@@ -8,7 +8,7 @@ namespace sysid {
 /// `<`, `>`, `&` and `"` as entities.
 std::string escape(std::string_view text);
 
-/// An equation of the language for the eye: names slanted, powers raised, primes as primes, the user's names untouched. HTML.
-std::string typeset(std::string_view equation);
+/// A statement of a model, an equation above all, as displayed MathML; what is none stays the text it is, in `<code>`.
+std::string typeset(std::string_view statement);
 
 }  // namespace sysid

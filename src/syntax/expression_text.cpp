@@ -5,43 +5,11 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
 
-#include "core/diagnostic.hpp"
+#include "syntax/binding.hpp"
 
 namespace sysid {
 namespace {
-
-/// How tightly an expression holds together, loosest first; an operand looser than its place wants is put in parentheses.
-enum class Binding { conditional, disjunction, conjunction, negation, comparison, sum, product, sign, power, primary };
-
-struct OperatorRow {
-  std::string_view symbol;
-  Binding binding, left, right;
-};
-/// sysid.ebnf's levels. The right operand of `^` may carry a sign; comparisons do not associate.
-constexpr std::array<OperatorRow, 14> operators{{
-    {"..", Binding::conditional, Binding::conditional, Binding::conditional},  // of arguments alone
-    {"or", Binding::disjunction, Binding::disjunction, Binding::conjunction},
-    {"and", Binding::conjunction, Binding::conjunction, Binding::negation},
-    {"<", Binding::comparison, Binding::sum, Binding::sum},
-    {"<=", Binding::comparison, Binding::sum, Binding::sum},
-    {">", Binding::comparison, Binding::sum, Binding::sum},
-    {">=", Binding::comparison, Binding::sum, Binding::sum},
-    {"==", Binding::comparison, Binding::sum, Binding::sum},
-    {"!=", Binding::comparison, Binding::sum, Binding::sum},
-    {"+", Binding::sum, Binding::sum, Binding::product},
-    {"-", Binding::sum, Binding::sum, Binding::product},
-    {"*", Binding::product, Binding::product, Binding::sign},
-    {"/", Binding::product, Binding::product, Binding::sign},
-    {"^", Binding::power, Binding::primary, Binding::sign},
-}};
-
-OperatorRow const& row_of(std::string_view symbol) {
-  for (OperatorRow const& row : operators)
-    if (row.symbol == symbol) return row;
-  throw InternalError(fmt::format("no operator `{}` to print", symbol));
-}
 
 /// The shortest digits that read back as the same number; 1e-4 rather than 1e-04.
 std::string number_text(double value) {
@@ -67,22 +35,6 @@ class Printer {
   }
 
  private:
-  static Binding binding(ast::Expression const& expression) {
-    struct Visitor {
-      Binding operator()(ast::Number const& number) const { return std::signbit(number.value) ? Binding::sign : Binding::primary; }
-      Binding operator()(ast::Text const&) const { return Binding::primary; }
-      Binding operator()(ast::Reference const&) const { return Binding::primary; }
-      Binding operator()(ast::Box<ast::Unary> const& unary) const {
-        return unary->symbol == "not" ? Binding::negation : Binding::sign;
-      }
-      Binding operator()(ast::Box<ast::Binary> const& binary) const { return row_of(binary->symbol).binding; }
-      Binding operator()(ast::Box<ast::Call> const&) const { return Binding::primary; }
-      Binding operator()(ast::Box<ast::Conditional> const&) const { return Binding::conditional; }
-      Binding operator()(ast::Box<ast::List> const&) const { return Binding::primary; }
-    };
-    return std::visit(Visitor{}, expression.node);
-  }
-
   std::string operator()(ast::Number const& number) const { return number_text(number.value) + bracketed(number.unit); }
   std::string operator()(ast::Text const& text) const { return quoted(text.value); }
   std::string operator()(ast::Reference const& reference) const { return text_of(reference); }
@@ -91,7 +43,7 @@ class Printer {
     return unary->symbol + Printer()(*unary->operand, Binding::sign);
   }
   std::string operator()(ast::Box<ast::Binary> const& binary) const {
-    OperatorRow const& row = row_of(binary->symbol);
+    OperatorRow const& row = operator_row(binary->symbol);
     bool const tight = row.binding >= Binding::product || binary->symbol == "..";
     return fmt::format("{}{}{}{}{}", (*this)(*binary->left, row.left), tight ? "" : " ", binary->symbol, tight ? "" : " ",
                        Printer()(*binary->right, row.right));

@@ -163,6 +163,8 @@ struct ItemText {
 
 }  // namespace
 
+std::string unparse(ast::ModelStatement const& statement) { return std::visit(ModelStatementText{}, statement); }
+
 std::string unparse(ast::File const& file) {
   std::string out;
   for (ast::Item const& item : file.items) {

@@ -7,6 +7,7 @@
 namespace sysid {
 
 std::string unparse(ast::File const& file);
+std::string unparse(ast::ModelStatement const& statement);
 std::string unparse(ast::Expression const& expression);
 std::string unparse(ast::UnitExpression const& unit);
 

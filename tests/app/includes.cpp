@@ -38,7 +38,8 @@ std::map<std::string, Folders> const allowed = {
      {"assist", "app", "check", "grammar", "syntax", "inference", "regression", "gaussian_process", "distribution", "function",
       "data", "core"}},
     {"lsp", {"lsp", "assist", "syntax", "core"}},
-    {"report", {"report", "inference", "likelihood", "core"}},
+    {"typeset", {"typeset", "syntax", "core"}},
+    {"report", {"report", "typeset", "inference", "likelihood", "core"}},
 };
 
 }  // namespace

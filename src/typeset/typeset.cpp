@@ -1,0 +1,153 @@
+// A statement is a left side, a sign and a right side, or some of them.
+#include "typeset/typeset.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "core/source.hpp"
+#include "syntax/expression_text.hpp"
+#include "syntax/parse.hpp"
+#include "typeset/formula.hpp"
+
+namespace sysid {
+
+namespace {
+
+struct Relation {
+  std::string left;
+  Sign sign;
+  std::string right;
+};
+
+/// What a statement says, one relation each; none: it is no formula.
+class Relations {
+ public:
+  explicit Relations(Notation const& notation) : to_(notation), formula_(notation) {}
+
+  std::vector<Relation> operator()(ast::ModelStatement const& statement) const {
+    return std::visit([&](auto const& each) { return (*this)(each); }, statement);
+  }
+
+ private:
+  std::vector<Relation> operator()(ast::TimeDeclaration const&) const { return {}; }
+  std::vector<Relation> operator()(ast::DiscreteTimeDeclaration const&) const { return {}; }
+  std::vector<Relation> operator()(ast::InputDeclaration const&) const { return {}; }
+  std::vector<Relation> operator()(ast::StateDeclaration const&) const { return {}; }
+  std::vector<Relation> operator()(ast::Part const&) const { return {}; }
+  std::vector<Relation> operator()(ast::InitialDeclaration const& declaration) const {
+    std::vector<Relation> out;
+    for (ast::InitialValue const& each : declaration.values)
+      out.push_back(
+          {to_.row({formula_(each.state), to_.fenced(Fence::parentheses, to_.digits("0"))}), Sign::equal, formula_(each.value)});
+    return out;
+  }
+  std::vector<Relation> operator()(ast::ParameterDeclaration const& parameter) const {
+    std::string const left = formula_.name(parameter.name.name.text);
+    if (parameter.prior)
+      return {{left, Sign::distributed, with_unit(formula_.distribution(*parameter.prior), parameter.name.unit)}};
+    if (parameter.value) return {{left, Sign::equal, with_unit(formula_(*parameter.value), parameter.name.unit)}};
+    return {};
+  }
+  std::vector<Relation> operator()(ast::Definition const& definition) const {
+    return {{formula_.name(definition.name.name.text), Sign::equal, formula_(definition.value)}};
+  }
+  std::vector<Relation> operator()(ast::FunctionDefinition const& function) const {
+    return {{applied(function.name, function.parameters), Sign::equal, formula_(function.value)}};
+  }
+  std::vector<Relation> operator()(ast::ProcessDefinition const& process) const {
+    return {{applied(process.name, process.inputs), Sign::distributed, formula_.distribution(process.process)}};
+  }
+  std::vector<Relation> operator()(ast::Observation const& observation) const {
+    return {{formula_.name(observation.channel.name.text), Sign::distributed, formula_.distribution(observation.noise)}};
+  }
+  std::vector<Relation> operator()(ast::Equation const& equation) const {
+    return {{formula_(equation.left), Sign::equal, formula_(equation.right)}};
+  }
+
+  std::string with_unit(std::string const& value, std::optional<ast::UnitExpression> const& unit) const {
+    if (!unit || unparse(*unit) == "-") return value;
+    return to_.row({value, to_.thin_space(), to_.fenced(Fence::brackets, formula_.unit(*unit))});
+  }
+  /// f(u, v) of names alone.
+  std::string applied(ast::Name const& function, std::vector<ast::Name> const& inputs) const {
+    ast::Call call;
+    call.function = function;
+    for (ast::Name const& input : inputs) {
+      ast::Reference reference;
+      reference.name = input;
+      call.arguments.push_back({{}, std::nullopt, ast::Expression{{}, std::move(reference)}});
+    }
+    return formula_.call(call);
+  }
+
+  Notation const& to_;
+  Formula formula_;
+};
+
+/// The statement that a text alone is, by the rules for those inside a model.
+std::optional<ast::ModelStatement> parsed(std::string_view text) {
+  Diagnostics ignored;
+  Source const source("", fmt::format("model m {{\n{}\n}}\n", text));
+  std::optional<ast::File> const file = parse(source, ignored);
+  if (!file || file->items.size() != 1) return std::nullopt;
+  auto const* model = std::get_if<ast::Model>(&file->items.front());
+  if (model == nullptr || model->statements.size() != 1) return std::nullopt;
+  return model->statements.front();
+}
+
+/// A list of values, `initial y = 0, y' = 0`, stands in one line.
+std::string in_line(std::vector<Relation> const& relations, Notation const& to) {
+  std::vector<std::string> pieces;
+  for (Relation const& relation : relations) {
+    if (!pieces.empty()) pieces.push_back(to.sign(Sign::comma));
+    pieces.insert(pieces.end(), {relation.left, to.sign(relation.sign), relation.right});
+  }
+  return to.row(pieces);
+}
+
+/// Text as the value of an attribute.
+std::string attribute(std::string_view text) {
+  std::string out;
+  for (char const c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+bool has_formula(ast::ModelStatement const& statement) { return !Relations(latex_notation())(statement).empty(); }
+
+std::optional<std::string> mathml(ast::ModelStatement const& statement) {
+  Notation const& to = mathml_notation();
+  std::vector<Relation> const relations = Relations(to)(statement);
+  if (relations.empty()) return std::nullopt;
+  return fmt::format("<math display=\"block\" alttext=\"{}\">{}</math>", attribute(unparse(statement)), in_line(relations, to));
+}
+
+std::optional<std::string> mathml(std::string_view statement) {
+  std::optional<ast::ModelStatement> const tree = parsed(statement);
+  return tree ? mathml(*tree) : std::nullopt;
+}
+
+std::string mathml(ast::Expression const& expression) {
+  return fmt::format("<math alttext=\"{}\">{}</math>", attribute(unparse(expression)), Formula(mathml_notation())(expression));
+}
+
+std::optional<std::string> latex(ast::ModelStatement const& statement) {
+  Notation const& to = latex_notation();
+  std::vector<Relation> relations = Relations(to)(statement);
+  if (relations.empty()) return std::nullopt;
+  relations.front().left += " &";
+  return in_line(relations, to);
+}
+
+std::string latex(ast::Model const& model) {
+  std::string lines;
+  for (ast::ModelStatement const& statement : model.statements)
+    if (std::optional<std::string> const line = latex(statement))
+      lines += fmt::format("{}  {}", lines.empty() ? "" : " \\\\\n", *line);
+  return lines.empty() ? std::string() : fmt::format("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines);
+}
+
+}  // namespace sysid
