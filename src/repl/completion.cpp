@@ -1,12 +1,13 @@
-// By the word before, the bracket around and the block that is open; what does not fit is refused by the parser, not here.
+// What may stand in a file is the language server's to know; the prompt adds its commands and the names of results.
 #include "repl/completion.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 
-#include "core/files.hpp"
-#include "data/table.hpp"
+#include "assist/completion.hpp"
 #include "repl/help.hpp"
 #include "syntax/words.hpp"
 
@@ -20,10 +21,10 @@ void append(Words& words, auto const& more) {
 }
 
 /// Files and folders that continue a path; folders end in /.
-Words files(std::string const& path, std::filesystem::path const& from, std::string_view extension) {
+Words files(std::string const& path, std::string_view extension) {
   auto const slash = path.rfind('/');
   std::string const folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
-  std::filesystem::path where = from / folder;
+  std::filesystem::path where = folder;
   if (folder.starts_with("~/") && std::getenv("HOME") != nullptr)
     where = std::filesystem::path(std::getenv("HOME")) / folder.substr(2);
   Words words;
@@ -36,26 +37,6 @@ Words files(std::string const& path, std::filesystem::path const& from, std::str
     words.push_back(folder + name + (is_folder ? "/" : ""));
   }
   return words;
-}
-
-/// The names in the head of a data file; none where it cannot be read.
-Words columns(std::filesystem::path const& path) {
-  constexpr std::size_t enough = 16384;  // for a header with its comments
-  try {
-    std::string head = read_file(path, enough);
-    head.resize(std::min({head.rfind('\n') == std::string::npos ? head.size() : head.rfind('\n') + 1, head.size()}));
-    return Table::parse(path.string(), head).columns();
-  } catch (std::exception const&) {
-    return {};
-  }
-}
-
-/// The text in quotes behind the last `file` of an entry.
-std::string file_named_in(std::string const& entry) {
-  auto const at = entry.rfind("file ");
-  if (at == std::string::npos) return "";
-  auto const begin = entry.find('"', at), end = entry.find('"', begin + 1);
-  return begin == std::string::npos || end == std::string::npos ? "" : entry.substr(begin + 1, end - begin - 1);
 }
 
 Words names_of_work(Workbench const& workbench) {
@@ -89,7 +70,7 @@ Words names_of_model(Workbench const& workbench) {
   return words;
 }
 
-/// What stands behind `first.` or `bench.`.
+/// What stands behind `first.`, a task that has been run.
 Words members(Workbench const& workbench, std::string const& owner) {
   Words words;
   for (Result const& result : workbench.results()) {
@@ -98,30 +79,53 @@ Words members(Workbench const& workbench, std::string const& owner) {
     for (RecordSeries const& record : result.records)
       for (SeriesColumn const& column : record.quantities) words.push_back(owner + "." + column.name);
   }
-  if (workbench.checked() != nullptr)
-    for (DataBlock const& block : workbench.checked()->data)
-      if (block.name == owner)
-        for (DataPart const& part : block.parts) words.push_back(owner + "." + part.name);
   return words;
 }
 
-/// The word of the block that is open at the end of an entry; empty where none is.
-std::string open_block(std::string const& entry) {
-  auto const brace = entry.rfind('{');
-  if (brace == std::string::npos || entry.find('}', brace) != std::string::npos) return "";
-  auto const line = entry.rfind('\n', brace);
-  std::string const head = entry.substr(line == std::string::npos ? 0 : line + 1, brace);
-  std::size_t const begin = head.find_first_not_of(" \t");
-  return begin == std::string::npos ? "" : head.substr(begin, head.find_first_of(" \t{", begin) - begin);
+/// A text in which the entry stands where it would in the file, and where it begins there.
+struct Framed {
+  std::string text;
+  std::size_t begin = 0;
+};
+
+/// The brackets and braces that are open behind an entry, closed again: what stands around a word can then be read.
+std::string closed(std::string const& entry) {
+  std::string open;
+  bool quoted = false;
+  for (char const c : entry) {
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '(' || c == '[' || c == '{') open.insert(open.begin(), c == '(' ? ')' : c == '[' ? ']' : '}');
+    if ((c == ')' || c == ']' || c == '}') && !open.empty()) open.erase(open.begin());
+  }
+  return (quoted ? "\"" : "") + open;
 }
 
-Words statement_words(std::string const& block) {
-  Words words;
-  if (block == "model") append(words, words::model_statements);
-  if (block == "data") append(words, words::data_statements);
-  if (block == "candidates") append(words, words::candidate_words);
-  if (block == "dictionary") append(words, words::dictionary_statements);
-  return words;
+Framed in_file(Workbench const& workbench, std::string const& entry) {
+  std::string const before = workbench.work().text() + "\n";
+  return {before + entry + "\n" + closed(entry) + "\n", before.size()};
+}
+
+/// Inside the block that statements of its kind change; as in a file where there is none yet.
+Framed in_block(Workbench const& workbench, ItemKind kind, std::string const& name, std::string const& entry) {
+  Work const& work = workbench.work();
+  std::size_t const place = work.find(kind, name);
+  if (name.empty() || place == work.items.size()) {
+    std::string const before = workbench.work().text() + fmt::format("\n{} unnamed {{\n", word_of(kind));
+    return {before + entry + closed(entry) + "\n}\n", before.size()};
+  }
+  std::string text = work.text();
+  std::size_t const brace = work.begin(place) + work.items[place].text.rfind('}');
+  text.insert(brace, "\n" + entry + closed(entry) + "\n");
+  return {std::move(text), brace + 1};
+}
+
+/// Adds what may stand at the end of the entry there; returns where the word begins in the entry.
+std::size_t add_language(Workbench const& workbench, Framed const& framed, std::size_t length, Words& words) {
+  auto const offset = static_cast<std::uint32_t>(framed.begin + length);
+  assist::Completions const found = assist::complete(workbench.work().path.string(), framed.text, offset);
+  for (assist::Completion const& each : found.items) words.push_back(each.label);
+  return found.replaces.begin - framed.begin;
 }
 
 /// The first words of an entry.
@@ -172,76 +176,50 @@ std::string common_beginning(std::vector<std::string> const& words) {
 }
 
 Completions completions(Workbench const& workbench, std::string const& entry) {
-  Completions result;
-  std::size_t const line_begin = entry.rfind('\n') == std::string::npos ? 0 : entry.rfind('\n') + 1;
-  std::string const line = entry.substr(line_begin);
   auto const finish = [&](Words words, std::size_t begin) {
-    result.begin = begin;
     std::string const written = entry.substr(begin);
     std::erase_if(words, [&](std::string const& each) { return !each.starts_with(written); });
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
-    result.words = std::move(words);
-    return result;
+    return Completions{begin, std::move(words)};
   };
-  std::filesystem::path const folder = workbench.work().path.parent_path();
-  // Inside quotes a file.
-  if (std::count(line.begin(), line.end(), '"') % 2 == 1) {
-    std::size_t const quote = line_begin + line.rfind('"') + 1;
-    return finish(files(entry.substr(quote), folder, ".csv"), quote);
-  }
-  std::size_t first = line.find_first_not_of(" \t");
-  if (first == std::string::npos) first = line.size();
+  std::size_t const first = std::min(entry.find_first_not_of(" \t\n"), entry.size());
   std::size_t first_end = first;
-  while (first_end < line.size() && words::continues_name(line[first_end])) ++first_end;
-  std::string const first_word = line.substr(first, first_end - first);
-  bool const alone = line_begin == 0;
-  if (alone && first_end < line.size() && line[first_end] == ' ' &&
-      (first_word == "load" || first_word == "save" || first_word == "columns")) {
-    std::size_t const begin = std::min(line.find_first_not_of(' ', first_end), line.size());
-    return finish(files(line.substr(begin), "", first_word == "columns" ? ".csv" : ".sysid"), begin);
-  }
+  while (first_end < entry.size() && words::continues_name(entry[first_end])) ++first_end;
+  std::string const first_word = entry.substr(first, first_end - first);
   std::size_t begin = entry.size();
-  while (begin > line_begin && (words::continues_name(entry[begin - 1]) || entry[begin - 1] == '.')) --begin;
-  std::string const written = entry.substr(begin);
-  if (alone && begin > first_end && first_end < line.size() && line[first_end] == ' ') {
-    std::string arguments;
-    CommandRow const* command = command_of(first_word, arguments);
-    if (command != nullptr && line.find('=') == std::string::npos) return finish(arguments_of(workbench, command->name), begin);
-  }
-  if (auto const dot = written.rfind('.'); dot != std::string::npos)
-    return finish(members(workbench, written.substr(0, dot)), begin);
-  std::string const block = open_block(entry);
-  bool const begins =
-      begin == line_begin + first || entry.find_last_not_of(" \t", begin == 0 ? 0 : begin - 1) == std::string::npos ||
-      std::string_view(";{").find(entry[entry.find_last_not_of(" \t", begin == 0 ? 0 : begin - 1)]) != std::string_view::npos;
-  Words words;
-  if (begins) {
-    words = block.empty() ? first_words() : statement_words(block);
-    if (block.empty()) {
-      append(words, functions_of_prompt());
-      append(words, names_of_results(workbench));
+  while (begin > first && (words::continues_name(entry[begin - 1]) || entry[begin - 1] == '.')) --begin;
+  bool const one_line = entry.find('\n') == std::string::npos;
+  if (one_line && first_end < entry.size() && entry[first_end] == ' ') {
+    if (first_word == "load" || first_word == "save" || first_word == "columns") {
+      std::size_t const path = std::min(entry.find_first_not_of(' ', first_end), entry.size());
+      return finish(files(entry.substr(path), first_word == "columns" ? ".csv" : ".sysid"), path);
     }
-    append(words, names_of_model(workbench));
-    return finish(std::move(words), begin);
+    std::string arguments;
+    CommandRow const* command = command_of(entry.substr(0, first_end), arguments);
+    if (command != nullptr && entry.find('=') == std::string::npos) return finish(arguments_of(workbench, command->name), begin);
   }
-  bool const of_data =
-      block == "data" ||
-      (block.empty() && (first_word == "measure" || line.find(" hold") != std::string::npos || first_word == "input"));
-  if (of_data) {
-    std::string file = file_named_in(entry);
-    if (file.empty() && workbench.checked() != nullptr)
-      for (DataBlock const& data : workbench.checked()->data)
-        if (data.name == workbench.current_data()) file = data.path;
-    if (!file.empty()) append(words, columns(folder / file));
-    append(words, std::array{"hold", "rows", "zero_order", "linear", "cubic", "band_limited"});
-    append(words, names_of_model(workbench));
-    return finish(std::move(words), begin);
+  std::string const written = entry.substr(begin);
+  if (auto const dot = written.rfind('.'); dot != std::string::npos)
+    if (Words of_result = members(workbench, written.substr(0, dot)); !of_result.empty())
+      return finish(std::move(of_result), begin);
+
+  Words words;
+  bool const whole_block = words::contains(words::items, first_word) && entry.find('{') != std::string::npos;
+  if (first_end == entry.size()) append(words, first_words());
+  std::size_t word = add_language(workbench, in_file(workbench, entry), entry.size(), words);
+  if (whole_block) return finish(std::move(words), word);
+  // The rest of a task is no statement of a block; a statement of a block may be an expression over results as well.
+  bool const task = !words.empty() && first_end < entry.size();
+  if (!task) {
+    if (words::contains(words::data_statements, first_word))
+      word = add_language(workbench, in_block(workbench, ItemKind::data, workbench.current_data(), entry), entry.size(), words);
+    word = add_language(workbench, in_block(workbench, ItemKind::model, workbench.current_model(), entry), entry.size(), words);
   }
-  words = words_with_help();
-  append(words, names_of_work(workbench));
-  append(words, names_of_results(workbench));
+  if (word != begin) return finish(std::move(words), word);  // a path, or what stands behind a dot
   append(words, names_of_model(workbench));
+  append(words, functions_of_prompt());
+  append(words, names_of_results(workbench));
   return finish(std::move(words), begin);
 }
 

@@ -94,23 +94,28 @@ class Workbench {
   std::string with_seed(std::string const& task) const;
   std::string free_task_name(std::string const& like) const;
 
-  // --- commands.cpp
-  bool command(CommandRow const& row, std::string const& arguments);
+  // --- file_commands.cpp
+  bool take_file(std::filesystem::path const& path);
   bool load(Arguments path);
   bool reload(Arguments);
   bool save(Arguments path);
-  bool list(Arguments topic);
-  bool show_text(Arguments name);
   bool columns(Arguments path);
+
+  // --- task_commands.cpp
   bool check(Arguments);
   bool run(Arguments tasks);
   bool refit(Arguments);
+  bool compare(Arguments tasks);
   bool resume(Arguments task);
+
+  // --- work_commands.cpp
+  bool command(CommandRow const& row, std::string const& arguments);
+  bool list(Arguments topic);
+  bool show_text(Arguments name);
   bool change(Arguments block);
   bool drop(Arguments name);
   bool help(Arguments word);
   bool quit(Arguments);
-  bool take_file(std::filesystem::path const& path);
 
   // --- answers.cpp
   bool answer(ast::Expression const& tree, std::string const& text);

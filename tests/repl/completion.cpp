@@ -11,11 +11,14 @@ using namespace sysid;
 
 namespace {
 
+/// word: with what is written before the completion begins, in the word or path that it continues.
 bool offers(Dialogue& dialogue, std::string const& entry, std::string const& word) {
   auto const found = repl::completions(dialogue.workbench(), entry);
+  std::string before = entry.substr(0, found.begin);
+  before.erase(0, before.find_last_of(" \t\n\"([") + 1);
   for (std::string const& each : found.words) CHECK_MESSAGE(each.starts_with(entry.substr(found.begin)), each);
   CHECK(std::is_sorted(found.words.begin(), found.words.end()));
-  return std::find(found.words.begin(), found.words.end(), word) != found.words.end();
+  return std::any_of(found.words.begin(), found.words.end(), [&](std::string const& each) { return before + each == word; });
 }
 
 }  // namespace
@@ -68,6 +71,16 @@ TEST_CASE("columns of the data file and files of the folder are offered") {
   write_file(d.folder() / "a.sysid", "");
   CHECK(offers(d, "load " + d.path("a"), d.path("a.sysid")));
   CHECK(offers(d, "load " + d.path("res"), d.path("results/")));
+}
+
+TEST_CASE("what the language server knows is offered at the prompt: settings, units, choices, names of arguments") {
+  Dialogue d;
+  d.begin();
+  CHECK(offers(d, "parameter k [k", "kg"));
+  CHECK(offers(d, "observe displacement ~ normal(y, prec", "precision"));
+  CHECK(offers(d, "a = fit oscillator to bench with solver = r", "rk4"));
+  CHECK(offers(d, "observe displacement ~ half_", "half_normal") == false);  // no density of noise
+  CHECK(offers(d, "use hyst", "hysteresis"));
 }
 
 TEST_CASE("what all words begin with is put in, and no character is cut") {

@@ -45,6 +45,23 @@ TEST_CASE("a model, its data, a fit, a term more, a refit: entered one by one, a
   CHECK(number(d, "rms(residual(first.displacement))") == linear);
 }
 
+TEST_CASE("fits of a session are compared by their evidence, and what has not been run is named") {
+  Dialogue d;
+  d.begin();
+  CHECK_FALSE(d.enter("compare"));
+  CHECK(has(d.messages(), "no fit and no prediction has been run yet"));
+  REQUIRE(d.enter("first = fit oscillator to bench.train with map"));
+  REQUIRE(d.enter("parameter k3 [N/m^3] ~ log_uniform(1e7, 1e11); 1 [kg]*y'' + c*y' + k*y + k3*y^3 = x"));
+  REQUIRE(d.enter("refit"));
+  REQUIRE_MESSAGE(d.enter("compare"), d.messages());
+  CHECK(has(d.answers(), "fitted to bench.train, rows 1..200 (200)"));
+  CHECK(has(d.answers(), "first2"));
+  CHECK_FALSE(d.enter("compare first, second"));
+  CHECK_FALSE(d.enter("compare firs"));
+  CHECK(has(d.messages(), "there is no result of `firs`"));
+  CHECK(has(d.messages(), "did you mean `first`"));
+}
+
 TEST_CASE("a saved session is a file that gives the same numbers, to the last digit") {
   Dialogue d;
   d.begin();
