@@ -93,8 +93,10 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
   return ModelSelectionTarget(std::move(all));
 }
 
-std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver) {
-  return make_fit_target(session, *candidate.fit, candidate.compiled, candidate.space, experiments_of(candidate.data), solver);
+std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
+                                               ExecutionOptions const& execution) {
+  return make_fit_target(session, *candidate.fit, candidate.compiled, candidate.space, experiments_of(candidate.data), solver,
+                         execution);
 }
 
 }  // namespace sysid

@@ -28,6 +28,7 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
                                       bool finer);
 
 /// The candidate as a fit would see it.
-std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver);
+std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
+                                               ExecutionOptions const& execution);
 
 }  // namespace sysid

@@ -46,13 +46,16 @@ void settle(Session& session, Candidate const& candidate, std::uint64_t seed, Ca
   Ledger extra;
   if (!candidate.fit->settle) {
     std::vector<Mode> const weightiest = {posterior.modes.front()};
-    posterior.move = move_to_finer(*likelihood_target(session, candidate, candidate.fit->solver.finer()), Aim::posterior,
-                                   weightiest, seed, extra);
+    posterior.move = move_to_finer(*likelihood_target(session, candidate, candidate.fit->solver.finer(), session.interruptible()),
+                                   Aim::posterior, weightiest, seed, extra);
     return;
   }
-  MakeTarget const make = [&](SolverSettings const& solver) { return likelihood_target(session, candidate, solver); };
-  SettledSolver settled = settle_solver(make, Aim::posterior, candidate.fit->solver, std::move(posterior.modes), seed, extra,
-                                        [&] { return session.interrupted(); });
+  MakeTarget const make = [&](SolverSettings const& solver) {
+    return likelihood_target(session, candidate, solver, session.interruptible());
+  };
+  SilentProgress silent;  // one line for all candidates is shown already
+  RunContext context{seed, silent, extra, [&] { return session.interrupted(); }, {}, 0, {}, {}, {}};
+  SettledSolver settled = settle_solver(make, Aim::posterior, candidate.fit->solver, std::move(posterior.modes), context);
   posterior.modes = std::move(settled.modes);
   if (settled.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none
   // What is left is weighed as the finer one has it.
@@ -87,7 +90,7 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     std::size_t const k = order[i];
     SolverSettings const& solver = candidates[k].fit->solver;
     double const per_mass = unit_term(candidates[k], candidates.front()) + elementary::log(result.models[k].prior);
-    LocalSearches found = modes_near(*likelihood_target(session, candidates[k], solver), result.models[k],
+    LocalSearches found = modes_near(*likelihood_target(session, candidates[k], solver, session.interruptible()), result.models[k],
                                      best - per_mass - negligible, seed, extra, [&] { return session.interrupted(); });
     if (stopped()) return std::nullopt;
     best = std::max(best, log_evidence(found.modes) + per_mass);

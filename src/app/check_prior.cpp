@@ -129,11 +129,8 @@ PriorDraws draw_prior(LookedAt const& look) {
     FittedParameter const& row = space.rows()[static_cast<std::size_t>(space.sampled()[static_cast<std::size_t>(k)])];
     ParameterInfo const& info = space.infos()[static_cast<std::size_t>(k)];
     auto const values = declared.row(k);
-    JudgedParameter coordinate{{row.name, info.unit, row.to_si(1)},
-                               roles[static_cast<std::size_t>(row.parameter)],
-                               info.lower >= 0,
-                               0,
-                               info.starts_at_zero};
+    JudgedParameter coordinate{
+        {row.name, info.unit, row.to_si(1)}, roles[static_cast<std::size_t>(row.parameter)], info.lower >= 0, 0, info.coefficient};
     std::vector<double> scaled;
     for (double const value : values) scaled.push_back(coordinate.relative ? elementary::log(value) : row.to_si(value));
     coordinate.spread = (quantile(scaled, 0.84) - quantile(scaled, 0.16)) / 2;  // heavy tails leave it alone

@@ -13,6 +13,7 @@
 #include "app/fit_checks.hpp"
 #include "app/fit_end.hpp"
 #include "app/fit_target.hpp"
+#include "app/function_ranges.hpp"
 #include "app/preparation.hpp"
 #include "app/process_fit.hpp"
 #include "app/readiness.hpp"
@@ -20,13 +21,13 @@
 #include "app/resolved.hpp"
 #include "app/search_near.hpp"
 #include "app/session.hpp"
+#include "app/settling.hpp"
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
 #include "app/tolerance.hpp"
 #include "app/unknown_functions.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/checkpoint.hpp"
-#include "inference/refit.hpp"
 #include "inference/search.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -70,7 +71,7 @@ class Fit {
       if (stored->contains("state")) context.resume = stored->at("state");
       session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
     }
-    target_ = make_target(preparation_.solver);
+    target_ = make_target(preparation_.solver, session_.options.execution);
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
@@ -81,13 +82,13 @@ class Fit {
   }
 
  private:
-  std::unique_ptr<ModelTarget> make_target(SolverSettings const& solver) const {
-    return make_fit_target(session_, what_, compiled_, space_, experiments_of(data_), solver);
+  std::unique_ptr<ModelTarget> make_target(SolverSettings const& solver, ExecutionOptions const& execution) const {
+    return make_fit_target(session_, what_, compiled_, space_, experiments_of(data_), solver, execution);
   }
 
   // Search and, unless the user fixed it, the step. False: interrupted.
   bool prepare(RunContext& context) {
-    MakeTarget const make = [this](SolverSettings const& solver) { return make_target(solver); };
+    MakeTarget const make = [this](SolverSettings const& solver) { return make_target(solver, session_.interruptible()); };
     preparation_.solver = what_.solver;
     if (what_.settle && model_.integrated()) {
       SearchSolver const search = search_solver(make, what_.solver, seed_);
@@ -108,28 +109,10 @@ class Fit {
     }
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
-    if (!what_.settle) return true;
-    // Modes may need fewer steps than far corners of the prior.
-    if (preparation_.solver != what_.solver)
-      preparation_.modes =
-          refit(*make(what_.solver), backend_.aim, preparation_.modes, seed_, preparation_.ledger, context.interrupted);
-    SettledSolver settled = settle_solver(make, backend_.aim, what_.solver, std::move(preparation_.modes), seed_,
-                                          preparation_.ledger, context.interrupted);
-    if (context.stop_requested()) return false;
-    preparation_.solver = settled.solver;
-    preparation_.modes = std::move(settled.modes);
-    preparation_.moves = std::move(settled.moves);
-    // What looked like several may have been the solver's.
-    if (std::count_if(preparation_.modes.begin(), preparation_.modes.end(), [](Mode const& each) { return each.share > 0.01; }) < 2)
-      std::erase_if(preparation_.findings, [](Finding const& each) { return each.code == "second_mode"; });
-    if (settled.solver != what_.solver)
-      session_.notices << fmt::format("{}: {} (with {}, {} with {})\n", task_.name, accuracy(settled.solver),
-                                      accuracy(what_.solver), moved(preparation_.moves.front()), what_.solver.finer_words());
-    if (!settled.settled)
-      preparation_.findings.push_back({Severity::error, "step_not_settled",
-                                       fmt::format("even {} do not settle the result", accuracy(settled.solver)),
-                                       "where the model is stiff, fit it with `solver = cvode`; it may be chaotic on this record"});
-    return true;
+    // Before what takes time, so that one need not wait for it.
+    for (Finding const& each : ranges_at(preparation_.modes.front().declared))
+      session_.notices << fmt::format("{}: warning: {}\n", task_.name, each.message);
+    return !what_.settle || settle(session_, task_, make, backend_.aim, what_.solver, preparation_, search_context);
   }
 
   // --- the end
@@ -146,11 +129,12 @@ class Fit {
       report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     report.summary = summarise(result);
-    for (std::size_t p = 0; p < report.summary.size(); ++p) report.summary[p].coefficient = target_->parameters()[p].starts_at_zero;
+    for (std::size_t p = 0; p < report.summary.size(); ++p) report.summary[p].coefficient = target_->parameters()[p].coefficient;
     add(check_use(model_));
     Ledger extra;
     std::vector<double> const best = result.modes.empty() ? best_draw(result.draws) : result.modes.front().declared;
     if (!interrupted) {
+      target_ = make_target(preparation_.solver, session_.interruptible());  // sampling must not be given up on the way, this may
       FitCheck check = check_residuals(*target_, best);
       report.fit = std::move(check.lines);
       add(check.findings);
@@ -172,6 +156,7 @@ class Fit {
       report.summary.push_back(of_column(result.draws, c));
     for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
       report.predictions.push_back(fitted_rows(result.draws, e, report.findings));
+    if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
     report.modes = result.modes;
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
@@ -189,17 +174,23 @@ class Fit {
 
   // Into the report, with what speaks against them.
   Findings look_at_functions(FitResult const& result, std::vector<double> const& best, Report& report) const {
-    auto const count = static_cast<int>(model_.parameters.size());
     FunctionParameters const parameters = function_parameters(*space_, result);
     report.functions = unknown_functions(model_, parameters);
     Findings findings = check_expansions(model_, parameters.values);
-    LaneArray declared(static_cast<int>(best.size()), 1), one(count, 1);
-    for (std::size_t p = 0; p < best.size(); ++p) declared(static_cast<int>(p), 0) = best[p];
+    Findings const more = ranges_at(best);
+    findings.insert(findings.end(), more.begin(), more.end());
+    return findings;
+  }
+
+  // Of unknown functions, along every experiment at one vector of the sampled parameters, declared.
+  Findings ranges_at(std::vector<double> const& values) const {
+    Findings findings;
+    LaneArray declared(static_cast<int>(values.size()), 1), one(static_cast<int>(model_.parameters.size()), 1);
+    for (std::size_t p = 0; p < values.size(); ++p) declared(static_cast<int>(p), 0) = values[p];
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
       space_->select(space_->values_of_declared(declared), e, one);
-      Findings const more =
-          check_ranges(model_, data_[static_cast<std::size_t>(e)].experiment, preparation_.solver,
-                       what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, one, session_.options.execution);
+      Findings const more = check_ranges(model_, data_[static_cast<std::size_t>(e)].experiment, preparation_.solver,
+                                         start_rows(what_.start), one, session_.interruptible());
       findings.insert(findings.end(), more.begin(), more.end());
     }
     return findings;
@@ -207,7 +198,7 @@ class Fit {
 
   // Draws tell by their weights, an optimum by where it moves. A solver that was chosen has settled the modes before.
   Findings step_check(Draws const& draws, Ledger& extra) const {
-    auto const fine = make_target(preparation_.solver.finer());
+    auto const fine = make_target(preparation_.solver.finer(), session_.interruptible());
     Findings findings;
     if (draws.total() > 1)
       findings = tolerance_findings(check_tolerance(*target_, *fine, draws, extra), preparation_.solver, what_.settle);
@@ -224,8 +215,7 @@ class Fit {
     LaneArray const columns = spread(draws, 100);
     LaneArray parameters(static_cast<int>(model_.parameters.size()), columns.width());
     space_->select(space_->values_of_declared(columns), e, parameters);
-    Trajectory const trajectory(compiled_, experiment, preparation_.solver,
-                                what_.start.kind == StartRule::Kind::estimated ? what_.start.rows : 0, session_.options.execution);
+    Trajectory const trajectory(compiled_, experiment, preparation_.solver, start_rows(what_.start), session_.interruptible());
     Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, e));
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name)) findings.push_back(std::move(finding));
     Prediction prediction = bands_along(trajectory.quantities(), result, experiment, model_);

@@ -193,7 +193,9 @@ Findings check_use(Model const& model) {
   Findings findings;
   std::vector<ParameterRole> const roles = parameter_roles(model);
   for (std::size_t p = 0; p < roles.size(); ++p)
-    if (model.parameters[p].prior && (roles[p] == ParameterRole::none || roles[p] == ParameterRole::derived))
+    // Terms that vanish over the whole range of an unknown function are another finding.
+    if (model.parameters[p].prior && !model.parameters[p].coefficient &&
+        (roles[p] == ParameterRole::none || roles[p] == ParameterRole::derived))
       findings.push_back(
           {Severity::warning, "unused_parameter",
            fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", model.parameters[p].name),

@@ -28,6 +28,12 @@ ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& ch
   return ExitCode::interrupted;
 }
 
+ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation) {
+  if (!std::filesystem::exists(checkpoint.path())) checkpoint.save({{"preparation", store(preparation)}});
+  session.notices << fmt::format("{}: interrupted before its result was checked; --resume goes on from there\n", task.name);
+  return ExitCode::interrupted;
+}
+
 Finding interrupted_finding() {
   return {Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
           "go on with --resume; it ends with the bytes of an unbroken run"};

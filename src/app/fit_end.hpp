@@ -3,6 +3,7 @@
 #include <chrono>
 #include <vector>
 
+#include "app/preparation.hpp"
 #include "app/session.hpp"
 #include "app/task_checkpoint.hpp"
 #include "core/diagnostic.hpp"
@@ -17,6 +18,10 @@ Diagnostic no_result(Task const& task, Finding const& failure);
 
 /// Interrupted before there was a draw to keep.
 ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& checkpoint);
+
+/// Interrupted while the result was looked at, which is done again from the back end's last checkpoint, or where it has made none
+/// from the search's end.
+ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation);
 
 Finding interrupted_finding();
 

@@ -8,11 +8,11 @@ int start_rows(StartRule start) { return start.kind == StartRule::Kind::estimate
 std::unique_ptr<ModelTarget> make_fit_target(Session const& session, FitTask const& what,
                                              std::shared_ptr<CompiledModel const> compiled,
                                              std::shared_ptr<ParameterSpace const> space, std::vector<Experiment> experiments,
-                                             SolverSettings const& solver) {
+                                             SolverSettings const& solver, ExecutionOptions const& execution) {
   TargetOptions options;
   options.solver = solver;
   options.start_rows = start_rows(what.start);
-  options.execution = session.options.execution;
+  options.execution = execution;
   options.describe = [&session, model = what.model](NodeId node, Graph const& graph) {
     return session.describe(model, graph, node);
   };

@@ -13,6 +13,6 @@ int start_rows(StartRule start);
 std::unique_ptr<ModelTarget> make_fit_target(Session const& session, FitTask const& what,
                                              std::shared_ptr<CompiledModel const> compiled,
                                              std::shared_ptr<ParameterSpace const> space, std::vector<Experiment> experiments,
-                                             SolverSettings const& solver);
+                                             SolverSettings const& solver, ExecutionOptions const& execution);
 
 }  // namespace sysid

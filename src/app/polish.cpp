@@ -41,7 +41,7 @@ Polish polish_candidates(Session& session, std::vector<Candidate> const& candida
       missed("the climb to its mode was given up, for by the likelihood it is less probable than another by 30 nats and more");
       continue;
     }
-    auto const target = likelihood_target(session, candidates[k], posteriors[k].solver);
+    auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.options.execution);
     Ledger extra;
     RunContext context{seed, session.progress, extra, [&] { return session.interrupted(); }, {}, 60, {}, posteriors[k].modes, {}};
     FitResult chains = mh::run(*target, settings_for(samples), context);

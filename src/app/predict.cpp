@@ -8,12 +8,12 @@
 #include "app/coverage.hpp"
 #include "app/drift.hpp"
 #include "app/experiments.hpp"
+#include "app/function_ranges.hpp"
 #include "app/process_fit.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/solver_record.hpp"
 #include "app/stored_draws.hpp"
-#include "app/unknown_functions.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/result.hpp"
 #include "report/terminal.hpp"
@@ -111,10 +111,9 @@ class Predict {
                                           ? trajectory.run_redrawn(draws, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
                                           : trajectory.run(draws, noise);
     report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model_));
-    if (!model_.expansions.empty() && draws.width() > 0)
-      for (Finding& finding : check_ranges(model_, experiment, fitted_.solver, free_start_ ? what_.start.rows : 0,
-                                           draws.view().columns(draws.width() / 2, 1), session_.options.execution))
-        report.findings.push_back(std::move(finding));
+    for (Finding& finding :
+         check_ranges(model_, experiment, fitted_.solver, free_start_ ? what_.start.rows : 0, draws, session_.options.execution))
+      report.findings.push_back(std::move(finding));
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name))
       report.findings.push_back(std::move(finding));
     report.ledger.merge(result.ledger);

@@ -7,6 +7,7 @@
 #include "app/bands.hpp"
 #include "app/experiments.hpp"
 #include "app/fit_target.hpp"
+#include "app/function_ranges.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/session.hpp"
@@ -112,6 +113,9 @@ class PredictSelection {
           [this, model = fit.model](NodeId node, Graph const& graph) { return session_.describe(model, graph, node); });
       Trajectory::Result result = trajectory->run(parameters, prediction_noise(seed_, static_cast<int>(e)));
       all.ledger.merge(result.ledger);
+      for (Finding& finding : check_ranges(compiled->model, data[e].experiment, fit.solver, free_start ? what_.start.rows : 0,
+                                           parameters, session_.options.execution))
+        report.findings.push_back(std::move(finding));
       if (k == lead) {
         leading_failed = result.failed();
         quantities = trajectory->quantities();

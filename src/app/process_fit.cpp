@@ -21,9 +21,9 @@
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/search_near.hpp"
+#include "app/settling.hpp"
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
-#include "app/tolerance.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/search.hpp"
 
@@ -65,7 +65,7 @@ class ProcessFit {
           seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
       if (!prepare(searching)) return stop_early(session_, task_, checkpoint_);
     }
-    target_ = make_target(preparation_.solver);
+    target_ = make_target(preparation_.solver, session_.options.execution);
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
@@ -76,41 +76,27 @@ class ProcessFit {
   }
 
  private:
-  std::unique_ptr<ProcessTarget> make_target(SolverSettings const& solver) const {
-    return process_target(session_, what_, model_, data_, solver);
+  std::unique_ptr<ProcessTarget> make_target(SolverSettings const& solver, ExecutionOptions const& execution) const {
+    return process_target(what_, model_, data_, solver, execution);
   }
 
   // Search and, where equations are integrated and the user did not fix it, the step. False: interrupted.
   bool prepare(RunContext& context) {
     preparation_.solver = what_.solver;
-    auto const target = make_target(what_.solver);
+    auto const target = make_target(what_.solver, session_.interruptible());
     SearchResult found =
         what_.near ? search_near(session_, *what_.near, *target, backend_.aim, context) : search(*target, backend_.aim, context);
     if (found.interrupted) return false;
     if (found.failure) throw UserError(no_result(task_, *found.failure));
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
-    if (!what_.settle || !model_->model().integrated()) return true;
-    SettledSolver settled =
-        settle_solver([this](SolverSettings const& solver) { return make_target(solver); }, backend_.aim, what_.solver,
-                      std::move(preparation_.modes), seed_, preparation_.ledger, context.interrupted);
-    if (context.stop_requested()) return false;
-    preparation_.solver = settled.solver;
-    preparation_.modes = std::move(settled.modes);
-    preparation_.moves = std::move(settled.moves);
-    if (settled.solver != what_.solver)
-      session_.notices << fmt::format("{}: {} (with {}, {} with {})\n", task_.name, accuracy(settled.solver),
-                                      accuracy(what_.solver), moved(preparation_.moves.front()), what_.solver.finer_words());
-    if (!settled.settled)
-      preparation_.findings.push_back({Severity::error, "step_not_settled",
-                                       fmt::format("even {} do not settle the result", accuracy(settled.solver)),
-                                       "where the model is stiff, fit it with `solver = cvode`; it may be chaotic on this record"});
-    return true;
+    MakeTarget const make = [this](SolverSettings const& solver) { return make_target(solver, session_.interruptible()); };
+    return !what_.settle || settle(session_, task_, make, backend_.aim, what_.solver, preparation_, context);
   }
 
   // As of a fit without processes: draws tell by their weights, an optimum by where it moves.
   Findings step_check(Draws const& draws) {
-    auto const fine = make_target(preparation_.solver.finer());
+    auto const fine = make_target(preparation_.solver.finer(), session_.interruptible());
     Ledger extra;
     Findings findings;
     if (draws.total() > 1)
@@ -152,6 +138,7 @@ class ProcessFit {
       add(scores.findings);
       for (int e = 0; e < static_cast<int>(data_.size()); ++e) report.predictions.push_back(fitted_rows(*all, report.draws, e));
     }
+    if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
     report.modes = result.modes;
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : result.settings.all()) report.settings.emplace_back(name, value);
@@ -228,12 +215,13 @@ std::shared_ptr<ProcessModel const> process_model(Session const& session, FitTas
   return std::make_shared<ProcessModel const>(std::move(*ruled), fit.start.kind == StartRule::Kind::estimated, fit.solver.method);
 }
 
-std::unique_ptr<ProcessTarget> process_target(Session const& session, FitTask const& fit, std::shared_ptr<ProcessModel const> model,
-                                              std::vector<ExperimentData> const& data, SolverSettings const& solver) {
+std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_ptr<ProcessModel const> model,
+                                              std::vector<ExperimentData> const& data, SolverSettings const& solver,
+                                              ExecutionOptions const& execution) {
   TargetOptions options;
   options.solver = solver;
   options.start_rows = start_rows(fit.start);
-  options.execution = session.options.execution;
+  options.execution = execution;
   auto const space = parameter_space(model->reduced(), fit.experiments);
   return std::make_unique<ProcessTarget>(std::move(model), space, experiments_of(data), std::move(options));
 }

@@ -13,8 +13,9 @@ namespace sysid {
 std::shared_ptr<ProcessModel const> process_model(Session const& session, FitTask const& fit, PredictionRule prediction);
 
 /// The target of a fit, holding its samples. data: those of the fit. solver: of differential equations, where there are any.
-std::unique_ptr<ProcessTarget> process_target(Session const& session, FitTask const& fit, std::shared_ptr<ProcessModel const> model,
-                                              std::vector<ExperimentData> const& data, SolverSettings const& solver);
+std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_ptr<ProcessModel const> model,
+                                              std::vector<ExperimentData> const& data, SolverSettings const& solver,
+                                              ExecutionOptions const& execution);
 
 ExitCode run_process_fit(Session& session, int index, Task const& task, FitTask const& what);
 ExitCode run_process_predict(Session& session, Task const& task, PredictTask const& what);

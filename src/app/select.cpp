@@ -9,6 +9,7 @@
 #include "app/candidate.hpp"
 #include "app/candidate_posterior.hpp"
 #include "app/fit_target.hpp"
+#include "app/function_ranges.hpp"
 #include "app/polish.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
@@ -19,6 +20,7 @@
 #include "app/shared_parameters.hpp"
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
+#include "app/unknown_functions.hpp"
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
 #include "inference/verdict.hpp"
@@ -95,7 +97,7 @@ class Select {
   // --- the end
   // --------------------------------------------------------------------------------------------------------------------
 
-  /// Bands of the leading model's particles over the fitted rows.
+  /// Bands of the leading model's particles over the fitted rows, and whether its unknown functions can be believed there.
   void add_predictions(SelectionReport const& selection, Report& report) const {
     auto const lead = static_cast<std::size_t>(selection.leader());
     Candidate const& candidate = candidates_[lead];
@@ -113,6 +115,12 @@ class Select {
       Findings left_out = leave_out_noise(candidate.compiled->model, report.predictions.back());
       if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
+        report.findings.push_back(std::move(finding));
+      for (Finding& finding : check_ranges(candidate.compiled->model, experiment, candidate.fit->solver,
+                                           start_rows(candidate.fit->start), parameters, session_.options.execution))
+        report.findings.push_back(std::move(finding));
+      if (e > 0) continue;
+      for (Finding& finding : check_expansions(candidate.compiled->model, parameters))
         report.findings.push_back(std::move(finding));
     }
   }

@@ -57,4 +57,10 @@ bool Session::interrupted() {
   return interrupt_requested();
 }
 
+ExecutionOptions Session::interruptible() const {
+  ExecutionOptions execution = options.execution;
+  execution.stopped = &interrupt_requested;
+  return execution;
+}
+
 }  // namespace sysid

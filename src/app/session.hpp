@@ -59,6 +59,8 @@ class Session {
   int threads() const;
   /// Whether an interruption was asked for; counts polls for `interrupt_after`.
   bool interrupted();
+  /// As the options say, but given up when an interruption is asked for: for work of which nothing is kept then.
+  ExecutionOptions interruptible() const;
 
  private:
   std::map<std::tuple<int, bool, std::string, PredictionRule>, std::shared_ptr<CompiledModel const>> compiled_;

@@ -51,7 +51,8 @@ class Settling {
     LaneArray points = gathered(points_, lanes);
     std::vector<double> density(lanes.size());
     Ledger ledger;
-    make_fit_target(session_, what_, compiled, space_, experiments_, solver)->log_likelihood(theta, density, ledger);
+    make_fit_target(session_, what_, compiled, space_, experiments_, solver, session_.options.execution)
+        ->log_likelihood(theta, density, ledger);
     last_compiled_ = compiled;
     last_solver_ = solver;
     Output const output(compiled, space_, experiments_, solver, start_rows(what_.start), session_.options.execution, pool_);
@@ -69,7 +70,8 @@ class Settling {
   void trace() {
     constexpr std::size_t traced = 8;
     std::vector<int> const lanes = open();
-    auto const target = make_fit_target(session_, what_, last_compiled_, space_, experiments_, last_solver_);
+    auto const target =
+        make_fit_target(session_, what_, last_compiled_, space_, experiments_, last_solver_, session_.options.execution);
     for (std::size_t i = 0; i < std::min(traced, lanes.size()); ++i) {
       double density = 0;
       Ledger solves;
@@ -113,7 +115,8 @@ SettledDraws settle_draws(Session& session, FitTask const& what, std::shared_ptr
   SettledDraws result{LaneArray(static_cast<int>(stated.places().size()), theta.width()), std::vector<bool>(width), 0, {}, 0};
   std::vector<double> density(width);
   Ledger untold;
-  make_fit_target(session, what, compiled, space, experiments, what.solver)->log_likelihood(theta, density, untold);
+  make_fit_target(session, what, compiled, space, experiments, what.solver, session.options.execution)
+      ->log_likelihood(theta, density, untold);
   stated.centres(points, result.centres);
   for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(density[w]);
   result.failed_as_stated = static_cast<int>(std::count(result.followed.begin(), result.followed.end(), false));

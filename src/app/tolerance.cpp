@@ -110,6 +110,52 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
 
 namespace {
 
+/// Integrator steps, of one simulation for one sample, after which one asks whether more of them may help: some seconds of an
+/// equation with a handful of terms.
+constexpr double patience = 2e8;
+
+/// Whether moves that go on to fall as the last ones did, if they do, stay too large for every solver from `next` on.
+bool hopeless(std::vector<double> const& moves, SolverSettings next) {
+  if (moves.size() < 2) return false;
+  double move = moves.back();
+  double const fall = std::min(1.0, move / moves[moves.size() - 2]);
+  if (!std::isfinite(move) || !(fall > 0)) return false;  // what fails now may yet be stable
+  for (; !too_fine(next); next = next.finer()) {
+    move *= fall;
+    if (move <= tolerable_move) return false;
+  }
+  return true;
+}
+
+/// A progress line over the solves of one refit.
+class Shown {
+ public:
+  Shown(RunContext& context, Target const& target, std::size_t modes, std::string const& what)
+      : context_(context), before_(context.ledger.solves()), expected_(modes * solves_per_mode(target)) {
+    context_.progress.begin(what, expected_);
+  }
+  ~Shown() { context_.progress.end(!context_.stop_requested()); }
+  Shown(Shown const&) = delete;
+  Shown& operator=(Shown const&) = delete;
+
+  std::function<bool()> stop() const {
+    return [this] {
+      context_.progress.advance(std::min(context_.ledger.solves() - before_, expected_ - 1), "");
+      return context_.stop_requested();
+    };
+  }
+
+ private:
+  /// A handful of rounds is usual.
+  static std::uint64_t solves_per_mode(Target const& target) {
+    auto const dimension = static_cast<std::uint64_t>(target.dimension());
+    return target.has_gradient() ? 20 : 10 * (2 * dimension + 5) + 4 * (1 + 2 * dimension * dimension);
+  }
+
+  RunContext& context_;
+  std::uint64_t before_, expected_;
+};
+
 /// By the most that one of weight does.
 double largest_move(std::vector<Mode> const& modes, std::vector<Mode> const& finer) {
   double most = 0;
@@ -121,21 +167,30 @@ double largest_move(std::vector<Mode> const& modes, std::vector<Mode> const& fin
 }  // namespace
 
 SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
-                            std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
+                            RunContext& context) {
   SettledSolver result;
   result.solver = from;
   result.modes = std::move(modes);
-  while (!stop || !stop()) {
-    std::vector<Mode> finer = refit(*make(result.solver.finer()), aim, result.modes, seed, ledger, stop);
+  double steps = 0;
+  while (!context.stop_requested()) {
+    SolverSettings const next = result.solver.finer();
+    auto const target = make(next);
+    std::uint64_t const before = context.ledger.solves();
+    std::vector<Mode> const finer = [&] {
+      Shown const shown(context, *target, result.modes.size(), fmt::format("trying {}", accuracy(next)));
+      return refit(*target, aim, result.modes, context.seed, context.ledger, shown.stop());
+    }();
+    steps += static_cast<double>(context.ledger.solves() - before) * target->residual_count() * next.substeps;
     result.moves.push_back(largest_move(result.modes, finer));
     if (result.moves.back() <= tolerable_move) break;
     std::vector<Mode> const left = reached(result.modes, finer);
     result.lost = left.empty();
-    if (result.lost || too_fine(result.solver.finer())) {
+    result.given_up = !result.lost && !too_fine(next) && steps > patience && hopeless(result.moves, next);
+    if (result.lost || result.given_up || too_fine(next)) {
       result.settled = false;
       break;
     }
-    result.solver = result.solver.finer();
+    result.solver = next;
     result.modes = merged(left);
   }
   return result;

@@ -32,16 +32,19 @@ struct SearchSolver {
 SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed);
 
 /// The first of `from`, `from.finer()`, ... for which no mode moves or changes its width by more than `tolerable_move` sds at the
-/// next one; the modes there, those that came together counted once, those that only a coarser solver could reach left out.
+/// next one; the modes there, those that came together counted once, those that only a coarser solver could reach left out. Every
+/// solver costs twice the one before it: when that has come to many steps, and moves that fall as they do would not be small at the
+/// finest either, it is given up.
 struct SettledSolver {
   SolverSettings solver;
   std::vector<Mode> modes;
   std::vector<double> moves;  // of each that was tried: largest move to the next one [sd]
   bool settled = true;        // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative), or lost
   bool lost = false;          // with the next one no mode is finite any more: these are the last that were
+  bool given_up = false;      // before the finest, as one that would not settle it either
 };
 SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
-                            std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {});
+                            RunContext& context);
 
 /// How far the weightiest of `modes` moves on `fine` [sd], infinite where it is not finite there.
 double move_to_finer(Target const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger);

@@ -10,7 +10,6 @@
 #include "likelihood/compiled_model.hpp"
 #include "likelihood/process_model.hpp"
 #include "program/kernel.hpp"
-#include "report/number.hpp"
 
 namespace sysid {
 namespace {
@@ -192,47 +191,6 @@ Findings check_expansions(Model const& model, ConstLanes parameters) {
                           fmt::format("the finite sum of `{}` differs from its process by {:.0f} % of the process's variance",
                                       expansion.name, 100 * part),
                           "take more `terms` where a length is short against the range, or a wider `within` where it is long"});
-  return findings;
-}
-
-Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
-                      ConstLanes parameters, ExecutionOptions const& options) {
-  struct Place {
-    Expansion const* expansion;
-    std::size_t input;
-  };
-  std::vector<Place> places;
-  Model shown = model;
-  shown.derived.clear();
-  for (Expansion const& expansion : model.expansions)
-    for (std::vector<NodeId> const& application : expansion.applications)
-      for (std::size_t d = 0; d < application.size(); ++d) {
-        Derived derived;
-        derived.name = expansion.inputs[d].name;
-        derived.value = application[d];
-        derived.per_sample = true;
-        shown.derived.push_back(std::move(derived));
-        places.push_back({&expansion, d});
-      }
-  Trajectory const trajectory(compile(std::move(shown), start_rows > 0, solver.method), experiment, solver, start_rows, options);
-  Trajectory::Result const result = trajectory.run(parameters, {});
-  Findings findings;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    Expansion const& expansion = *places[k].expansion;
-    Expansion::Input const& input = expansion.inputs[places[k].input];
-    std::vector<double> const& values = result.values[result.values.size() - places.size() + k].front();
-    auto const beyond =
-        std::count_if(values.begin(), values.end(), [&](double value) { return value < input.low || value > input.high; });
-    if (beyond == 0) continue;
-    auto const [low, high] = std::minmax_element(values.begin(), values.end());
-    findings.push_back(
-        {Severity::warning, "outside_range",
-         fmt::format("`{}` is read outside its range at {} of {} samples of {}: {} goes from {} to {}{}, `within` from {} to {}",
-                     expansion.name, beyond, values.size(), experiment.name, input.name, significant(input.from_si(*low), 3),
-                     significant(input.from_si(*high), 3), input.unit ? fmt::format(" [{}]", input.unit->text) : std::string(),
-                     significant(input.from_si(input.low), 3), significant(input.from_si(input.high), 3)),
-         "widen `within`: beyond it the function is led by the shape of its sum, not by the data"});
-  }
   return findings;
 }
 

@@ -6,7 +6,6 @@
 #include "inference/backend.hpp"
 #include "inference/finding.hpp"
 #include "likelihood/parameter_space.hpp"
-#include "likelihood/trajectory.hpp"
 #include "report/function.hpp"
 
 namespace sysid {
@@ -25,9 +24,5 @@ std::vector<FunctionReport> unknown_functions(Model const& model, FunctionParame
 
 /// basis_inaccurate where a sum, with the mean of the hyper-parameters, is not the process that it stands for.
 Findings check_expansions(Model const& model, ConstLanes parameters);
-
-/// outside_range where a function was read beyond its range along an experiment. parameters: of the model [parameters x 1], SI.
-Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
-                      ConstLanes parameters, ExecutionOptions const& options);
 
 }  // namespace sysid

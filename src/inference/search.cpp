@@ -86,7 +86,7 @@ Finding flat_direction(Target const& target, std::span<double const> move) {
   for (std::size_t p = 0; p < move.size(); ++p) {
     ParameterInfo const& parameter = target.parameters()[p];
     if (move[p] == 0) continue;
-    if (parameter.starts_at_zero) {  // an unknown function stands for all its coefficients
+    if (parameter.coefficient) {  // an unknown function stands for all its coefficients
       std::string const function = parameter.name.substr(0, parameter.name.find('['));
       if (std::find(names.begin(), names.end(), function) == names.end()) names.push_back(function);
       continue;
@@ -127,7 +127,7 @@ void add_findings(Objective const& objective, SearchResult& result) {
 
 bool has_coefficients(Target const& target) {
   return std::any_of(target.parameters().begin(), target.parameters().end(),
-                     [](ParameterInfo const& each) { return each.starts_at_zero; });
+                     [](ParameterInfo const& each) { return each.coefficient; });
 }
 
 LaneArray draw_prior(Target const& target, StreamKey key, int count) {
@@ -139,7 +139,7 @@ LaneArray draw_prior(Target const& target, StreamKey key, int count) {
 /// Coefficients of unknown functions at zero, where a model is what it is without them.
 void begin_without_functions(Target const& target, LaneArray& draws) {
   for (int p = 0; p < target.dimension(); ++p)
-    if (target.parameters()[static_cast<std::size_t>(p)].starts_at_zero)
+    if (target.parameters()[static_cast<std::size_t>(p)].coefficient)
       for (int w = 0; w < draws.width(); ++w) draws(p, w) = 0;
 }
 

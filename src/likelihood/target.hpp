@@ -17,7 +17,7 @@ struct ParameterInfo {
   std::string unit;  // as written; may be empty
   double lower,
       upper;  // bounds of the prior's support, declared unit; infinite where there is none or it depends on other parameters
-  bool starts_at_zero = false;  // a search begins there, whatever the prior draws: a coefficient of an unknown function
+  bool coefficient = false;  // of an unknown function: a search begins with it at zero, whatever the prior draws
 };
 
 class Target {

@@ -20,11 +20,11 @@ std::optional<std::size_t> not_finite(std::vector<double> const& values) {
 /// One lane of one simulation.
 class Solve {
  public:
-  Solve(SimulationProgram const& program, Schedule const& schedule, std::span<double const> parameters)
-      : program_(program), schedule_(schedule), parameters_(parameters) {
-    for (NodeId const id : program.graph.reachable(program.next))
-      if (program.graph[id].operation == Operation::leaf) leaves_.push_back(id);
-    next_ = compile_kernel(program.graph, leaves_, program.next);
+  Solve(Simulator const& simulator, std::span<double const> parameters)
+      : simulator_(simulator), program_(simulator.program()), schedule_(simulator.schedule()), parameters_(parameters) {
+    for (NodeId const id : program_.graph.reachable(program_.next))
+      if (program_.graph[id].operation == Operation::leaf) leaves_.push_back(id);
+    next_ = compile_kernel(program_.graph, leaves_, program_.next);
   }
 
   std::optional<Diagnosis> run() {
@@ -34,7 +34,7 @@ class Solve {
     if (auto const node = first_not_finite(graph, initial, at_start)) return Diagnosis{*node, schedule_.time(0), 0};
     states_ = graph.evaluate(initial, at_start);
     if (!schedule_.solver().fixed_step()) return run_solver();
-    for (int sample = 0; sample < schedule_.last_summed(); ++sample) {
+    for (int sample = 0; sample < schedule_.last_summed() && !simulator_.stopped(); ++sample) {
       if (auto const node = look_at_sums(sample)) return Diagnosis{*node, schedule_.time(sample), sample};
       carry(sample);
       for (int substep = 0; substep < schedule_.solver().substeps && sample + 1 < schedule_.last_summed(); ++substep)
@@ -50,7 +50,7 @@ class Solve {
     for (int p = 0; p < parameters.rows(); ++p) parameters(p, 0) = parameters_[static_cast<std::size_t>(p)];
     block.set_parameters(parameters);
     block.start();
-    for (int sample = 0; sample < schedule_.last_summed(); ++sample) {
+    for (int sample = 0; sample < schedule_.last_summed() && !simulator_.stopped(); ++sample) {
       if (sample > 0) block.step(sample - 1);
       if (auto const failure = block.step_failure(0)) {
         if (!failure->node) return std::nullopt;
@@ -120,6 +120,7 @@ class Solve {
     return at(Stage::end, program_.source.derivative[failed]);
   }
 
+  Simulator const& simulator_;
   SimulationProgram const& program_;
   Schedule const& schedule_;
   std::span<double const> parameters_;
@@ -130,8 +131,6 @@ class Solve {
 
 }  // namespace
 
-std::optional<Diagnosis> Simulator::diagnose(std::span<double const> parameters) const {
-  return Solve(*program_, schedule_, parameters).run();
-}
+std::optional<Diagnosis> Simulator::diagnose(std::span<double const> parameters) const { return Solve(*this, parameters).run(); }
 
 }  // namespace sysid

@@ -76,13 +76,21 @@ Work Simulator::blocks(int width, int samples, BlockWork const& work) const {
   return result;
 }
 
+void Simulator::give_up(int sample, int lane, int lanes, Lanes out, std::span<Outcome> outcome) {
+  for (int w = lane; w < lane + lanes; ++w) {
+    outcome[static_cast<std::size_t>(w)] = {false, sample, FailureClass::non_finite};
+    for (int r = 0; r < out.rows(); ++r) out(r, w) = not_a_number;
+  }
+}
+
 Work Simulator::sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
   int const end = schedule_.last_summed();
-  return blocks(parameters.width(), end, [=](Block& block, int lane, int lanes) {
+  return blocks(parameters.width(), end, [=, this](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     block.start();
     bool alive = true;
     for (int i = 0; i < end && alive; ++i) {
+      if (stopped()) return give_up(i, lane, lanes, out, outcome);
       block.observe(i);
       if (i + 1 < end) block.step(i);
       if ((i + 1) % burial_interval == 0 || i + 1 == end) alive = block.bury(i);
@@ -119,6 +127,7 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
   int const records = program_->registers.records;
   bool alive = true;
   for (int i = 0; i < last && alive; ++i) {
+    if (stopped()) return give_up(i, lane, lanes, out, outcome);
     if (i > 0) draw(i);
     if (i >= first) {
       block.record(i);

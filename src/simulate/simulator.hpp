@@ -21,6 +21,9 @@ class ThreadPool;  // simulate/thread_pool.hpp
 struct ExecutionOptions {
   int lanes = 0;    // lanes per block, rounded up to what an executor has; 0: chosen from the work and the first-level cache
   int threads = 1;  // 0: one per processor
+  /// Asked at every sample, from several threads at once. True: what is not done is given up and counts as failed, for a caller who
+  /// uses nothing of it then. Null: never.
+  bool (*stopped)() = nullptr;
 };
 
 /// How the solve of one lane ended. `sample`: one by which it had failed (looked for every few samples, the same ones for any
@@ -61,6 +64,8 @@ class Simulator {
   Schedule const& schedule() const { return schedule_; }
   ExecutionOptions const& options() const { return options_; }
   int threads() const;
+  /// As the options say; what has no result then is not looked into either.
+  bool stopped() const { return options_.stopped != nullptr && options_.stopped(); }
   /// For blocks of a batch of `width` lanes that takes so many lane-instructions in all.
   Executor executor(int width, double instructions) const;
 
@@ -88,6 +93,7 @@ class Simulator {
  private:
   using BlockWork = std::function<void(Block&, int lane, int lanes)>;
   Work blocks(int width, int samples, BlockWork const& work) const;
+  static void give_up(int sample, int lane, int lanes, Lanes out, std::span<Outcome> outcome);
   void record_block(Block& block, Redraw const* redraw, int lane, int lanes, int first, int last, Lanes out,
                     std::span<Outcome> outcome) const;
 

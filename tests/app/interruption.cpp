@@ -36,6 +36,52 @@ TEST_CASE("a run that drew its seed goes on with that seed") {
   CHECK(run_text(name, text, options, {"fit"}).exit != 75);
 }
 
+namespace {
+
+/// Asks for an interruption when a job of that name begins, or ends.
+class Interrupting : public Progress {
+ public:
+  Interrupting(std::string job, bool at_end) : job_(std::move(job)), at_end_(at_end) {}
+  void begin(std::string_view what, std::uint64_t) override {
+    now_ = what.starts_with(job_);
+    if (now_ && !at_end_) request_interrupt();
+  }
+  void advance(std::uint64_t, std::string_view) override {}
+  void end(bool) override {
+    if (now_ && at_end_) request_interrupt();
+  }
+
+ private:
+  std::string job_;
+  bool at_end_, now_ = false;
+};
+
+}  // namespace
+
+TEST_CASE("an interruption while the solver is chosen, or while the result is checked, is answered before a result is written") {
+  auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
+  std::string const text = with(with(read_file(name), "rows 1..500, test", "rows 1..60, test"), "samples = 25000, burn_in = 5000",
+                                "samples = 2000, burn_in = 500");
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "unbroken";
+  run_text(name, text, options, {"fit"});
+  for (auto const& [job, at_end] : {std::pair("trying 2 integrator steps", false), std::pair("sampling", true)}) {
+    CAPTURE(job);
+    options.output = folder.path() / job;
+    options.resume = false;
+    Interrupting progress(job, at_end);
+    RunResult const broken = run_text(name, text, options, {"fit"}, &progress);
+    clear_interrupt();
+    CHECK(broken.exit == 75);
+    CHECK(!std::filesystem::exists(options.output / "posterior/summary.json"));
+    options.resume = true;
+    run_text(name, text, options, {"fit"});
+    for (char const* file : {"summary.json", "draws_1.csv"})
+      CHECK(read_file(options.output / "posterior" / file) == read_file(folder.path() / "unbroken/posterior" / file));
+  }
+}
+
 TEST_CASE("two records made in one run with one seed differ, and neither is overwritten unasked") {
   auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
   std::string const text = read_file(name);

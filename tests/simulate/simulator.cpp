@@ -290,3 +290,27 @@ TEST_CASE("redrawing the same parameters changes nothing, other parameters act f
     CHECK_FALSE(plain(2 * 31, w) == changed(2 * 31, w));
   }
 }
+
+namespace {
+
+int asked = 0;
+bool after_a_while() { return ++asked > 100; }
+
+}  // namespace
+
+TEST_CASE("what is told to stop on the way has no result, and ends there") {
+  auto const program = std::make_shared<SimulationProgram const>(compile(systems::duffing()));
+  LaneArray const parameters = duffing_parameters(3);
+  Experiment const data = record(1000);
+  asked = 0;
+  Simulator const simulator(program, Schedule(*program, data, {}), {.lanes = 0, .threads = 1, .stopped = &after_a_while});
+  Sums const given_up = sums(simulator, parameters);
+  CHECK(asked == 101);
+  for (int w = 0; w < 3; ++w) {
+    CHECK(!given_up.outcome[static_cast<std::size_t>(w)].ok);
+    CHECK(given_up.outcome[static_cast<std::size_t>(w)].sample == 100);
+    CHECK(std::isnan(given_up.values(0, w)));
+  }
+  std::vector<double> const one = {1, 20, 1e4, 5e9, 1e8};
+  CHECK(!simulator.diagnose(one));
+}
