@@ -1,10 +1,13 @@
 #include "app/drawn_functions.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/diagnostic.hpp"
 #include "gaussian_process/dense.hpp"
 #include "model/process_inputs.hpp"
+#include "report/number.hpp"
 
 namespace sysid {
 namespace {
@@ -62,6 +65,23 @@ std::vector<std::vector<double>> DrawnFunctions::along(Trajectory::Result const&
     Eigen::Map<Eigen::VectorXd>(values[first].data(), inputs.rows()) = factor.lower.triangularView<Eigen::Lower>() * normal;
   }
   return values;
+}
+
+std::vector<std::string> draw_coefficients(Model const& model, StreamKey key, Lanes parameters) {
+  std::vector<std::string> said;
+  for (std::size_t e = 0; e < model.expansions.size(); ++e) {
+    Expansion const& expansion = model.expansions[e];
+    Stream stream(key.at(key.index, e));
+    std::vector<std::string> values;
+    for (int const coefficient : expansion.coefficients) {
+      double const drawn = stream.normal();
+      if (std::isnan(parameters(coefficient, 0))) parameters(coefficient, 0) = drawn;
+      values.push_back(shortest(parameters(coefficient, 0)));
+    }
+    said.push_back(
+        fmt::format("function {} drawn from its prior, coefficients of its terms: {}", expansion.name, fmt::join(values, ", ")));
+  }
+  return said;
 }
 
 }  // namespace sysid

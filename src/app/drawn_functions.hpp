@@ -30,4 +30,8 @@ class DrawnFunctions {
   StreamKey key_;
 };
 
+/// The same of finite sums: draws their coefficients, rows of `parameters` (of the model, SI [parameters x 1]) where they are not a
+/// number, by streams (key, step: the number of the function). Returns what a file's head says of each function.
+std::vector<std::string> draw_coefficients(Model const& model, StreamKey key, Lanes parameters);
+
 }  // namespace sysid

@@ -10,6 +10,7 @@
 #include "app/drawn_functions.hpp"
 #include "app/drift.hpp"
 #include "app/experiments.hpp"
+#include "app/function_ranges.hpp"
 #include "app/session.hpp"
 #include "app/signals.hpp"
 #include "core/files.hpp"
@@ -120,18 +121,28 @@ Feedback drawn_values(DrawnFunctions const& functions, std::vector<double> const
   };
 }
 
-// Each round makes at least one more sample right, the draws being the same, so this ends; a stable model takes few rounds.
-Trajectory::Result in_rounds(std::shared_ptr<CompiledModel const> const& compiled, Experiment& experiment, SimulateTask const& what,
-                             LaneArray const& parameters, StreamKey noise_key, ExecutionOptions const& execution,
-                             std::vector<Feedback>& feedbacks) {
-  while (true) {
-    Trajectory const trajectory(compiled, experiment, what.solver, 0, execution);
+// As many rounds as there are feedbacks make at least one more sample right, the draws being the same, so that this would end, were
+// it not for rounding, which a chaotic model blows up; a stable model takes few. Nothing: interrupted.
+std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
+                                            std::shared_ptr<CompiledModel const> const& compiled, Experiment& experiment,
+                                            SimulateTask const& what, LaneArray const& parameters, StreamKey noise_key,
+                                            std::vector<Feedback>& feedbacks) {
+  auto const most = static_cast<std::size_t>(what.samples) * feedbacks.size() + 1;
+  for (std::size_t round = 0; round <= most; ++round) {
+    if (round > 0 && session.interrupted()) return std::nullopt;
+    Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
     Trajectory::Result result = trajectory.run(parameters, noise_key);
     if (result.failed() > 0) return result;
     bool changed = false;
     for (Feedback& feedback : feedbacks) changed = feedback(result, experiment) || changed;
     if (!changed) return result;
   }
+  throw UserError({Severity::error,
+                   "E5001",
+                   fmt::format("the simulation `{}` does not settle: what it feeds back changes in every round", task.name),
+                   Label{task.span, {}},
+                   {},
+                   "the model may be chaotic, so that rounding grows into values: take fewer samples, or other values"});
 }
 
 // With another output folder a data block that reads `results/NAME/FILE` still reads what an earlier run left there.
@@ -165,10 +176,12 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   LaneArray parameters(static_cast<int>(written.parameters.size()), 1);
   for (std::size_t p = 0; p < written.parameters.size(); ++p)
     parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
+  StreamKey const function_key{seed, Purpose::prior, series, 0};
+  std::vector<std::string> drawn = draw_coefficients(written, function_key, parameters);
   std::optional<DrawnFunctions> functions;
   if (!written.processes.empty())
-    functions.emplace(with_prediction(written, rule).value(), what.solver.method, parameters,
-                      StreamKey{seed, Purpose::prior, series, 0});
+    functions.emplace(with_prediction(written, rule).value(), what.solver.method, parameters, function_key);
+  for (Process const& process : written.processes) drawn.push_back(fmt::format("function {} drawn from its prior", process.name));
   auto const compiled = functions ? functions->compiled() : session.compiled(what.model, false, what.solver.method, rule);
   Model const& model = compiled->model;
 
@@ -201,8 +214,12 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   if (functions) feedbacks.push_back(drawn_values(*functions, time, history));
   Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
   StreamKey const noise_key{seed, Purpose::noise, series, 0};
-  Trajectory::Result const result =
-      in_rounds(compiled, experiment, what, parameters, noise_key, session.options.execution, feedbacks);
+  auto const ended = in_rounds(session, task, compiled, experiment, what, parameters, noise_key, feedbacks);
+  if (!ended) {
+    session.notices << fmt::format("{}: interrupted; --resume starts it again\n", task.name);
+    return ExitCode::interrupted;
+  }
+  Trajectory::Result const& result = *ended;
   if (result.failed() > 0)
     throw UserError(
         {Severity::error,
@@ -226,6 +243,8 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
   for (Finding const& finding : drift_findings(session, model, result, task.name))
     session.notices << fmt::format("{}: {}{}\n", task.name, finding.severity == Severity::warning ? "warning: " : "",
                                    finding.message);
+  for (Finding const& finding : check_ranges(model, experiment, what.solver, 0, parameters, session.options.execution))
+    session.notices << fmt::format("{}: warning: {}\n", task.name, finding.message);
 
   std::string header = rows ? "row" : "t",
               comments = fmt::format("# made by sysid {}: {} of model {}, seed {}\n", SYSID_VERSION, task.name, model.name, seed);
@@ -233,6 +252,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
     if (what.values[p])
       comments += fmt::format("# {} = {}{}\n", model.parameters[p].name, shortest(model.parameters[p].from_si(*what.values[p])),
                               unit_suffix(model.parameters[p].unit_text()));
+  for (std::string const& function : drawn) comments += fmt::format("# {}\n", function);
   std::vector<std::vector<double>> columns = {experiment.time};
   // Channels keep their names; an input of the same name says what it is.
   std::set<std::string> taken = {header};

@@ -116,7 +116,7 @@ constexpr double patience = 2e8;
 
 /// Whether moves that go on to fall as the last ones did, if they do, stay too large for every solver from `next` on.
 bool hopeless(std::vector<double> const& moves, SolverSettings next) {
-  if (moves.size() < 2) return false;
+  if (moves.size() < 4) return false;  // a fast motion that coarse steps do not resolve moves for some halvings, too
   double move = moves.back();
   double const fall = std::min(1.0, move / moves[moves.size() - 2]);
   if (!std::isfinite(move) || !(fall > 0)) return false;  // what fails now may yet be stable

@@ -139,6 +139,7 @@ std::vector<std::string> TaskChecker::values_needed(Model const& model, Simulate
     Node const& node = graph[id];
     if (node.operation != Operation::leaf || node.leaf_kind != LeafKind::parameter) continue;
     auto const index = static_cast<std::size_t>(node.index);
+    if (model.parameters[index].coefficient) continue;  // drawn, as a function is
     if (!task.values[index] && !model.parameters[index].value) missing.push_back(model.parameters[index].name);
   }
   std::sort(missing.begin(), missing.end());

@@ -92,3 +92,63 @@ TEST_CASE("a function that feeds on its own values, or on noisy samples, is one 
     CHECK(std::sqrt(square) > 0.3);  // there is a function at all
   }
 }
+
+TEST_CASE("what feeds back and never settles is said, not tried for ever") {
+  // A chaotic map, and a covariance whose jitter depends on all samples: rounding in the first ones grows into the last ones.
+  std::string const text = R"(
+model echo {
+  time discrete 1 [s]
+  state q
+  initial q = 0.3
+  function d(before) ~ gp(linear(slope = 0.01))
+  q = 3.9*lag(q, 1)*(1 - lag(q, 1)) + d(lag(q, 1))
+  observe y ~ normal(q, sd = 0.01)
+}
+made = simulate echo with samples = 300, seed = 3, noise = 0
+)";
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  try {
+    run_text(folder.path() / "case.sysid", text, options);
+    FAIL("it settled");
+  } catch (UserError const& error) {
+    CHECK(error.diagnostic().code == "E5001");
+    CHECK(error.diagnostic().message.find("does not settle") != std::string::npos);
+  }
+  CHECK(!std::filesystem::exists(options.output / "made/made.csv"));
+}
+
+TEST_CASE("a finite sum is drawn from its prior where no values are given, and the file says which function it is") {
+  std::string const text = R"(
+model spring {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter a [N] ~ half_normal(sd = 10)
+  function f(y) ~ gp(squared_exponential(amplitude = a, length = 2e-3 [m]), zero_at = 0, within = (-5e-3, 5e-3), terms = 10)
+  1 [kg]*y'' + 20 [N s/m]*y' + 1e4 [N/m]*y + f(y) = x
+  observe force ~ normal(f(y), sd = 1e-9 [N])
+  observe displacement ~ normal(y, sd = 1e-9 [m])
+}
+made  = simulate spring with values(a = 5), input x = gaussian(sd = 10), samples = 400, rate = 1000 [Hz], seed = SEED
+)";
+  auto const made = [&](std::string const& seed) { return CaseRun(with(text, "SEED", seed), {}).file("made/made.csv"); };
+  std::string const first = made("1"), other = made("2");
+  CHECK(first == made("1"));
+  CHECK(first.find("# function f drawn from its prior, coefficients of its terms: ") != std::string::npos);
+  // One function of the displacement: samples nearby in it are nearby in force; of another seed another one.
+  auto const force_at_half = [](std::string const& file) {
+    std::vector<double> const y = column(file, "displacement_clean"), f = column(file, "force_clean");
+    double place = 0;
+    for (std::size_t i = 0; i < y.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (std::fabs(y[i] - y[j]) < 1e-6) CHECK(std::fabs(f[i] - f[j]) < 0.1);
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < y.size(); ++i)
+      if (std::fabs(y[i] - 5e-4) < std::fabs(y[nearest] - 5e-4)) nearest = i;
+    place = f[nearest];
+    return place;
+  };
+  CHECK(std::fabs(force_at_half(first) - force_at_half(other)) > 0.1);
+}
