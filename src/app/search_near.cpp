@@ -33,10 +33,16 @@ std::vector<int> columns_there(Target const& target, Draws const& earlier) {
 SearchResult search_near(Session& session, int earlier, Target const& target, Aim aim, RunContext& context) {
   Draws const& draws = fitted_model(session, earlier).draws;
   std::vector<int> const columns = columns_there(target, draws);
-  bool const something_new = std::find(columns.begin(), columns.end(), -1) != columns.end();
+  auto const coefficient = [&](int p) { return target.parameters()[static_cast<std::size_t>(p)].coefficient; };
+  bool something_new = false;
+  for (int p = 0; p < target.dimension(); ++p)
+    something_new = something_new || (columns[static_cast<std::size_t>(p)] < 0 && !coefficient(p));
   int const count = something_new ? starts_with_something_new : starts_where_all_is_known;
   LaneArray prior(target.dimension(), count), declared(target.dimension(), count), starts(target.dimension(), count);
   target.sample_prior({context.seed, Purpose::start, 0, near_step}, prior);
+  // A function that the earlier model had not is none at the start.
+  for (int p = 0; p < target.dimension(); ++p)
+    if (columns[static_cast<std::size_t>(p)] < 0 && coefficient(p)) std::fill(prior.row(p).begin(), prior.row(p).end(), 0.0);
   target.constrain(prior, declared);
   LaneArray const spread_draws = spread(draws, count - 1);
   std::vector<double> const best = best_draw(draws);

@@ -37,6 +37,14 @@ std::string choose(Names const& known, std::string const& what) {
   return fmt::format("there {} {}", known.size() == 1 ? "is" : "are", quoted(known));
 }
 
+std::string positive_prior(Names const& names) {
+  if (names.empty()) return "correct its numbers";
+  return fmt::format(
+      "look at the prior{} of {} and at what is made of {}: `half_normal(sd = 1)` and `log_uniform(0.1, 10)` have positive "
+      "values alone",
+      names.size() == 1 ? "" : "s", quoted(names), names.size() == 1 ? "it" : "them");
+}
+
 std::string measure(Unit const& unit) {
   if (unit.dimensionless()) return "a pure number";
   return fmt::format("in [{}]", unit.text.empty() ? format_dimension(unit.dimension) : unit.text);

@@ -18,6 +18,8 @@ std::string quoted(Names const& names, std::string const& last = "and");
 std::string guess_or(std::string const& text, Names const& known, std::string fallback);
 /// "there are `a` and `b`".
 std::string choose(Names const& known, std::string const& what);
+/// Help where something positive reads these parameters and never is.
+std::string positive_prior(Names const& names);
 /// "in [N/m]", "a pure number".
 std::string measure(Unit const& unit);
 std::string primed(std::string const& name, int primes);

@@ -46,6 +46,9 @@ Diagnostic cannot_truncate(Span span, std::string const& distribution);
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
 Diagnostic prior_cycle(Span span, Names const& loop);
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason);
+/// names: of the parameters that the argument reads.
+Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
+                         std::vector<std::string> const& names);
 Diagnostic no_mass(Span span, std::string const& distribution);
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit);
 Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit);
@@ -208,6 +211,9 @@ Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string 
 Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right);
 Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string const& what);
 Diagnostic hyper_parameter_not_positive(Span span, std::string const& name);
+/// names: of the parameters that it reads.
+Diagnostic hyper_parameter_never_positive(Span span, std::string const& name, std::string const& process,
+                                          std::vector<std::string> const& names);
 /// Of `within` and `terms`; inputs: of the process.
 Diagnostic expansion_range(Span span, std::size_t inputs);
 Diagnostic expansion_range_empty(Span span);
@@ -229,6 +235,7 @@ Diagnostic process_in_differential_equation(Span span, std::string const& name);
 /// what: "lagged", "the argument of another".
 Diagnostic process_out_of_place(Span span, std::string const& what);
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel);
+Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel);
 Diagnostic process_unobserved(Span span, std::string const& name);
 Diagnostic process_with_moving_noise(Span span, std::string const& channel);
 Diagnostic process_without_normal_noise(Span span, std::string const& channel, std::string const& noise);

@@ -93,6 +93,13 @@ Diagnostic bad_arguments(Span span, std::string const& distribution, std::string
                "correct the numbers");
 }
 
+Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
+                         std::vector<std::string> const& names) {
+  return error("E2112", span,
+               fmt::format("`{}` of `{}` is impossible at all values that the priors allow: {}", distribution, variate, reason),
+               positive_prior(names));
+}
+
 Diagnostic no_mass(Span span, std::string const& distribution) {
   return error("E2115", span, fmt::format("`{}` has no mass between its bounds", distribution),
                "widen `lower` and `upper`, or move the distribution");

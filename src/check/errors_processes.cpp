@@ -82,6 +82,11 @@ Diagnostic hyper_parameter_not_positive(Span span, std::string const& name) {
   return error("E3207", span, fmt::format("the {} of a kernel must be positive", name),
                "an amplitude is a standard deviation, a length a distance: give a number above 0");
 }
+Diagnostic hyper_parameter_never_positive(Span span, std::string const& name, std::string const& process,
+                                          std::vector<std::string> const& names) {
+  return error("E3207", span, fmt::format("the {} of `{}` must be positive, and its priors never make it so", name, process),
+               positive_prior(names));
+}
 Diagnostic process_in_differential_equation(Span span, std::string const& name) {
   return error(
       "E3208", span,
@@ -157,6 +162,10 @@ Diagnostic process_out_of_place(Span span, std::string const& what) {
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel) {
   return error("E3210", span, fmt::format("`{}` must be an addend of what `{}` is centred on", name, channel),
                "a factor belongs into its amplitude; a function of it would not be normal");
+}
+Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel) {
+  return error("E3210", span, fmt::format("`{}` stands more than once in what `{}` is centred on", name, channel),
+               "write it once: a multiple of it is a function with a larger amplitude, and other arguments want a second function");
 }
 Diagnostic process_unobserved(Span span, std::string const& name) {
   return error("E3210", span, fmt::format("no channel is centred on `{}`", name),

@@ -40,6 +40,7 @@ std::optional<Model> ModelChecker::run() {
   if (!failed()) processes();
   if (!failed()) finish_samples();
   if (!failed()) order_priors();
+  if (!failed()) positive_widths();
   if (failed()) return std::nullopt;
   model_.unchecked = scope_.unchecked();
   return std::move(model_);

@@ -92,6 +92,10 @@ class ModelChecker {
   void resolve_process_arguments(std::vector<NodeId> const& predicted);
   void place_processes();
 
+  // --- model_widths.cpp
+  void positive_widths();
+  std::vector<std::string> parameters_of(NodeId root) const;
+
   // --- model_samples.cpp
   void name_samples();
   // Place holders of samples become what they stand for.

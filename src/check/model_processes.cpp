@@ -21,6 +21,15 @@ bool is_addend(Graph const& graph, NodeId root, std::function<bool(Node const&)>
   return left ? is_addend(graph, node.a, is_this) : node.operation == Operation::add && is_addend(graph, node.b, is_this);
 }
 
+/// Whether `root` is a sum in which it stands in more than one addend.
+bool is_added_twice(Graph const& graph, NodeId root, std::function<bool(Node const&)> const& is_this) {
+  Node const node = graph[root];
+  if (node.operation == Operation::negate) return is_added_twice(graph, node.a, is_this);
+  if (node.operation != Operation::add && node.operation != Operation::subtract) return false;
+  bool const left = graph.depends(node.a, is_this), right = graph.depends(node.b, is_this);
+  return (left && right) || (left && is_added_twice(graph, node.a, is_this)) || (right && is_added_twice(graph, node.b, is_this));
+}
+
 bool same_leaf(Node const& a, Node const& b) { return is_leaf(a, b.leaf_kind) && a.index == b.index; }
 
 }  // namespace
@@ -110,7 +119,8 @@ void ModelChecker::place_processes() {
             return;
           }
       if (!is_addend(graph, centre, is_this)) {
-        diagnostics_.add(errors::process_no_addend(call, process.name, channel.name));
+        diagnostics_.add(is_added_twice(graph, centre, is_this) ? errors::process_added_twice(call, process.name, channel.name)
+                                                                : errors::process_no_addend(call, process.name, channel.name));
         return;
       }
     }

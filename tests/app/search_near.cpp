@@ -98,3 +98,25 @@ TEST_CASE("a search begins near a fit that stands above it") {
   CHECK(refusal("near = fit linear to bench with map, search = other, seed = 1\n") == "E6004");
   CHECK(refusal("near = fit linear to bench with map, search = near(b)\nb = fit linear to bench with map\n") == "E6012");
 }
+
+TEST_CASE("a function that is new begins at zero near an earlier fit") {
+  // Functions as the prior draws them push so hard that no motion stays finite.
+  CaseRun const run(text + R"(
+model unknown {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter c [N s/m] ~ log_uniform(2, 200)
+  parameter k [N/m] ~ log_uniform(1e3, 1e5)
+  parameter sigma [m] ~ log_uniform(1e-7, 1e-2)
+  function f(y) ~ gp(linear(slope = 1e9 [N/m]) + squared_exponential(amplitude = 1 [N], length = 1e-3 [m]), zero_at = 0,
+      within = (-4e-3, 4e-3), terms = 8)
+  1 [kg]*y'' + c*y' + k*y + f(y) = x
+  observe displacement ~ normal(y, sd = sigma)
+}
+first = fit linear to bench with map, seed = 1
+near  = fit unknown to bench with map, search = near(first), seed = 1
+)",
+                    {{"made.csv", made_record()}});
+  CHECK(run.summary("near").at("fit").at("rmse") < 0.5 * run.summary("first").at("fit").at("rmse").get<double>());
+}

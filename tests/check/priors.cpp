@@ -93,3 +93,24 @@ TEST_CASE("a share has no unit but those of pure numbers") {
   CHECK(refused("parameter a [percent] ~ beta(2, 2)").empty());
   CHECK(refused("parameter a ~ beta(2, 2)").empty());
 }
+
+TEST_CASE("a width that some value of the priors makes positive is left to the run") {
+  auto const refused = [](std::string const& prior, std::string const& width) {
+    std::string const said = messages("model line {\n  input x\n  parameter b ~ half_normal(sd = 1)\n  parameter s ~ " + prior +
+                                      "\n  observe y ~ normal(b*x, " + width + ")\n}\n");
+    bool const impossible = said.find("error[E2112]") != std::string::npos;
+    CHECK_MESSAGE(impossible == (said.find("error") != std::string::npos), said);
+    return impossible;
+  };
+  for (char const* width : {"sd = s", "sd = 2*s/3", "variance = s", "precision = s", "sd = s - b", "sd = min(s, b)", "sd = 1/s"}) {
+    CAPTURE(width);
+    CHECK(refused("uniform(-2, -1)", width));
+    CHECK(refused("uniform(-2, 0)", width));
+    CHECK(refused("normal(-9, sd = 0.1, upper = -b)", width));
+    CHECK(!refused("uniform(-2, 0.1)", width));
+    CHECK(!refused("normal(-9, sd = 0.1)", width));
+  }
+  for (char const* width :
+       {"sd = -s", "sd = abs(s)", "sd = s^2", "sd = s*s", "sd = sqrt(-s)", "sd = exp(s)", "sd = max(s, b)", "sd = s + b"})
+    CHECK(!refused("uniform(-2, -1)", width));
+}
