@@ -185,7 +185,7 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
            fmt::format("the spread of `{}` is estimated: where it is small the posterior narrows, and chains pass slowly",
                        member->name),
            fmt::format("write `{}` by standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
-                       "spread*z` (docs/methods.md, Hierarchies)",
+                       "spread*z` (docs/methods/several_experiments.md)",
                        member->name, member->name)}};
 }
 

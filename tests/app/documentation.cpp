@@ -3,16 +3,19 @@
 //
 //   ```sysid KIND                    text of the language; KIND says what stands around it (see `framed`)
 //   ```sysid refused CODE KIND       the same, refused with that code
+//   ```sysid saved as NAME           a whole file, which the reader saves under that name
+//   ```sysid added to NAME           what the reader writes behind it
 //   ```sh                            commands from the root of the repository
 //   ```text from COMMAND             lines of what COMMAND prints, in order; a line of three dots leaves some out
 //   ```cpp from FILE                 text of that file, word for word
+//
+// Pages that save files are followed, command by command (followed.cpp).
 //
 // With SYSID_BLESS set in the environment, blocks of the fourth kind that leave nothing out are written anew.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <regex>
@@ -62,6 +65,18 @@ std::optional<std::string> framed(std::string const& kind, std::string const& te
   return std::nullopt;
 }
 
+// The file that a reader has before him who saved all blocks of its name up to this one.
+std::optional<std::string> saved_until(Page const& page, Fence const& last) {
+  std::string const name = saved_text(last)->name;
+  std::string text;
+  for (Fence const& block : page.blocks) {
+    auto const saved = saved_text(block);
+    if (saved && saved->name == name) text = (saved->behind ? text : "") + block.joined();
+    if (block.line == last.line) break;
+  }
+  return text;
+}
+
 void check_snippet(Page const& page, Fence const& block) {
   std::string kind = block.info.substr(5), code;
   if (!kind.empty()) kind.erase(0, 1);
@@ -69,7 +84,7 @@ void check_snippet(Page const& page, Fence const& block) {
     code = kind.substr(8, 5);
     kind = kind.substr(std::min<std::size_t>(14, kind.size()));
   }
-  auto const text = framed(kind, block.joined());
+  auto const text = saved_text(block) ? saved_until(page, block) : framed(kind, block.joined());
   REQUIRE_MESSAGE(text, page.name << ":" << block.line << ": a snippet of no known kind: `" << kind << "`");
   Source source(page.name + ":" + std::to_string(block.line), *text);
   Diagnostics diagnostics;
@@ -118,7 +133,8 @@ void check_command(Page const& page, std::string const& command) {
       CHECK_MESSAGE((known.flags.contains(words[i]) || known.options.contains(words[i])), where << "no option " << words[i]);
       if (known.options.contains(words[i])) ++i;
     } else if (words[i].ends_with(".sysid")) {
-      if (words[i].starts_with("results/")) {  // made by an earlier command of the page
+      if (is_followed(page) && !fs::exists(root / words[i])) continue;  // saved or made by the reader
+      if (words[i].starts_with("results/")) {                           // made by an earlier command of the page
         std::string const folder = fs::path(words[i]).parent_path().string();
         std::string const text = read_file(page.path), task = " -o " + fs::path(folder).parent_path().string() + "\n";
         CHECK_MESSAGE((text.find("mkdir -p " + folder) != std::string::npos || text.find(task) != std::string::npos),
@@ -159,33 +175,6 @@ std::string const& printed_by(std::string const& command) {
   return place->second = out.str();
 }
 
-// Every line of `quoted` is in `printed`, one after the other; after three dots some lines may be left out.
-std::string not_printed(std::vector<std::string> const& quoted, std::vector<std::string> const& printed) {
-  std::size_t at = 0;
-  bool skip = true;
-  for (std::string const& line : quoted) {
-    if (line == "...") {
-      skip = true;
-      continue;
-    }
-    while (skip && at < printed.size() && printed[at] != line) ++at;
-    if (at >= printed.size() || printed[at] != line) return line;
-    ++at;
-    skip = false;
-  }
-  return {};
-}
-
-void bless(Page const& page, Fence const& block, std::string const& printed) {
-  std::vector<std::string> const lines = lines_of(read_file(page.path));
-  std::string text;
-  for (int i = 0; i < static_cast<int>(lines.size()); ++i) {
-    if (i < block.line || i >= block.line + static_cast<int>(block.text.size())) text += lines[static_cast<std::size_t>(i)] + "\n";
-    if (i + 1 == block.line) text += printed;
-  }
-  std::ofstream(page.path) << text;
-}
-
 }  // namespace
 
 TEST_CASE("snippets of the language pass the checker or are refused as said") {
@@ -204,7 +193,7 @@ TEST_CASE("commands have verbs, options and files that exist") {
     Page const page = read_page(path);
     for (Fence const& block : page.blocks)
       for (std::string const& line : block.text)
-        if (block.info == "sh" && line.starts_with("./sysid")) check_command(page, line), ++count;
+        if (block.info.starts_with("sh") && line.starts_with("./sysid")) check_command(page, line), ++count;
     std::string prose;  // inline code may run over the end of a line
     for (std::string const& line : page.prose) prose += line + " ";
     for (std::sregex_iterator i(prose.begin(), prose.end(), quoted), end; i != end; ++i)
@@ -220,8 +209,7 @@ TEST_CASE("quoted output is what the program prints") {
     for (auto block = page.blocks.rbegin(); block != page.blocks.rend(); ++block) {
       if (!block->info.starts_with("text from ")) continue;
       std::string const& printed = printed_by(block->info.substr(10));
-      bool const whole = std::find(block->text.begin(), block->text.end(), "...") == block->text.end();
-      if (std::getenv("SYSID_BLESS") != nullptr && whole) {
+      if (std::getenv("SYSID_BLESS") != nullptr && is_whole(*block)) {
         bless(page, *block, printed);
         continue;
       }
@@ -273,7 +261,7 @@ TEST_CASE("findings that the methods page lists are made somewhere") {
       if (entry.is_regular_file()) source += read_file(entry.path());
   int count = 0;
   std::regex const code("`([a-z_]+)`");
-  for (std::string const& line : read_page(root / "docs/methods.md").prose) {
+  for (std::string const& line : read_page(root / "docs/methods/verdict.md").prose) {
     if (!line.starts_with("| error |") && !line.starts_with("| warning |") && !line.starts_with("| note |")) continue;
     for (std::sregex_iterator i(line.begin(), line.end(), code), end; i != end; ++i) {
       std::string const name = (*i)[1].str();

@@ -69,8 +69,8 @@ TEST_CASE("every code of the sources has one section, and every section a code o
     for (std::string const& code : *all) CHECK_MESSAGE(explained.contains(code), code);
 }
 
-TEST_CASE("the table of methods names every finding") {
-  std::string const methods = content(std::filesystem::path(SYSID_SOURCE_DIR) / "docs" / "methods.md");
+TEST_CASE("the page about the verdict names every finding") {
+  std::string const methods = content(std::filesystem::path(SYSID_SOURCE_DIR) / "docs" / "methods" / "verdict.md");
   std::size_t const begin = methods.find("## Findings and exit codes");
   REQUIRE(begin != std::string::npos);
   std::string const table = methods.substr(begin, methods.find("\n## ", begin + 1) - begin);

@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/files.hpp"
@@ -19,8 +23,8 @@ namespace fs = std::filesystem;
 inline fs::path const root = SYSID_SOURCE_DIR;
 
 inline std::vector<fs::path> pages() {
-  std::vector<fs::path> found = {root / "README.md"};
-  for (char const* folder : {"docs", "docs/stdlib"})
+  std::vector<fs::path> found = {root / "README.md", root / "models/README.md"};
+  for (char const* folder : {"docs", "docs/methods", "docs/stdlib"})
     for (auto const& entry : fs::directory_iterator(root / folder))
       if (entry.path().extension() == ".md") found.push_back(entry.path());
   for (auto const& entry : fs::directory_iterator(root / "models"))
@@ -99,6 +103,55 @@ void each_block(std::string const& kind, Visit const& visit) {
     for (Fence const& block : page.blocks)
       if (block.info.starts_with(kind)) visit(page, block);
   }
+}
+
+/// The first line of `quoted` that is not in `printed` behind those before it; empty when all are. After three dots some lines may
+/// be left out.
+inline std::string not_printed(std::vector<std::string> const& quoted, std::vector<std::string> const& printed) {
+  std::size_t at = 0;
+  bool skip = true;
+  for (std::string const& line : quoted) {
+    if (line == "...") {
+      skip = true;
+      continue;
+    }
+    while (skip && at < printed.size() && printed[at] != line) ++at;
+    if (at >= printed.size() || printed[at] != line) return line;
+    ++at;
+    skip = false;
+  }
+  return {};
+}
+
+/// Whether a block leaves nothing out, so that it can be written anew.
+inline bool is_whole(Fence const& block) { return std::find(block.text.begin(), block.text.end(), "...") == block.text.end(); }
+
+/// Writes `printed` in the place of the text of `block`; from the last block of a page to the first, so that none moves another.
+inline void bless(Page const& page, Fence const& block, std::string const& printed) {
+  std::vector<std::string> const lines = lines_of(read_file(page.path));
+  std::string text;
+  for (int i = 0; i < static_cast<int>(lines.size()); ++i) {
+    if (i < block.line || i >= block.line + static_cast<int>(block.text.size())) text += lines[static_cast<std::size_t>(i)] + "\n";
+    if (i + 1 == block.line) text += printed;
+  }
+  std::ofstream(page.path) << text;
+}
+
+/// Text of the language that a reader of the page saves under a name: whole, or behind what stands there.
+struct SavedText {
+  std::string name;
+  bool behind = false;
+};
+inline std::optional<SavedText> saved_text(Fence const& block) {
+  for (auto const& [words, behind] : {std::pair{" saved as ", false}, std::pair{" added to ", true}})
+    if (auto const at = block.info.find(words); at != std::string::npos)
+      return SavedText{block.info.substr(at + std::string_view(words).size()), behind};
+  return std::nullopt;
+}
+
+/// Whether the page has its reader save files, so that its commands are run one after the other (followed.cpp).
+inline bool is_followed(Page const& page) {
+  return std::any_of(page.blocks.begin(), page.blocks.end(), [](Fence const& block) { return saved_text(block).has_value(); });
 }
 
 }  // namespace sysid::testing

@@ -93,7 +93,7 @@ TEST_CASE("Lorenz and predator and prey, every selector, no rescaling") {
     for (int const degree : {2, system.large})
       for (int const record : {0, 1})
         for (std::string_view const selector : {"spike_slab", "ard", "threshold"}) {
-          // Among 56 collinear terms ard ends in a local maximum of its evidence: docs/methods.md.
+          // Among 56 collinear terms ard ends in a local maximum of its evidence: docs/methods/discovery.md.
           if (selector == "ard" && degree == 5) continue;
           CAPTURE(system.file);
           CAPTURE(degree);

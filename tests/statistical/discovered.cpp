@@ -71,7 +71,7 @@ std::string in_sds(double const (&squares)[4], int count) {
   return text;
 }
 
-// Prints the rows of the table in docs/methods.md, "Judged by simulation".
+// Prints the rows of the table in docs/methods/discovery.md, "Judged by simulation".
 TEST_CASE("over twenty records the refit keeps the structure, and its coefficients are as near as its sds say") {
   for (double const noise : {0.01, 0.05}) {
     CAPTURE(noise);
