@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/elementary.hpp"
+#include "distribution/deviance.hpp"
 #include "inference/refit.hpp"
 #include "inference/residual_tests.hpp"
 #include "likelihood/output.hpp"
@@ -24,17 +25,17 @@ std::string on(ModelTarget const& target, int experiment) {
   return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
 }
 
-// Pearson's residuals of counts, and how much heavier than normal their tails are: what chi-squared is taken of, since the deviance
-// residuals of small counts are not of unit size.
-struct PearsonResiduals {
+// Residuals of unit size, and how much heavier than normal their tails are: what chi-squared is taken of.
+struct SizedResiduals {
   std::vector<double> values;
   double excess_kurtosis = 0;  // mean over the samples
 };
 
+// Pearson's, of counts: the deviance residuals of small counts are not of unit size.
 // arguments: of the channel's noise, at every sample; deviance: one residual per sample, NaN where not scored.
-PearsonResiduals pearson(DistributionRow const& noise, std::vector<double> const& measured,
-                         std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance) {
-  PearsonResiduals result;
+SizedResiduals pearson(DistributionRow const& noise, std::vector<double> const& measured,
+                       std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance) {
+  SizedResiduals result;
   double count = 0;
   for (std::size_t i = 0; i < deviance.size(); ++i) {
     result.values.push_back(std::nan(""));
@@ -45,6 +46,29 @@ PearsonResiduals pearson(DistributionRow const& noise, std::vector<double> const
   }
   if (count > 0) result.excess_kurtosis /= count;
   return result;
+}
+
+// Deviance residuals over their size under the noise, which for heavy tails is above 1. It depends on the shape of the noise alone,
+// not on place and width, and a shape that changes along the record is met at a few of its samples.
+SizedResiduals scaled(DistributionRow const& noise, std::vector<std::vector<double>> const& arguments,
+                      std::vector<double> deviance) {
+  constexpr std::size_t looked_at = 4;
+  DevianceMoments moments{0, 0};
+  double count = 0;
+  std::size_t const step = std::max<std::size_t>(1, deviance.size() / looked_at);
+  for (std::size_t i = 0; i < deviance.size(); ++i) {
+    if (std::isnan(deviance[i]) || (count > 0 && i % step != 0) || !noise.refuse(arguments[i]).empty()) continue;
+    DevianceMoments const here = deviance_moments(noise, arguments[i]);
+    moments.mean += here.mean;
+    moments.variance += here.variance;
+    count += 1;
+  }
+  if (count == 0) return {std::move(deviance), 0};
+  moments = {moments.mean / count, moments.variance / count};
+  constexpr double as_normal = 1e-4;
+  if (std::fabs(moments.mean - 1) < as_normal) return {std::move(deviance), 0};
+  for (double& residual : deviance) residual /= std::sqrt(moments.mean);
+  return {std::move(deviance), moments.excess_kurtosis()};
 }
 
 /// nmse [%] from which a fit is no model of its record: the error is larger than what there was to explain.
@@ -68,7 +92,7 @@ bool explains_nothing(DistributionRow const& noise, std::vector<double> observed
 
 // residuals: standardised, one per sample of the experiment, NaN where not scored.
 void test_channel(ModelTarget const& target, int experiment, int channel, std::vector<double> const& residuals,
-                  PearsonResiduals const& sized, FitLine& line, Findings& findings) {
+                  SizedResiduals const& sized, FitLine& line, Findings& findings) {
   Model const& model = target.compiled()->model;
   std::string const name = model.channels[static_cast<std::size_t>(channel)].name + on(target, experiment);
   ChiSquaredTest const size = chi_squared(sized.values, sized.excess_kurtosis);
@@ -136,9 +160,9 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
            fmt::format("{}{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
                        model.channels[channel].name, on(target, e), nmse(observed, location)),
            "the fit explains nothing of this channel: look at units, signs and columns, at the initial values, then at the model"});
-    PearsonResiduals const sized =
-        noise.discrete ? pearson(noise, experiment.measured[channel], trajectory.noise_arguments(parameters, c), series)
-                       : PearsonResiduals{series, 0};
+    std::vector<std::vector<double>> const arguments = trajectory.noise_arguments(parameters, c);
+    SizedResiduals const sized =
+        noise.discrete ? pearson(noise, experiment.measured[channel], arguments, series) : scaled(noise, arguments, series);
     test_channel(target, e, c, series, sized, line, check.findings);
     check.lines.push_back(std::move(line));
   }

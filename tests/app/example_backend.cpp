@@ -1,4 +1,4 @@
-// The worked examples of docs/backend-interface.md, compiled and held to closed forms: what the page shows is this text.
+// The worked examples of docs/extending.md, compiled and held to closed forms: what the page shows is this text.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -61,3 +61,19 @@ TEST_CASE("nothing is said where there is nothing to explain") {
   CHECK(silent("parameter r [-] ~ log_uniform(0.1, 100)\n observe y ~ log_normal(r, sd = 1)",
                [](Stream& s) { return std::exp(s.normal()); }));
 }
+
+TEST_CASE("noise with heavy tails is of the size that it states, and of half of that it is not") {
+  auto const outlying = [](Stream& stream) {  // Student's t of three degrees of freedom
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) sum += std::pow(stream.normal(), 2) / 3;
+    return stream.normal() / std::sqrt(sum);
+  };
+  std::string const mean = "parameter a [-] ~ normal(0, sd = 1)\n ";
+  CHECK_FALSE(has(findings_of(mean + "observe y ~ student_t(a*x, 3, scale = 1)", outlying), "noise_size"));
+  CHECK_FALSE(has(findings_of(mean + "parameter n ~ log_uniform(1, 100)\n parameter s [-] ~ log_uniform(0.1, 10)\n observe y ~ "
+                                     "student_t(a*x, n, scale = s)",
+                              outlying),
+                  "noise_size"));
+  CHECK(has(findings_of(mean + "observe y ~ student_t(a*x, 3, scale = 0.5)", outlying), "noise_size"));
+  CHECK(has(findings_of(mean + "observe y ~ student_t(a*x, 3, scale = 2)", outlying), "noise_size"));
+}

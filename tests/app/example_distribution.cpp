@@ -1,0 +1,103 @@
+// The worked example of a distribution in docs/extending.md, compiled and held to what the tests over the table ask of a row.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "core/elementary.hpp"
+#include "distribution/rows.hpp"
+
+namespace sysid {
+namespace {
+
+/// variance = 2 scale^2.
+NodeId scale_from_sd(Graph& graph, NodeId sd, Nodes) { return (Term(graph, sd) / std::numbers::sqrt2).id; }
+
+constexpr Spelling location[] = {{"location", 1, nullptr}};
+constexpr Spelling scale[] = {{"scale", 1, nullptr}, {"sd", 1, &scale_from_sd}};
+constexpr ArgumentRow arguments[] = {{location, must_be_given}, {scale, must_be_given}};
+
+Term standardised(Graph& graph, NodeId x, Nodes a) { return (Term(graph, x) - Term(graph, a[0])) / Term(graph, a[1]); }
+Term log_peak(Graph& graph, Nodes a) { return -log(2.0 * Term(graph, a[1])); }
+
+/// log density; `laplace(location, scale | sd = ...)` in a model.
+///
+///   log p = -log(2 scale) - |x - location|/scale                          Johnson, Kotz, Balakrishnan 1995, eq. 24.1
+///
+/// x, location, scale, sd: unit u; scale > 0.
+NodeId log_density(Graph& graph, NodeId x, Nodes a) { return (log_peak(graph, a) - abs(standardised(graph, x, a))).id; }
+
+/// Half the mass lies on either side of the location, and falls as exp(-|z|): (P below x, P above x) by the side that x is on.
+Term beyond(Term z) { return 0.5 * exp(-abs(z)); }
+NodeId cumulative(Graph& graph, NodeId x, Nodes a) {
+  Term const z = standardised(graph, x, a);
+  return select(less(z, 0.0), beyond(z), 1.0 - beyond(z)).id;
+}
+NodeId survival(Graph& graph, NodeId x, Nodes a) {
+  Term const z = standardised(graph, x, a);
+  return select(less(z, 0.0), 1.0 - beyond(z), beyond(z)).id;
+}
+NodeId centre(Graph&, Nodes a) { return a[0]; }
+NodeId saturated(Graph& graph, NodeId, Nodes a) { return log_peak(graph, a).id; }
+
+double quantile(double probability, Tail tail, Numbers a) {
+  bool const inner = probability > 0.5;  // on the other side of the location than its tail
+  double const distance = -elementary::log(2 * (inner ? 1 - probability : probability));
+  return a[0] + ((tail == Tail::upper) != inner ? a[1] : -a[1]) * distance;
+}
+double draw(Stream& stream, Numbers a) { return quantile(stream.uniform(), Tail::lower, a); }
+
+std::string_view refuse(Numbers a) { return positive(a[1]) ? std::string_view() : "scale or sd must be positive"; }
+
+}  // namespace
+
+DistributionRow laplace_distribution() {
+  return {.name = "laplace",
+          .arguments = arguments,
+          .noise = true,
+          .log_density = &log_density,
+          .cumulative = &cumulative,
+          .survival = &survival,
+          .centre = &centre,
+          .saturated = &saturated,
+          .draw = &draw,
+          .quantile = &quantile,
+          .refuse = &refuse,
+          .summary = "two exponentials back to back, by scale or sd"};
+}
+
+}  // namespace sysid
+
+using namespace sysid;
+
+namespace {
+
+using Member = NodeId (*)(Graph&, NodeId, std::span<NodeId const>);
+
+double at(Member member, double x, double location, double scale) {
+  Graph graph;
+  NodeId const arguments[] = {graph.constant(location), graph.constant(scale)};
+  return graph.constant_value(member(graph, graph.constant(x), std::span(arguments))).value();
+}
+
+}  // namespace
+
+TEST_CASE("the example distribution has the integral 1, its tails, and draws from them") {
+  DistributionRow const row = laplace_distribution();
+  double sum = 0, h = 1e-3;
+  for (double x = -30 + h / 2; x < 30; x += h) sum += h * std::exp(at(row.log_density, x, 0.3, 0.8));
+  CHECK(sum == doctest::Approx(1).epsilon(1e-6));
+  double const numbers[] = {0.3, 0.8};
+  std::span<double const> const arguments(numbers);
+  for (double const probability : {1e-12, 0.02, 0.5, 0.9}) {
+    CHECK(at(row.cumulative, row.quantile(probability, Tail::lower, arguments), 0.3, 0.8) ==
+          doctest::Approx(probability).epsilon(1e-12));
+    CHECK(at(row.survival, row.quantile(probability, Tail::upper, arguments), 0.3, 0.8) ==
+          doctest::Approx(probability).epsilon(1e-12));
+  }
+  Stream stream({.seed = 1, .purpose = Purpose::test, .index = 0, .step = 0});
+  double distance = 0;
+  int const count = 20000;
+  for (int i = 0; i < count; ++i) distance += std::fabs(row.draw(stream, arguments) - 0.3) / count;
+  // |x - location| is exponential: mean and sd are the scale.
+  CHECK(std::fabs(distance - 0.8) < 4 * 0.8 / std::sqrt(count));
+}
