@@ -9,40 +9,33 @@
 namespace sysid {
 namespace {
 
-/// variance = 2 scale^2.
-NodeId scale_from_sd(Graph& graph, NodeId sd, Nodes) { return (Term(graph, sd) / std::numbers::sqrt2).id; }
+/// variance = (pi scale)^2/3.
+NodeId scale_from_sd(Graph& graph, NodeId sd, Nodes) { return (Term(graph, sd) * (std::numbers::sqrt3 / std::numbers::pi)).id; }
 
 constexpr Spelling location[] = {{"location", 1, nullptr}};
 constexpr Spelling scale[] = {{"scale", 1, nullptr}, {"sd", 1, &scale_from_sd}};
 constexpr ArgumentRow arguments[] = {{location, must_be_given}, {scale, must_be_given}};
 
 Term standardised(Graph& graph, NodeId x, Nodes a) { return (Term(graph, x) - Term(graph, a[0])) / Term(graph, a[1]); }
-Term log_peak(Graph& graph, Nodes a) { return -log(2.0 * Term(graph, a[1])); }
 
-/// log density; `laplace(location, scale | sd = ...)` in a model.
+/// log density; `logistic(location, scale | sd = ...)` in a model.
 ///
-///   log p = -log(2 scale) - |x - location|/scale                          Johnson, Kotz, Balakrishnan 1995, eq. 24.1
+///   log p = -|z| - log scale - 2 log(1 + e^-|z|),   z = (x - location)/scale        Johnson, Kotz, Balakrishnan 1995, eq. 23.10
 ///
-/// x, location, scale, sd: unit u; scale > 0.
-NodeId log_density(Graph& graph, NodeId x, Nodes a) { return (log_peak(graph, a) - abs(standardised(graph, x, a))).id; }
+/// x, location, scale, sd: unit u; scale > 0. Symmetric in z, so |z| stands for z and nothing overflows.
+NodeId log_density(Graph& graph, NodeId x, Nodes a) {
+  Term const z = abs(standardised(graph, x, a));
+  return (-z - log(Term(graph, a[1])) - 2.0 * log1p(exp(-z))).id;
+}
 
-/// Half the mass lies on either side of the location, and falls as exp(-|z|): (P below x, P above x) by the side that x is on.
-Term beyond(Term z) { return 0.5 * exp(-abs(z)); }
-NodeId cumulative(Graph& graph, NodeId x, Nodes a) {
-  Term const z = standardised(graph, x, a);
-  return select(less(z, 0.0), beyond(z), 1.0 - beyond(z)).id;
-}
-NodeId survival(Graph& graph, NodeId x, Nodes a) {
-  Term const z = standardised(graph, x, a);
-  return select(less(z, 0.0), 1.0 - beyond(z), beyond(z)).id;
-}
+NodeId cumulative(Graph& graph, NodeId x, Nodes a) { return (1.0 / (1.0 + exp(-standardised(graph, x, a)))).id; }
+NodeId survival(Graph& graph, NodeId x, Nodes a) { return (1.0 / (1.0 + exp(standardised(graph, x, a)))).id; }
 NodeId centre(Graph&, Nodes a) { return a[0]; }
-NodeId saturated(Graph& graph, NodeId, Nodes a) { return log_peak(graph, a).id; }
+NodeId saturated(Graph& graph, NodeId, Nodes a) { return (-log(4.0 * Term(graph, a[1]))).id; }
 
 double quantile(double probability, Tail tail, Numbers a) {
-  bool const inner = probability > 0.5;  // on the other side of the location than its tail
-  double const distance = -elementary::log(2 * (inner ? 1 - probability : probability));
-  return a[0] + ((tail == Tail::upper) != inner ? a[1] : -a[1]) * distance;
+  double const z = elementary::log(probability) - elementary::log1p(-probability);
+  return a[0] + (tail == Tail::lower ? a[1] : -a[1]) * z;
 }
 double draw(Stream& stream, Numbers a) { return quantile(stream.uniform(), Tail::lower, a); }
 
@@ -50,8 +43,8 @@ std::string_view refuse(Numbers a) { return positive(a[1]) ? std::string_view() 
 
 }  // namespace
 
-DistributionRow laplace_distribution() {
-  return {.name = "laplace",
+DistributionRow logistic_distribution() {
+  return {.name = "logistic",
           .arguments = arguments,
           .noise = true,
           .log_density = &log_density,
@@ -62,7 +55,7 @@ DistributionRow laplace_distribution() {
           .draw = &draw,
           .quantile = &quantile,
           .refuse = &refuse,
-          .summary = "two exponentials back to back, by scale or sd"};
+          .summary = "bell-shaped, tails heavier than normal, by scale or sd"};
 }
 
 }  // namespace sysid
@@ -82,7 +75,7 @@ double at(Member member, double x, double location, double scale) {
 }  // namespace
 
 TEST_CASE("the example distribution has the integral 1, its tails, and draws from them") {
-  DistributionRow const row = laplace_distribution();
+  DistributionRow const row = logistic_distribution();
   double sum = 0, h = 1e-3;
   for (double x = -30 + h / 2; x < 30; x += h) sum += h * std::exp(at(row.log_density, x, 0.3, 0.8));
   CHECK(sum == doctest::Approx(1).epsilon(1e-6));
@@ -98,6 +91,7 @@ TEST_CASE("the example distribution has the integral 1, its tails, and draws fro
   double distance = 0;
   int const count = 20000;
   for (int i = 0; i < count; ++i) distance += std::fabs(row.draw(stream, arguments) - 0.3) / count;
-  // |x - location| is exponential: mean and sd are the scale.
-  CHECK(std::fabs(distance - 0.8) < 4 * 0.8 / std::sqrt(count));
+  // E |x - location| = 2 log(2) scale, and E (x - location)^2 = (pi scale)^2/3.
+  double const mean = 2 * std::numbers::ln2 * 0.8, variance = std::pow(std::numbers::pi * 0.8, 2) / 3 - mean * mean;
+  CHECK(std::fabs(distance - mean) < 4 * std::sqrt(variance / count));
 }

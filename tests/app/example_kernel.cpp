@@ -18,7 +18,7 @@ constexpr HyperParameterRow hyper_parameters[] = {
 /// amplitude: unit of the function; length_d: of input d; shape: a pure number, large for one length, small for many.
 void values(Strip const& strip, Numbers p, double* out) {
   double const shape = p.back();
-  squared_distances(strip, p.subspan(1), out);
+  squared_distances(strip, p.subspan(1, strip.left.size()), out);
   for (int i = 0; i < strip.size; ++i) out[i] = -shape * elementary::log1p(out[i] / (2 * shape));
   elementary::exp_lanes(out, out, strip.size);
   double const variance = p[0] * p[0];
@@ -29,7 +29,7 @@ void values(Strip const& strip, Numbers p, double* out) {
 void add_gradient(Strip const& strip, Numbers p, double const* k, double const* weights, double* gradient) {
   double const shape = p.back();
   double weighted[strip_size];
-  squared_distances(strip, p.subspan(1), weighted);
+  squared_distances(strip, p.subspan(1, strip.left.size()), weighted);
   double of_amplitude = 0, of_shape = 0;
   for (int i = 0; i < strip.size; ++i) {
     double const q = weighted[i] / (2 * shape), one = weights[i] * k[i];
@@ -38,7 +38,7 @@ void add_gradient(Strip const& strip, Numbers p, double const* k, double const* 
     weighted[i] = one / (1 + q);
   }
   gradient[0] += of_amplitude;
-  add_length_gradient(strip, p.subspan(1), weighted, gradient + 1);
+  add_length_gradient(strip, p.subspan(1, strip.left.size()), weighted, gradient + 1);
   gradient[p.size() - 1] += of_shape;
 }
 
