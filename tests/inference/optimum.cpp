@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "inference/search.hpp"
 #include "inference/targets.hpp"
 #include "inference/verdict.hpp"
@@ -107,8 +109,10 @@ TEST_CASE("map and ml are in the table beside mh, with their settings") {
     CHECK(row.refuse(Settings(row.settings)).empty());
     for (SettingRow const& setting : row.settings) CHECK_FALSE(setting.summary.empty());
   }
-  CHECK(names == std::vector<std::string_view>{"mh", "map", "ml"});
-  CHECK(find_backend("ml")->name == "ml");
+  for (char const* name : {"mh", "map", "ml"}) {
+    CHECK(std::count(names.begin(), names.end(), name) == 1);
+    CHECK(find_backend(name)->name == name);
+  }
   CHECK(find_backend("hmc") == nullptr);
 }
 
