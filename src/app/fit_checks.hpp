@@ -18,8 +18,8 @@ struct FitCheck {
 /// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input.
 FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared);
 
-/// What an estimated spread of a population does to a result (docs/methods/several_experiments.md): to chains, when `found` says that they
-/// have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes.
+/// What an estimated spread of a population does to a result (docs/methods/several_experiments.md): to chains, when `found` says
+/// that they have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes.
 Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found);
 
 /// Parameters with a prior that nothing in the model uses: their posterior is their prior.

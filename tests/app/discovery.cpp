@@ -103,7 +103,8 @@ TEST_CASE("every selector and every form may be combined, and the target may kno
       REQUIRE(equation.at("terms").size() == 11);
       CHECK(equation.at("terms").at(0).at("fate") == "known");
       CHECK(equation.at("terms").at(0).at("name") == "m");
-      // Smoothing the displacement and the force alike leaves errors of tens of percent (docs/methods/discovery.md), the weak form of a few.
+      // Smoothing the displacement and the force alike leaves errors of tens of percent (docs/methods/discovery.md), the weak form
+      // of a few.
       double const m = equation.at("terms").at(0).at("coefficient");
       CHECK(std::abs(m - 1) < (std::string(form) == "weak" ? 0.05 : 0.5));
       CHECK(read_file(found.source()).find("parameter m  [kg]") != std::string::npos);
