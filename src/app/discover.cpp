@@ -90,6 +90,7 @@ class Discover {
     report.what = fmt::format("discover {} from {} with {}, derivatives = {}", dictionary_.name,
                               data_names(session_.file, what_.experiments), what_.selector, what_.form);
     report.seed = seed_;
+    add_repetition(session_, task_, report);
     report.model_name = dictionary_.name;
     report.model_title = dictionary_.title;
     report.model_text = std::string(session_.source.text(dictionary_.tree.span));

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "app/experiments.hpp"
+#include "app/prior_density.hpp"
 #include "core/files.hpp"
 #include "data/digest.hpp"
 #include "syntax/parse.hpp"
@@ -31,25 +33,6 @@ ast::Model const* as_written(ast::File const& tree, Span span) {
   return nullptr;
 }
 
-// The density of a prior whose arguments are numbers, per declared unit.
-std::function<double(double)> prior_density(Parameter const& parameter, Model const& model) {
-  auto graph = std::make_shared<Graph>(model.graph);
-  NodeId const x = graph->leaf(LeafKind::unknown, 0);
-  NodeId const root = log_density(*graph, *parameter.prior, x);
-  bool const hierarchical = graph->depends(
-      root, [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter; });
-  if (hierarchical) return {};
-  Support const bounds = support(*graph, *parameter.prior);
-  auto const lower = bounds.lower ? graph->constant_value(*bounds.lower) : std::nullopt;
-  auto const upper = bounds.upper ? graph->constant_value(*bounds.upper) : std::nullopt;
-  double const scale = parameter.unit ? parameter.unit->scale : 1.0;
-  return [graph, root, lower, upper, scale](double declared) {
-    double const si = declared * scale;
-    if ((lower && si <= *lower) || (upper && si >= *upper)) return 0.0;
-    return scale * elementary::exp(graph->evaluate(root, [&](NodeId) { return si; }));
-  };
-}
-
 std::vector<ExperimentUse> const& experiments_of(Task const& task) {
   if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->experiments;
   if (auto const* selection = std::get_if<SelectTask>(&task.what)) return selection->fits.front().experiments;
@@ -61,6 +44,17 @@ std::vector<ExperimentUse> const& experiments_of(Task const& task) {
 Task const& subject_of(Session const& session, Task const& task) {
   auto const* prediction = std::get_if<PredictTask>(&task.what);
   return prediction == nullptr ? task : session.file.tasks[static_cast<std::size_t>(prediction->fit)];
+}
+
+/// As one word of a POSIX shell: in quotes where it would not be one by itself, or would be taken for an option.
+std::string quoted_for_shell(std::string const& word) {
+  bool const plain = !word.empty() && word.front() != '-' && std::all_of(word.begin(), word.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::string_view("_-./=,+@%:").find(c) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string out = word.starts_with('-') ? "'./" : "'";
+  for (char const c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
 }
 
 /// "model `duffing`": of a selection the first.
@@ -77,8 +71,6 @@ std::string subject_name(Session const& session, Task const& task) {
 
 }  // namespace
 
-namespace {}  // namespace
-
 std::string task_digest(Session const& session, Task const& task) {
   Task const& subject = subject_of(session, task);
   auto const of_model = [&](int model) { return model_digest(session, session.file.models[static_cast<std::size_t>(model)].name); };
@@ -91,12 +83,37 @@ std::string task_digest(Session const& session, Task const& task) {
   return sha256(all);
 }
 
+void add_repetition(Session const& session, Task const& task, Report& report) {
+  report.place = static_cast<int>(&task - session.file.tasks.data());
+  RunOptions const& options = session.options;
+  report.command = fmt::format("sysid run {}", quoted_for_shell(session.source.name()));
+  auto const stated = [](Task const& each) {
+    return std::visit([](auto const& what) { return what.seed.has_value(); }, each.what);
+  };
+  std::vector<Task const*> needed = {&task};  // with those whose draws it is made from
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    auto const add = [&](int index) { needed.push_back(&session.file.tasks[static_cast<std::size_t>(index)]); };
+    if (auto const* prediction = std::get_if<PredictTask>(&needed[i]->what)) add(prediction->fit);
+    if (auto const* fit = std::get_if<FitTask>(&needed[i]->what); fit != nullptr && fit->near) add(*fit->near);
+  }
+  bool const all_drawn = std::none_of(needed.begin(), needed.end(), [&](Task const* each) { return stated(*each); });
+  if (options.seed || all_drawn) report.command += fmt::format(" --seed {}", report.seed);
+  if (!options.seed && !all_drawn)
+    for (Task const* each : needed)
+      if (!stated(*each)) report.unseeded.push_back(each->name);
+  // Beside the first, so that the two can be compared.
+  auto again = options.output;
+  if (!again.has_filename()) again = again.parent_path();
+  report.command += fmt::format(" -o {}", quoted_for_shell(again.string() + "_again"));
+}
+
 Report begin_report(Session const& session, Task const& task, int model_index, std::string what, std::uint64_t seed) {
   Report report;
   report.version = SYSID_VERSION;
   report.task = task.name;
   report.what = std::move(what);
   report.seed = seed;
+  add_repetition(session, task, report);
   Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
   report.model_name = model.name;
   report.model_title = model.title;
@@ -134,9 +151,13 @@ std::vector<PriorInfo> declared_priors(Session const& session, int model_index) 
     if (parameter == nullptr || !parameter->prior) continue;
     for (Parameter const& checked : model.parameters)
       if (checked.name == parameter->name.name.text)
-        priors.push_back({checked.name, checked.unit_text(), unparse(ast::Expression{{}, ast::Box<ast::Call>(*parameter->prior)}),
-                          prior_density(checked, model)});
+        priors.push_back({checked.name,
+                          checked.unit_text(),
+                          unparse(ast::Expression{{}, ast::Box<ast::Call>(*parameter->prior)}),
+                          {},
+                          prior_numbers(checked, model)});
   }
+  for (PriorInfo& prior : priors) add_density(prior);
   return priors;
 }
 

@@ -14,6 +14,7 @@
 #include "app/lists.hpp"
 #include "app/module_page.hpp"
 #include "app/pipeline.hpp"
+#include "app/report_results.hpp"
 #include "core/files.hpp"
 #include "core/instruction_set.hpp"
 #include "core/interrupt.hpp"
@@ -31,6 +32,7 @@ struct CommandLine {
   std::vector<std::string> files;
   RunOptions run;
   bool quiet = false, only_check = false;
+  std::optional<std::filesystem::path> page;  // where `report` writes
   std::string* messages = nullptr;  // where JSON messages go that a verb prints as part of its answer; else standard error
 };
 
@@ -164,6 +166,13 @@ int compare(CommandLine const& line) {
   });
 }
 
+int report(CommandLine const& line) {
+  return guarded(line, Source("sysid", ""), [&] {
+    std::cout << report_results(line.file, line.page, line.run.figures).string() << '\n';
+    return code(ExitCode::success);
+  });
+}
+
 std::string read_standard_input() { return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()}; }
 
 int format_one(CommandLine const& line, std::string const& path) {
@@ -287,6 +296,11 @@ int main(int argument_count, char** arguments) {
   CLI::App* comparing = app.add_subcommand("compare", "set results of fits and predictions side by side: evidence and errors");
   comparing->add_option("results", line.files, "folders of tasks, or of whole runs")->required();
   comparing->callback([&] { exit = compare(line); });
+  CLI::App* reporting = app.add_subcommand("report", "make the page of results anew, without fitting again");
+  reporting->add_option("results", line.file, "the folder of a task, or of a whole run")->required();
+  reporting->add_option("-o,--output", line.page, "the file to write (default: report.html in the folder)");
+  reporting->add_flag("!--no-figures", line.run.figures, "leave figures out");
+  reporting->callback([&] { exit = report(line); });
   CLI::App* formatting = app.add_subcommand("fmt", "rewrite files in canonical layout");
   formatting->add_option("files", line.files, "the .sysid files; - reads standard input and writes standard output")->required();
   formatting->add_flag("--check", line.only_check, "change nothing; name the files that would change and exit with 1");

@@ -24,10 +24,20 @@ namespace sysid {
 /// Named values in the order in which they are shown.
 using Facts = std::vector<std::pair<std::string, SettingValue>>;
 
+/// A prior whose arguments are numbers, as its density can be computed again from: SI values.
+struct PriorNumbers {
+  std::string distribution;            // "log_uniform"
+  std::vector<double> arguments;       // canonical, in the order of the distribution's row
+  std::optional<double> lower, upper;  // the user's truncation
+  double scale = 1;                    // SI value of one declared unit
+};
+
 struct PriorInfo {
   std::string name, unit;
-  std::string text;                       // "log_uniform(0.1, 10)"
-  std::function<double(double)> density;  // of the declared value; empty when it depends on other parameters
+  std::string text;                          // "log_uniform(0.1, 10)"
+  std::function<double(double)> density;     // of the declared value; empty when it depends on other parameters
+  std::optional<PriorNumbers> numbers = {};  // the same, stored; empty when it depends on other parameters
+  std::optional<double> q5 = {}, q95 = {};   // declared unit; empty where they are not known
 };
 
 struct DataInfo {
@@ -81,6 +91,9 @@ struct Report {
   std::optional<DiscoveryReport> discovery;
   Ledger ledger;
   std::uint64_t seed = 0;
+  int place = 0;                      // of the task in its file
+  std::string command;                // that makes this result again, ready for a shell
+  std::vector<std::string> unseeded;  // tasks whose seeds the command does not carry: they were drawn
   Facts settings, versions;
   Facts timing;  // seconds, threads, host: for timing.json alone
 };

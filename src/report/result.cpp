@@ -12,6 +12,7 @@
 #include "report/gnuplot.hpp"
 #include "report/html.hpp"
 #include "report/json.hpp"
+#include "report/record.hpp"
 
 namespace sysid {
 
@@ -24,10 +25,11 @@ bool is_result_file(std::string const& name) {
   auto const between = [&](std::string_view begin, std::string_view end) {
     return name.size() >= begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
   };
-  return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "resolved.sysid" ||
-         name == "predict.csv" || name == "terms.csv" || name == "found.sysid" || name == "populations.csv" ||
-         between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
-         between("particles_", ".csv") || between("polished_", ".csv");
+  return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "report.cbor" ||
+         name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
+         name == "structures.csv" || name == "refit.csv" || name == "populations.csv" || between("draws_", ".csv") ||
+         between("function_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") ||
+         between("polished_", ".csv");
 }
 
 bool is_figure_file(std::string const& name) { return name.ends_with(".svg") || name.ends_with(".gnuplot"); }
@@ -63,31 +65,56 @@ void write_result(Report const& report, fs::path const& folder, bool pictures) {
   // What an interrupted run left may have more files than its end: chains of models that died later.
   for (fs::path const& file : files_of_result(folder)) remove_file(file);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
-    write_file(folder / fmt::format("draws_{}.csv", c + 1), draws_csv(report, static_cast<int>(c)));
+    write_file(folder / draws_file(c), draws_csv(report, static_cast<int>(c)));
   if (report.selection)
     for (auto const& [name, content] : selection_files(report)) write_file(folder / name, content);
   if (report.discovery)
     for (auto const& [name, content] : discovery_files(report)) write_file(folder / name, content);
-  for (FunctionReport const& function : report.functions)
-    write_file(folder / fmt::format("function_{}.csv", plot::identifier(function.name)), function_csv(function));
+  for (FunctionReport const& function : report.functions) write_file(folder / function_file(function), function_csv(function));
+  std::vector<std::string> const prediction_names = prediction_files(report);
+  for (std::size_t p = 0; p < report.predictions.size(); ++p)
+    write_file(folder / prediction_names[p], predict_csv(report, report.predictions[p]));
+  std::vector<DrawnFigure> const drawn = drawn_figures(report, pictures);
+  for (DrawnFigure const& each : drawn) {
+    make_folder(folder / "figures");
+    write_file(folder / "figures" / (each.figure.name + ".gnuplot"), each.figure.script);
+    if (each.svg) write_file(folder / "figures" / (each.figure.name + ".svg"), *each.svg);
+  }
+  write_file(folder / "report.html", report_html(report, drawn));
+  write_file(folder / "report.cbor", record_bytes(report));
+  if (!report.resolved_text.empty()) write_file(folder / "resolved.sysid", report.resolved_text);
+  write_file(folder / "timing.json", timing_json(report));
+  write_file(folder / "summary.json", summary_json(report));
+}
+
+std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
+  std::vector<DrawnFigure> drawn;
+  bool const can_draw = pictures && gnuplot_installed();
+  for (plot::Figure const& figure : figures(report)) drawn.push_back({figure, can_draw ? draw(figure) : std::nullopt});
+  return drawn;
+}
+
+std::string draws_file(std::size_t chain) { return fmt::format("draws_{}.csv", chain + 1); }
+
+std::vector<std::string> prediction_files(Report const& report) {
+  std::vector<std::string> names;
   std::set<std::string> taken;
   for (Prediction const& prediction : report.predictions) {
     std::string suffix = report.predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);
     while (!taken.insert(suffix).second) suffix += "_";  // two names may differ only in letters that file names do not have
-    write_file(folder / fmt::format("predict{}.csv", suffix), predict_csv(report, prediction));
+    names.push_back(fmt::format("predict{}.csv", suffix));
   }
-  std::vector<DrawnFigure> drawn;
-  bool const can_draw = pictures && gnuplot_installed();
-  for (plot::Figure const& figure : figures(report)) {
-    make_folder(folder / "figures");
-    drawn.push_back({figure, can_draw ? draw(figure) : std::nullopt});
-    write_file(folder / "figures" / (figure.name + ".gnuplot"), figure.script);
-    if (drawn.back().svg) write_file(folder / "figures" / (figure.name + ".svg"), *drawn.back().svg);
-  }
-  write_file(folder / "report.html", report_html(report, drawn));
-  if (!report.resolved_text.empty()) write_file(folder / "resolved.sysid", report.resolved_text);
-  write_file(folder / "timing.json", timing_json(report));
-  write_file(folder / "summary.json", summary_json(report));
+  return names;
+}
+
+std::string function_file(FunctionReport const& function) {
+  return fmt::format("function_{}.csv", plot::identifier(function.name));
+}
+
+std::string particles_file(std::string const& model) { return fmt::format("particles_{}.csv", model_file_name(model)); }
+
+std::string polished_file(std::string const& model, std::size_t chain) {
+  return fmt::format("polished_{}_{}.csv", model_file_name(model), chain + 1);
 }
 
 }  // namespace sysid

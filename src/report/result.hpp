@@ -1,7 +1,10 @@
 // A task's folder of results: what its files are called, that nothing is overwritten unasked, and the writing of all of them.
 #pragma once
 #include <filesystem>
+#include <string>
+#include <vector>
 
+#include "report/html.hpp"
 #include "report/report.hpp"
 
 namespace sysid {
@@ -13,9 +16,23 @@ bool holds_result(std::filesystem::path const& folder);
 /// the files of that result are removed (draws of more chains than the new run has would otherwise stay), nothing else.
 void prepare_result(std::filesystem::path const& folder, bool force);
 
-/// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, resolved.sysid, timing.json
-/// and, last of all, summary.json: where it stands, the result is whole. Without `pictures` figures are left as scripts.
-/// IoError names the file that could not be written.
+/// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, report.cbor, resolved.sysid,
+/// timing.json and, last of all, summary.json: where it stands, the result is whole. Without `pictures` figures are left as
+/// scripts. IoError names the file that could not be written.
 void write_result(Report const& report, std::filesystem::path const& folder, bool pictures = true);
+
+/// All figures of a report, drawn where `pictures` are wanted and gnuplot is there.
+std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures);
+
+// Names of its files, as the writer gives them and the reader looks for them.
+
+/// Of the chain with this index, from 0.
+std::string draws_file(std::size_t chain);
+/// Of each prediction, in order.
+std::vector<std::string> prediction_files(Report const& report);
+std::string function_file(FunctionReport const& function);
+/// Of a candidate model.
+std::string particles_file(std::string const& model);
+std::string polished_file(std::string const& model, std::size_t chain);
 
 }  // namespace sysid

@@ -11,6 +11,7 @@
 #include "report/csv.hpp"
 #include "report/number.hpp"
 #include "report/report.hpp"
+#include "report/result.hpp"
 
 namespace sysid {
 namespace {
@@ -242,7 +243,7 @@ std::vector<std::pair<std::string, std::string>> selection_files(Report const& r
     SelectedModel const& model = selection.result.models[m];
     if (model.weight.empty()) continue;
     std::string const name = model_file_name(model.name);
-    files.emplace_back(fmt::format("particles_{}.csv", name), particles_csv(report, model));
+    files.emplace_back(particles_file(model.name), particles_csv(report, model));
     if (model.died_in > 0) continue;
     Report of_model;
     of_model.version = report.version;
@@ -257,7 +258,7 @@ std::vector<std::pair<std::string, std::string>> selection_files(Report const& r
     if (m >= selection.polished_draws.size()) continue;
     of_model.draws = selection.polished_draws[m];
     for (std::size_t c = 0; c < of_model.draws.chains.size(); ++c)
-      files.emplace_back(fmt::format("polished_{}_{}.csv", name, c + 1), draws_csv(of_model, static_cast<int>(c)));
+      files.emplace_back(polished_file(model.name, c), draws_csv(of_model, static_cast<int>(c)));
   }
   return files;
 }

@@ -1,5 +1,6 @@
 // Every shipped model runs to its recorded summary: numbers to 1e-6 of their size (the seed fixes the bytes, but special functions
-// may differ in the last digits between processors), words exactly. SYSID_BLESS=1 rewrites the record.
+// may differ in the last digits between processors), words exactly. SYSID_BLESS=1 rewrites the record. And its pages can be made
+// anew.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
+#include "app/stored_pages.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -56,6 +58,7 @@ TEST_CASE("every shipped model runs to its recorded summary and exit code") {
     options.execution.threads = 0;
     RunResult const result = run_text(entry.path(), read_file(entry.path()), options);
     json found = {{"exit", result.exit}};
+    CHECK(test::broken_promises(options.output) == "");
     for (auto const& task : std::filesystem::directory_iterator(options.output)) {
       if (!std::filesystem::exists(task.path() / "summary.json")) continue;
       found[task.path().filename().string()] = json::parse(read_file(task.path() / "summary.json"));

@@ -1,5 +1,5 @@
 // Draws: a normal with the covariance of the tutorial's posterior, AR(1) along each chain. Response: the oscillator itself, by RK4.
-#include "example.hpp"
+#include "report/example.hpp"
 
 #include <algorithm>
 #include <cmath>

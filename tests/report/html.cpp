@@ -3,22 +3,159 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "example.hpp"
+#include "page_rules.hpp"
+#include "report/figures.hpp"
+#include "report/html_style.hpp"
 
 using namespace sysid;
 
-TEST_CASE("the page needs nothing from elsewhere and runs no script") {
-  std::string const page = report_html(example::duffing(20), {});
-  for (char const* word : {"<script", "src=", "<link", "@import", "url("})
-    CHECK_MESSAGE(page.find(word) == std::string::npos, word);
-  CHECK(page.find("https://") == std::string::npos);
+namespace {
+
+std::vector<DrawnFigure> all_drawn(Report const& report) {
+  std::vector<DrawnFigure> out;
+  for (plot::Figure const& figure : figures(report))
+    out.push_back({figure,
+                   "<svg \n viewBox=\"0 0 1 1\"\n>\n<title>own</title><defs><circle id='dot' r='1'/></defs><g "
+                   "id=\"plot\"><use xlink:href='#dot'/></g></svg>\n"});
+  return out;
+}
+
+/// The value of a colour variable: the last one that the sheet gives before `end`.
+std::string colour(std::string_view name, std::size_t end) {
+  std::string const variable = std::string(" --") + std::string(name) + ": #";
+  std::size_t const at = page_style.substr(0, end).rfind(variable);
+  REQUIRE_MESSAGE(at != std::string_view::npos, name);
+  return std::string(page_style.substr(at + variable.size(), 6));
+}
+
+/// (L1 + 0.05)/(L2 + 0.05) of the relative luminances                                    WCAG 2.2, contrast ratio
+double contrast(std::string const& a, std::string const& b) {
+  auto const luminance = [](std::string const& hex) {
+    auto const channel = [&](std::size_t at) {
+      double const c = std::stoi(hex.substr(at, 2), nullptr, 16) / 255.0;
+      return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    };
+    return 0.2126 * channel(0) + 0.7152 * channel(2) + 0.0722 * channel(4);
+  };
+  double const la = luminance(a), lb = luminance(b);
+  return (std::max(la, lb) + 0.05) / (std::min(la, lb) + 0.05);
+}
+
+}  // namespace
+
+TEST_CASE("the rules of a page find what breaks them") {
+  Report report = example::duffing(20);
+  report.priors[0].q5 = 0.126;
+  report.priors[0].q95 = 7.94;
+  std::string const page = report_html(report, {});
+  CHECK(test::broken_rules(page) == "");
+  auto const breaks = [&](std::string const& from, std::string const& to) {
+    std::string changed = page;
+    std::size_t const at = changed.find(from);
+    REQUIRE_MESSAGE(at != std::string::npos, from);
+    return !test::broken_rules(changed.replace(at, from.size(), to)).empty();
+  };
+  CHECK(breaks("</h1>", "</h2>"));
+  CHECK(breaks("<footer>", "<footer><img src=\"https://example.org/x.png\"/>"));
+  CHECK(breaks("href=\"#content\"", "href=\"https://example.org\""));
+  CHECK(breaks("scope=\"row\"", ""));
+  CHECK(breaks("role=\"img\"", ""));
+  CHECK(breaks("<h2 id=\"model-title\">Model</h2>", "<h4 id=\"model-title\">Model</h4>"));
+  CHECK(breaks("<style>", "<style>@import 'x.css';"));
+  CHECK(breaks("id=\"model\"", "id=\"data\""));
+}
+
+TEST_CASE("pages keep the rules whatever is in them") {
+  Report report = example::duffing(20);
+  CHECK(test::broken_rules(report_html(report, all_drawn(report))) == "");
+  Report none;
+  CHECK(test::broken_rules(report_html(none, {})) == "");
+  Report optimum = example::duffing(20);
+  optimum.draws.chains.resize(1);
+  optimum.draws.chains[0].values.resize(1);
+  for (Summary& summary : optimum.summary) summary.q5 = summary.q95 = summary.rhat = summary.ess_bulk = std::nan("");
+  CHECK(test::broken_rules(report_html(optimum, {})) == "");
+  Report hostile = example::duffing(20);
+  std::string const bytes("]]>&<\"' \x01\x1b\xff\xc0\xaf\xed\xa0\x80\xf5\x80\x80\x80\0 \xef\xbf\xbf \xe2\x82", 33);
+  hostile.task = hostile.what = hostile.model_title = hostile.model_text = hostile.command = bytes;
+  hostile.equations = {bytes};
+  hostile.findings.push_back({Severity::error, bytes, bytes, bytes});
+  hostile.summary[0].name = hostile.priors[0].name = hostile.summary[0].unit = bytes;
+  hostile.data[0].notes = {bytes};
+  hostile.tables.push_back({bytes, bytes, {bytes, bytes}, {{bytes, bytes}}});
+  CHECK(test::broken_rules(report_html(hostile, {})) == "");
+}
+
+TEST_CASE("pages of several tasks keep the rules, their ids apart") {
+  Report const one = example::duffing(20), other = example::duffing(30);
+  CHECK(test::broken_rules(run_html({{one, all_drawn(one)}, {other, all_drawn(other)}})) == "");
+}
+
+TEST_CASE("text stands out from what is behind it, light and dark") {
+  std::size_t const dark = page_style.find("@media screen and (prefers-color-scheme: dark)");
+  REQUIRE(dark != std::string_view::npos);
+  for (std::size_t const end : {dark, page_style.size()})
+    for (char const* paper : {"paper", "faint"}) {
+      for (char const* text : {"ink", "muted", "accent", "good", "doubtful", "bad"}) {
+        CAPTURE(text);
+        CAPTURE(paper);
+        CAPTURE(end == dark);
+        CHECK(contrast(colour(text, end), colour(paper, end)) >= 4.5);
+      }
+      CHECK(contrast(colour("fig-ink", end), colour(paper, end)) >= 4.5);
+      CHECK(contrast(colour("fig-muted", end), colour(paper, end)) >= 4.5);
+    }
+  CHECK(contrast("ffffff", "000000") == doctest::Approx(21));
+  CHECK(contrast("777777", "ffffff") == doctest::Approx(4.48).epsilon(1e-3));
+}
+
+TEST_CASE("a picture has the title of its figure, not gnuplot's, and identifiers of its own") {
+  Report const report = example::duffing(20);
+  std::string const page = report_html(report, all_drawn(report));
+  CHECK(page.find("aria-label=\"Posterior and prior\"") != std::string::npos);
+  CHECK(page.find("own</title>") == std::string::npos);
+  CHECK(page.find("id=\"plot\"") == std::string::npos);
+  CHECK(page.find("id='dot'") == std::string::npos);
+  CHECK(page.find("xlink:href=\"#figure-1-dot\"") != std::string::npos);
+}
+
+TEST_CASE("figures stand with the numbers that they belong to") {
+  Report const report = example::duffing(20);
+  std::string const page = report_html(report, all_drawn(report));
+  auto const section = [&](std::string const& id) {
+    std::size_t const begin = page.find("<section id=\"" + id + "\"");
+    return page.substr(begin, page.find("</section>", begin) - begin);
+  };
+  CHECK(section("result").find("Marginal posteriors") != std::string::npos);
+  CHECK(section("result").find("Draws of each two parameters") != std::string::npos);
+  CHECK(section("fit").find("Measured and modelled displacement") != std::string::npos);
+  CHECK(section("fit").find("Autocorrelation of the residuals") != std::string::npos);
+  CHECK(section("diagnostics").find("Draws of each chain") != std::string::npos);
+}
+
+TEST_CASE("a parameter's prior stands beside its posterior, with how much narrower that is") {
+  Report report = example::duffing(20);
+  report.priors[0].q5 = 0.126;
+  report.priors[0].q95 = 7.94;
+  report.summary[0].q5 = 0.9;
+  report.summary[0].q95 = 1.1;
+  std::string const page = report_html(report, {});
+  CHECK(page.find("0.126 to 7.94") != std::string::npos);
+  CHECK(page.find("39.1 times narrower") != std::string::npos);
+  CHECK(page.find("aria-label=\"m from 0.900 to 1.10, prior from 0.126 to 7.94\"") != std::string::npos);
 }
 
 TEST_CASE("the page shows model, data, result, failures and how to repeat it") {
-  std::string const page = report_html(example::duffing(20), {});
-  for (char const* text :
-       {"<h1>Duffing's oscillator</h1>", "sha256 9f86d081884c7d65", "1500 rows, 500 of them scored", "<h2>Result</h2>",
-        "<h2>Convergence</h2>", "<h2>Modes</h2>", "100000 simulations, 3 of them failed", "Seed 1.", "25000"})
+  Report report = example::duffing(20);
+  report.command = "sysid run 'a b.sysid' -o results_again";
+  std::string const page = report_html(report, {});
+  for (char const* text : {"<h1>Duffing's oscillator</h1>", "sha256 9f86d081884c7d65", "1500 rows, 500 of them scored (1..500)",
+                           ">Parameters: from prior to posterior</h2>", ">Diagnostics of the chains</h2>", ">Modes</h2>",
+                           "100000 simulations, 3 of them failed (0.0030 %)", "Seed 1.", "25000",
+                           "<code>sysid run 'a b.sysid' -o results_again</code>"})
     CHECK_MESSAGE(page.find(text) != std::string::npos, text);
 }
 
@@ -35,11 +172,11 @@ TEST_CASE("the user's text cannot become markup") {
 
 TEST_CASE("the verdict box takes the colour of the worst finding") {
   Report report = example::duffing(20);
-  CHECK(report_html(report, {}).find("<div class=\"verdict good\">") != std::string::npos);
+  CHECK(report_html(report, {}).find("class=\"part verdict good\"") != std::string::npos);
   report.findings.push_back({Severity::warning, "c", "m", ""});
-  CHECK(report_html(report, {}).find("<div class=\"verdict doubtful\">") != std::string::npos);
+  CHECK(report_html(report, {}).find("class=\"part verdict doubtful\"") != std::string::npos);
   report.findings.push_back({Severity::error, "c", "m", ""});
-  CHECK(report_html(report, {}).find("<div class=\"verdict bad\">") != std::string::npos);
+  CHECK(report_html(report, {}).find("class=\"part verdict bad\"") != std::string::npos);
 }
 
 TEST_CASE("figures that could not be drawn are named, with the way to get them") {

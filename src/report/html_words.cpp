@@ -1,0 +1,235 @@
+// Sentences with numbers in them. The bars are those of the checks, which alone decide the verdict.
+#include "report/html_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "report/number.hpp"
+
+namespace sysid {
+
+namespace {
+
+/// A score on the channel where it is worst.
+struct Worst {
+  double value;
+  std::string where;  // " (force on wave_06)"; empty where there is one line alone
+};
+
+std::string number(double value, int digits = 3) { return pretty_number(significant(value, digits)); }
+
+std::optional<Worst> worst(std::vector<FitLine> const& lines, std::string_view name, std::function<double(double)> const& badness) {
+  std::optional<Worst> out;
+  for (FitLine const& line : lines)
+    for (Score const& score : line.scores)
+      if (score.name == name && std::isfinite(score.value) && (!out || badness(score.value) > badness(out->value)))
+        out = {score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : ""};
+  return out;
+}
+
+std::string error_words(Worst const& nmse) {
+  std::string out = fmt::format("{} % of the variance of what was measured is left over{}: ", number(nmse.value), nmse.where);
+  if (nmse.value >= 100) return out + "no better than a constant at the mean.";
+  if (nmse.value >= 5) return out + "the model misses a visible part; see the residuals for what.";
+  if (nmse.value >= 1) return out + "a fair fit; what is left may be noise or structure, which the residuals tell.";
+  return out + "model and measurement can hardly be told apart by eye.";
+}
+
+std::string coverage_words(Worst const& coverage, double expected) {
+  double const off = coverage.value - expected;
+  return fmt::format("{} % of the scored samples lie inside{}, where {} % should: {}.", number(100 * coverage.value),
+                     coverage.where, number(100 * expected),
+                     off < -0.05   ? "the bands are too narrow for these data"
+                     : off > 0.035 ? "the bands are wider than need be"
+                                   : "the bands are as wide as they say");
+}
+
+std::string size_words(Worst const& size) {
+  return fmt::format("Residuals are {} times as large as the noise of the model{}, as mean squares: {}.", number(size.value),
+                     size.where,
+                     size.value > 1.3   ? "the noise is larger than the model says, or the model misses something"
+                     : size.value < 0.7 ? "the noise was taken larger than it is"
+                                        : "noise accounts for them");
+}
+
+std::string chance_words(Worst const& p, std::string_view pattern, std::string_view none) {
+  return fmt::format("p {}{}: {}.", p.value < 1e-4 ? "below 0.0001" : "= " + number(p.value, 2), p.where,
+                     p.value < 0.001 ? pattern : none);
+}
+
+bool has_chains(Report const& report) { return report.draws.total() > 1 && !report.summary.empty(); }
+
+struct Extreme {
+  double value;
+  std::string name;
+};
+
+std::optional<Extreme> extreme(Report const& report, std::function<double(Summary const&)> const& of, bool largest) {
+  std::optional<Extreme> out;
+  for (Summary const& summary : report.summary) {
+    double const value = of(summary);
+    if (!std::isfinite(value)) continue;
+    if (!out || (largest ? value > out->value : value < out->value)) out = {value, summary.name};
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string verdict_meaning(Report const& report) {
+  if (!has_verdict(report)) return "";
+  bool const bands = !report.selection && !report.discovery && report.draws.total() == 0;
+  std::string_view const numbers = report.discovery ? "the equations" : bands ? "the bands" : "the numbers";
+  switch (grade(report)) {
+    case Severity::error:
+      return fmt::format(
+          "Until the cause is mended {} below may change by more than the uncertainty that stands beside them: what to do "
+          "stands with each point.",
+          numbers);
+    case Severity::warning:
+      return fmt::format(
+          "You may use {} once you have looked at the points below and know that they do not matter for your purpose.", numbers);
+    default:
+      break;
+  }
+  if (bands)
+    return "No check speaks against using the bands. They hold if the model does on this record: compare them with what was "
+           "measured.";
+  if (report.discovery)
+    return "No check speaks against the equations. They are the best of the terms offered, not proof that no other term acts.";
+  return "No check speaks against using the numbers. That is no proof of the model: compare it with what was measured, best on "
+         "rows that "
+         "it was not fitted to.";
+}
+
+std::string score_words(std::vector<FitLine> const& lines, std::string const& score) {
+  auto const say = [&](std::function<double(double)> const& badness, auto const& words) {
+    auto const found = worst(lines, score, badness);
+    return found ? words(*found) : std::string();
+  };
+  auto const high = [](double value) { return value; };
+  auto const low = [](double value) { return -value; };
+  if (score == "nmse" || score == "nmse_left_out") return say(high, error_words);
+  for (auto const& [name, expected] : {std::pair("coverage_95", 0.95), std::pair("coverage_3sd", 0.9973)})
+    if (score == name)
+      return say([at = expected](double value) { return std::fabs(value - at); },
+                 [at = expected](Worst const& each) { return coverage_words(each, at); });
+  if (score == "chi_squared_per_sample")
+    return say([](double value) { return std::fabs(std::log(std::max(value, 1e-300))); }, size_words);
+  if (score == "whiteness_p")
+    return say(low, [](Worst const& p) {
+      return chance_words(p, "residuals follow one another, so that dynamics are missing or the noise is not white",
+                          "no residual follows from those before it");
+    });
+  if (score == "input_correlation_p")
+    return say(low, [](Worst const& p) {
+      return chance_words(p, "residuals follow the input, so that the model misses a part of the response",
+                          "nothing of the input is left in the residuals");
+    });
+  return "";
+}
+
+std::vector<ChainWords> chain_words(Report const& report) {
+  std::vector<ChainWords> out;
+  if (!has_chains(report)) return out;
+  constexpr double rhat_bar = 1.01, ess_bar = 400;
+  if (auto const rhat = extreme(
+          report, [](Summary const& s) { return s.rhat; }, true)) {
+    bool const good = rhat->value <= rhat_bar;
+    out.push_back({"R-hat",
+                   fmt::format("{:.3f} at most ({}): {}", rhat->value, rhat->name,
+                               good                 ? "the chains tell the same story; they do below 1.01."
+                               : rhat->value > 1.05 ? "the chains tell different stories; they should be below 1.01."
+                                                    : "the chains have not quite agreed; they should be below 1.01."),
+                   good});
+  }
+  for (auto const& [name, what, of] :
+       {std::tuple("bulk ESS", "means", std::function([](Summary const& s) { return s.ess_bulk; })),
+        std::tuple("tail ESS", "5 and 95 % limits", std::function([](Summary const& s) { return s.ess_tail; }))})
+    if (auto const ess = extreme(report, of, false)) {
+      bool const good = ess->value >= ess_bar;
+      out.push_back({name,
+                     fmt::format("{:.0f} at least ({}): the draws are worth that many independent ones for {}, {}.", ess->value,
+                                 ess->name, what, good ? "enough" : "fewer than the 400 that are asked for"),
+                     good});
+    }
+  if (auto const error = extreme(
+          report, [](Summary const& s) { return s.sd > 0 ? s.mcse_mean / s.sd : std::nan(""); }, true)) {
+    bool const good = error->value <= 0.05 + 1e-12;
+    out.push_back({"Monte Carlo error",
+                   fmt::format("{} % of an sd at most ({}): another seed would move a mean by about that much.",
+                               number(100 * error->value, 2), error->name),
+                   good});
+  }
+  double accepted = 0, count = 0;
+  for (Chain const& chain : report.draws.chains)
+    for (double const each : chain.acceptance)
+      if (std::isfinite(each)) accepted += each, ++count;
+  if (count > 0) {
+    double const rate = accepted / count;
+    bool const good = rate >= 0.01;
+    out.push_back({"acceptance",
+                   fmt::format("{} % of the moves that led to kept draws were accepted on average: {}.", number(100 * rate, 2),
+                               !good        ? "the chains hardly moved"
+                               : rate < 0.1 ? "few, yet the effective sample sizes above say what they are worth"
+                               : rate > 0.6 ? "many, as of short steps; the effective sample sizes above say what they are worth"
+                                            : "as it should be where a chain walks at random"),
+                   good});
+  }
+  return out;
+}
+
+std::string ledger_words(Report const& report) {
+  Ledger const& ledger = report.ledger;
+  if (ledger.solves() == 0 && ledger.failures().empty()) return "";
+  if (ledger.failed() == 0) return fmt::format("{} simulations, none of them failed.", ledger.solves());
+  double const share =
+      100 * static_cast<double>(ledger.failed()) / static_cast<double>(std::max<std::uint64_t>(ledger.solves(), 1));
+  bool const fitted = report.draws.total() > 0 || report.selection;
+  return fmt::format("{} simulations, {} of them failed ({} %). {}: {}", ledger.solves(), ledger.failed(), number(share, 2),
+                     fitted ? "A simulation that fails counts as impossible for its parameters"
+                            : "A trajectory that fails is left out of the bands",
+                     share < 1    ? "so few do not shape the result."
+                     : share < 20 ? "look whether the posterior ends where the model does."
+                                  : "with so many the posterior may end where the solver does, not where the data say.");
+}
+
+std::pair<double, double> interval_90(Summary const& summary) {
+  if (std::isfinite(summary.q5) && std::isfinite(summary.q95) && summary.q95 > summary.q5) return {summary.q5, summary.q95};
+  constexpr double half = 1.6448536269514722;  // the normal's 95 % quantile
+  return {summary.mean - half * summary.sd, summary.mean + half * summary.sd};
+}
+
+std::optional<double> narrowing(PriorInfo const& prior, Summary const& summary) {
+  if (!prior.q5 || !prior.q95) return std::nullopt;
+  auto const [low, high] = interval_90(summary);
+  double const ratio = (*prior.q95 - *prior.q5) / (high - low);
+  return std::isfinite(ratio) && ratio > 0 ? std::optional(ratio) : std::nullopt;
+}
+
+std::string learning_words(Report const& report) {
+  std::string idle;
+  int known = 0, more = 0;
+  for (Summary const& summary : report.summary) {
+    if (summary.coefficient) continue;
+    for (PriorInfo const& prior : report.priors) {
+      if (prior.name != summary.name) continue;
+      auto const ratio = narrowing(prior, summary);
+      if (!ratio) continue;
+      ++known;
+      if (*ratio >= 1.5) continue;
+      if (++more <= 6) idle += (idle.empty() ? "" : ", ") + summary.name;
+    }
+  }
+  if (known == 0) return "";
+  if (more == 0) return "The data narrow every parameter well below its prior.";
+  if (more > 6) idle += fmt::format(" and {} more", more - 6);
+  return fmt::format(
+      "The data say little of {}: the posterior is hardly narrower than the prior, so that the choice of the prior matters there.",
+      idle);
+}
+
+}  // namespace sysid

@@ -1,0 +1,187 @@
+// `report`: pages of folders, and what is said of folders that hold none, or hold them no longer.
+#include "app/report_results.hpp"
+
+#include <doctest/doctest.h>
+
+#include "answer.hpp"
+#include "app/reporting.hpp"
+#include "app/running.hpp"
+#include "app/stored_pages.hpp"
+#include "report/gnuplot.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string const text =
+    "model decay \"Decay & <growth>\" {\n  state y\n  initial y = 1\n  parameter k ~ log_uniform(0.1, 10)\n"
+    "  parameter a ~ normal(1, sd = 2)\n  y' = -k*a*y\n  observe size ~ normal(y, sd = 0.1)\n}\n"
+    "data dish {\n  file \"growth.csv\"\n  time t [s]\n  measure size = y\n}\n"
+    "posterior = fit decay to dish with mh(samples = 60, burn_in = 20, thin = 1, chains = 2), seed = 1\n"
+    "forecast = predict posterior on dish with draws(10), seed = 1\n";
+
+/// Too few draws to be used: the checks fail.
+struct DishRun {
+  TemporaryFolder folder;
+  fs::path results = folder.path() / "results";
+
+  explicit DishRun(bool pictures = false, std::string const& source = text) {
+    write_file(folder.path() / "growth.csv", content(error_examples / "data/growth.csv"));
+    RunOptions options;
+    options.output = results;
+    options.figures = pictures;
+    Source file((folder.path() / "dish.sysid").string(), source);
+    Diagnostics diagnostics;
+    auto const checked = load(file, diagnostics);
+    REQUIRE(checked);
+    SilentProgress silent;
+    std::ostringstream out, notices;
+    for (char const* verb : {"fit", "predict"}) run_tasks(file, *checked, {verb}, options, silent, out, notices);
+  }
+};
+
+/// The message and the help of what is refused, the folder left out; "" when nothing is.
+std::string refusal(fs::path const& results, fs::path const& folder) {
+  try {
+    report_results(results, std::nullopt, false);
+  } catch (UserError const& error) {
+    return without(error.diagnostic().message + "\n" + error.diagnostic().help, folder.string() + "/");
+  } catch (IoError const& error) {
+    return without(std::string("74: ") + error.what(), folder.string() + "/");
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a page made from a folder is the one that the run wrote, pictures included") {
+  if (!gnuplot_installed()) return;
+  DishRun const run(true);
+  for (char const* task : {"posterior", "forecast"}) {
+    std::string const written = read_file(run.results / task / "report.html");
+    CHECK(written.find("<figure") != std::string::npos);
+    write_file(run.results / task / "report.html", "");
+    CHECK(report_results(run.results / task, std::nullopt, true) == run.results / task / "report.html");
+    CHECK(read_file(run.results / task / "report.html") == written);
+  }
+}
+
+TEST_CASE("a run that fails its checks keeps the promises of pages, too") {
+  DishRun const run;
+  CHECK(read_file(run.results / "posterior" / "report.html").find("class=\"part verdict bad\"") != std::string::npos);
+  CHECK(broken_promises(run.results) == "");
+}
+
+TEST_CASE("the page of a whole run holds its tasks in the order of the file") {
+  DishRun const run;
+  report_results(run.results, run.folder.path() / "all.html", false);
+  std::string const page = read_file(run.folder.path() / "all.html");
+  std::size_t const first = page.find("<section id=\"task-1\""), second = page.find("<section id=\"task-2\"");
+  REQUIRE(second != std::string::npos);
+  std::size_t const posterior = page.find(">posterior: Decay &amp; &lt;growth&gt;</h2>");
+  CHECK(posterior > first);
+  CHECK(posterior < second);
+  CHECK(page.find(">forecast: Decay &amp; &lt;growth&gt;</h2>") > second);
+  CHECK(page.find("<a href=\"#task-2\">forecast</a>") < first);
+}
+
+TEST_CASE("the command makes the same result again, whatever the folder is called") {
+  std::string const shell_word = "it's; a \"$HOME\" `name`";
+  TemporaryFolder const folder;
+  Source const source((folder.path() / shell_word / "dish.sysid").string(), text);
+  DishRun const run;  // any checked file
+  Source file(source.name(), text);
+  Diagnostics diagnostics;
+  auto const checked = load(file, diagnostics);
+  REQUIRE(checked);
+  RunOptions options;
+  options.output = fs::path(shell_word) / "-results/";
+  options.seed = 7;
+  SilentProgress silent;
+  std::ostringstream nowhere;
+  Session session(file, *checked, options, silent, nowhere, nowhere);
+  Report report;
+  add_repetition(session, checked->tasks[0], report);
+  // The shell itself takes the words apart.
+  std::string const words_file = (folder.path() / "words").string();
+  std::string const command = "f() { printf '%s\\n' \"$@\"; }; f" + report.command.substr(5) + " > " + words_file;
+  REQUIRE(report.command.starts_with("sysid"));
+  REQUIRE(std::system(command.c_str()) == 0);
+  CHECK(read_file(words_file) ==
+        "run\n" + source.name() + "\n--seed\n0\n-o\n" + (fs::path(shell_word) / "-results_again").string() + "\n");
+}
+
+TEST_CASE("seeds that were drawn stand in the command, or are named where others are stated") {
+  TemporaryFolder const folder;
+  auto const repetition = [&](std::string const& source) {
+    Source file("dish.sysid", source);
+    Diagnostics diagnostics;
+    auto const checked = load(file, diagnostics);
+    REQUIRE(checked);
+    SilentProgress silent;
+    std::ostringstream nowhere;
+    RunOptions const options;
+    Session session(file, *checked, options, silent, nowhere, nowhere);
+    Report report;
+    report.seed = 5;
+    add_repetition(session, checked->tasks[1], report);  // the prediction
+    return report;
+  };
+  CHECK(repetition(text).command == "sysid run dish.sysid -o results_again");
+  std::string const unseeded = with(text, ", seed = 1", "");
+  CHECK(repetition(unseeded).command == "sysid run dish.sysid --seed 5 -o results_again");
+  CHECK(repetition(unseeded).unseeded.empty());
+  std::string const mixed = with(text, "chains = 2), seed = 1", "chains = 2)");
+  CHECK(repetition(mixed).command == "sysid run dish.sysid -o results_again");
+  CHECK(repetition(mixed).unseeded == std::vector<std::string>{"posterior"});
+}
+
+TEST_CASE("what is missing or damaged is named, and the page of before stays") {
+  DishRun const run;
+  fs::path const task = run.results / "posterior";
+  std::string const page = read_file(task / "report.html");
+  auto const refused = [&](fs::path const& results) { return refusal(results, run.folder.path()); };
+
+  CHECK(refused(run.folder.path() / "nothing") == "74: there is no folder `nothing`");
+  fs::create_directory(run.folder.path() / "empty");
+  CHECK(refused(run.folder.path() / "empty") ==
+        "`empty` holds no results\ngive the folder of a task, such as results/posterior, or of a whole run, such as results");
+
+  std::string const record = read_file(task / "report.cbor");
+  for (std::size_t const at : {std::size_t{0}, record.size() / 3, record.size() - 1}) {
+    std::string changed = record;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    write_file(task / "report.cbor", changed);
+    CHECK(refused(task) == "`results/posterior/report.cbor` is damaged\nrun the task again with --force");
+  }
+  write_file(task / "report.cbor", record.substr(0, record.size() / 2));
+  CHECK(refused(task) == "`results/posterior/report.cbor` is damaged\nrun the task again with --force");
+  remove_file(task / "report.cbor");
+  CHECK(refused(task).starts_with("the results in `results/posterior` have no `report.cbor`\n"));
+  write_file(task / "report.cbor", record);
+
+  std::string const draws = read_file(task / "draws_2.csv");
+  write_file(task / "draws_2.csv", draws.substr(0, draws.size() - 3));
+  CHECK(refused(task).starts_with("`results/posterior/draws_2.csv` is damaged: line "));
+  write_file(task / "draws_2.csv", draws.substr(0, draws.rfind('\n', draws.size() - 2) + 1));
+  CHECK(
+      refused(task).starts_with("`results/posterior/draws_2.csv` does not belong to this result: it has 39 rows in place of 40\n"));
+  write_file(task / "draws_2.csv", with(draws, ",k,a\n", ",k,b\n"));
+  CHECK(refused(task).starts_with(
+      "`results/posterior/draws_2.csv` does not belong to this result: it has no column `a` in place 6\n"));
+  remove_file(task / "draws_2.csv");
+  CHECK(refused(task) == "74: cannot read `results/posterior/draws_2.csv`: no such file or directory");
+  CHECK(refused(run.results).starts_with("74: "));
+  write_file(task / "draws_2.csv", draws);
+
+  std::string const summary = read_file(task / "summary.json");
+  remove_file(task / "summary.json");
+  CHECK(refused(task).starts_with("`results/posterior` holds no whole result: it has no `summary.json`\n"));
+  write_file(task / "summary.json", summary);
+  CHECK(read_file(task / "report.html") == page);
+  CHECK(refused(task) == "");
+  CHECK(read_file(task / "report.html") == page);
+}
