@@ -94,9 +94,29 @@ std::string html(HtmlSection const& section, int level) {
                      section.kind.empty() ? "" : " " + section.kind, level, escape(section.title), section.body, landmark);
 }
 
+std::string marked(std::string_view words) {
+  std::string out;
+  while (true) {
+    std::size_t const begin = words.find('`');
+    std::size_t const end = begin == words.npos ? words.npos : words.find('`', begin + 1);
+    if (end == words.npos) return out + escape(words);
+    out += escape(words.substr(0, begin)) + code(words.substr(begin + 1, end - begin - 1));
+    words.remove_prefix(end + 1);
+  }
+}
+
+std::string capitalised(std::string words) {
+  auto const small = [](char c) { return c >= 'a' && c <= 'z'; };
+  std::size_t letters = 0;
+  while (letters < words.size() && small(words[letters])) ++letters;
+  bool const word = letters >= 2 && (letters == words.size() || (words[letters] == ' ' && words.compare(letters, 3, " = ") != 0));
+  if (word) words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words;
+}
+
 std::string paragraph(std::string_view words, std::string_view kind) {
   if (words.empty()) return "";
-  return fmt::format("<p{}>{}</p>\n", kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), escape(words));
+  return fmt::format("<p{}>{}</p>\n", kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), marked(words));
 }
 
 std::string code(std::string_view text) { return fmt::format("<code>{}</code>", escape(text)); }
@@ -111,7 +131,7 @@ std::string folded(std::string_view summary, std::string_view text) {
 
 std::string figure_html(DrawnFigure const& drawn, std::string const& id, int number) {
   return fmt::format("<figure id=\"{0}\">\n{1}<figcaption id=\"{0}-caption\"><b>Figure {2}.</b> {3}</figcaption>\n</figure>\n", id,
-                     own_picture(embedded(*drawn.svg, drawn.figure), id, drawn.figure.title), number, escape(drawn.figure.caption));
+                     own_picture(embedded(*drawn.svg, drawn.figure), id, drawn.figure.title), number, marked(drawn.figure.caption));
 }
 
 std::string range_chart(double wide_low, double wide_high, double low, double high, double mean, std::string_view words) {

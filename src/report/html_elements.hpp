@@ -26,6 +26,10 @@ struct HtmlSection {
 };
 std::string html(HtmlSection const& section, int level);
 
+/// Words as HTML: what stands in backquotes as code.
+std::string marked(std::string_view words);
+/// With a capital letter, where words begin and not a formula.
+std::string capitalised(std::string words);
 std::string paragraph(std::string_view words, std::string_view kind = {});
 std::string code(std::string_view text);
 /// Text that is shown on demand, and always on paper.

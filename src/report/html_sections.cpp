@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "report/html_words.hpp"
@@ -30,6 +31,15 @@ Topic topic_of(plot::Figure const& figure) {
 std::string named(std::string const& name, std::string const& unit) {
   std::string const text = pretty_unit(unit);
   return escape(name) + (text.empty() || text == "-" ? "" : fmt::format(" <span class=\"unit\">{}</span>", escape(text)));
+}
+
+/// A cell of a table that other writers share: a number or a unit as a page shows it.
+std::string cell_html(std::string const& text, std::string const& column) {
+  if (column == "unit") return escape(pretty_unit(text));
+  double value = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  bool const number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return number ? pretty_number(text) : escape(text);
 }
 
 class Task {
@@ -81,8 +91,8 @@ class Task {
 
   std::string verdict() const {
     if (!has_verdict(report_)) return "";
-    std::string headline = verdict_headline(report_);
-    std::string out = fmt::format("<p class=\"headline\">{}</p>\n{}", escape(headline), paragraph(verdict_meaning(report_)));
+    std::string out = fmt::format("<p class=\"headline\">{}</p>\n{}", marked(capitalised(verdict_headline(report_))),
+                                  paragraph(verdict_meaning(report_)));
     if (report_.findings.empty()) return out;
     out += "<ul>\n";
     std::vector<Finding> findings = report_.findings;
@@ -93,8 +103,8 @@ class Task {
                       finding.severity == Severity::error     ? "Failed:"
                       : finding.severity == Severity::warning ? "Look at:"
                                                               : "Note:",
-                      escape(finding.message),
-                      finding.help.empty() ? "" : fmt::format(". <span class=\"help\">What to do: {}</span>", escape(finding.help)),
+                      marked(finding.message),
+                      finding.help.empty() ? "" : fmt::format(". <span class=\"help\">What to do: {}</span>", marked(finding.help)),
                       code(finding.code));
     return out + "</ul>\n<p class=\"note\">More about a word in this type: <code>sysid explain</code> and the word.</p>\n";
   }
@@ -170,15 +180,16 @@ class Task {
         out += paragraph(
             fmt::format("The model as a whole: {}. {}", text,
                         report_.evidence->log_evidence
-                            ? "It has a meaning only beside that of another model of the same samples: sysid compare sets "
+                            ? "It has a meaning only beside that of another model of the same samples: `sysid compare` sets "
                               "them side by side, and a difference of 5 is strong."
                             : ""));
     for (ReportTable const& extra : report_.tables) {
-      HtmlTable table{extra.title, {}, {}, 1};
+      HtmlTable table{capitalised(extra.title), {}, {}, 1};
       for (std::string const& cell : extra.header) table.header.push_back(escape(cell));
       for (auto const& row : extra.rows) {
         table.rows.emplace_back();
-        for (std::string const& cell : row) table.rows.back().push_back(escape(cell));
+        for (std::size_t c = 0; c < row.size(); ++c)
+          table.rows.back().push_back(cell_html(row[c], c < extra.header.size() ? extra.header[c] : ""));
       }
       out += html(table) + paragraph(extra.caption, "note");
     }
@@ -302,7 +313,7 @@ class Task {
                          data.scored_rows.empty() ? "" : fmt::format(" ({})", escape(data.scored_rows)));
       if (!data.notes.empty()) {
         out += "<ul>\n";
-        for (std::string const& note : data.notes) out += fmt::format("<li>{}</li>\n", escape(note));
+        for (std::string const& note : data.notes) out += fmt::format("<li>{}</li>\n", marked(note));
         out += "</ul>\n";
       }
       out += fmt::format("<p class=\"digest\">sha256 {}</p>\n", escape(data.sha256));

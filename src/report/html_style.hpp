@@ -47,7 +47,6 @@ nav .what { margin: 0 0.4rem; }
 .verdict { border-left: 5px solid var(--good); background: var(--faint); padding: 0.9rem 1.2rem; margin: 1.5rem 0; }
 .verdict > h2, .verdict > h3 { margin: 0; font-size: 0.9rem; color: var(--muted); }
 .verdict .headline { margin: 0 0 0.3rem; font-size: 1.25rem; font-weight: 650; color: var(--good); }
-.headline::first-letter { text-transform: uppercase; }
 .verdict.doubtful { border-color: var(--doubtful); } .verdict.doubtful .headline { color: var(--doubtful); }
 .verdict.bad { border-color: var(--bad); } .verdict.bad .headline { color: var(--bad); }
 .verdict ul { margin: 0.6rem 0 0.2rem; padding-left: 1.1rem; }

@@ -211,6 +211,7 @@ std::optional<double> narrowing(PriorInfo const& prior, Summary const& summary) 
 }
 
 std::string learning_words(Report const& report) {
+  if (grade(report) == Severity::error) return "";  // what the chains have not told
   std::string idle;
   int known = 0, more = 0;
   for (Summary const& summary : report.summary) {

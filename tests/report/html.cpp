@@ -136,6 +136,15 @@ TEST_CASE("figures stand with the numbers that they belong to") {
   CHECK(section("diagnostics").find("Draws of each chain") != std::string::npos);
 }
 
+TEST_CASE("what stands in backquotes is code, words begin with a capital, formulas do not") {
+  Report report = example::duffing(20);
+  report.verdict = "x = 2*y'' + `k`*y; the checks pass";
+  CHECK(report_html(report, {}).find("<p class=\"headline\">x = 2*y'' + <code>k</code>*y; the checks pass</p>") !=
+        std::string::npos);
+  report.verdict = "the checks pass ` as ever";
+  CHECK(report_html(report, {}).find("<p class=\"headline\">The checks pass ` as ever</p>") != std::string::npos);
+}
+
 TEST_CASE("a parameter's prior stands beside its posterior, with how much narrower that is") {
   Report report = example::duffing(20);
   report.priors[0].q5 = 0.126;
