@@ -43,7 +43,9 @@ void change_attributes(std::string& text, std::string const& prefix, Change cons
 std::string own_picture(std::string svg, std::string const& id, std::string const& title) {
   remove_elements(svg, "title");
   remove_elements(svg, "desc");
-  for (std::size_t at = 0; (at = svg.find(" points = ", at)) != std::string::npos;) svg.replace(at, 10, " points=");
+  for (std::string const attribute : {" points", " fill"})
+    for (std::size_t at = 0; (at = svg.find(attribute + " = '", at)) != std::string::npos;)
+      svg.replace(at, attribute.size() + 3, attribute + "=");
   std::set<std::string> wanted;
   change_attributes(svg, " xlink:href=", [&](std::string const& target) {
     if (target.starts_with('#')) wanted.insert(target.substr(1));

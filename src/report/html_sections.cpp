@@ -205,6 +205,8 @@ class Task {
     if (name == "coverage_3sd") return "share within 3 sd";
     if (name == "whiteness_p") return "whiteness of the residuals, p";
     if (name == "input_correlation_p") return "residuals uncorrelated with the input, p";
+    if (name.starts_with("input_correlation_p("))
+      return fmt::format("residuals uncorrelated with {}, p", escape(name.substr(20, name.size() - 21)));
     return escape(name);
   }
 
@@ -227,7 +229,7 @@ class Task {
       HtmlTable table{fmt::format("Scores of {}", lines[0].what()), {"score", "value", "what it says"}, {}, 1};
       table.last_is_words = true;
       for (std::string const& name : names)
-        table.rows.push_back({score_title(name), cell(lines[0], name), escape(score_words(lines, name))});
+        table.rows.push_back({score_title(name), cell(lines[0], name), escape(score_words(report_, lines, name))});
       out = html(table);
     } else {
       HtmlTable table{"Scores", {"channel"}, {}, 1};
@@ -238,7 +240,7 @@ class Task {
       }
       out = html(table) + "<dl>\n";
       for (std::string const& name : names)
-        if (std::string const words = score_words(lines, name); !words.empty())
+        if (std::string const words = score_words(report_, lines, name); !words.empty())
           out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", score_title(name), escape(words));
       out += "</dl>\n";
     }

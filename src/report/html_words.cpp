@@ -47,12 +47,13 @@ std::string coverage_words(Worst const& coverage, double expected) {
                                    : "the bands are as wide as they say");
 }
 
-std::string size_words(Worst const& size) {
+/// The check knows how much of it is chance.
+std::string size_words(Worst const& size, bool found) {
   return fmt::format("Residuals are {} times as large as the noise of the model{}, as mean squares: {}.", number(size.value),
                      size.where,
-                     size.value > 1.3   ? "the noise is larger than the model says, or the model misses something"
-                     : size.value < 0.7 ? "the noise was taken larger than it is"
-                                        : "noise accounts for them");
+                     !found           ? "noise accounts for them"
+                     : size.value > 1 ? "the noise is larger than the model says, or the model misses something"
+                                      : "the noise is smaller than the model says");
 }
 
 std::string chance_words(Worst const& p, std::string_view pattern, std::string_view none) {
@@ -105,7 +106,7 @@ std::string verdict_meaning(Report const& report) {
          "it was not fitted to.";
 }
 
-std::string score_words(std::vector<FitLine> const& lines, std::string const& score) {
+std::string score_words(Report const& report, std::vector<FitLine> const& lines, std::string const& score) {
   auto const say = [&](std::function<double(double)> const& badness, auto const& words) {
     auto const found = worst(lines, score, badness);
     return found ? words(*found) : std::string();
@@ -118,13 +119,17 @@ std::string score_words(std::vector<FitLine> const& lines, std::string const& sc
       return say([at = expected](double value) { return std::fabs(value - at); },
                  [at = expected](Worst const& each) { return coverage_words(each, at); });
   if (score == "chi_squared_per_sample")
-    return say([](double value) { return std::fabs(std::log(std::max(value, 1e-300))); }, size_words);
+    return say([](double value) { return std::fabs(std::log(std::max(value, 1e-300))); },
+               [&](Worst const& each) {
+                 return size_words(each, std::any_of(report.findings.begin(), report.findings.end(),
+                                                     [](Finding const& finding) { return finding.code == "noise_size"; }));
+               });
   if (score == "whiteness_p")
     return say(low, [](Worst const& p) {
       return chance_words(p, "residuals follow one another, so that dynamics are missing or the noise is not white",
                           "no residual follows from those before it");
     });
-  if (score == "input_correlation_p")
+  if (score.starts_with("input_correlation_p"))
     return say(low, [](Worst const& p) {
       return chance_words(p, "residuals follow the input, so that the model misses a part of the response",
                           "nothing of the input is left in the residuals");
@@ -226,7 +231,7 @@ std::string learning_words(Report const& report) {
     }
   }
   if (known == 0) return "";
-  if (more == 0) return "The data narrow every parameter well below its prior.";
+  if (more == 0) return "The data narrow every parameter that has a prior of its own.";
   if (more > 6) idle += fmt::format(" and {} more", more - 6);
   return fmt::format(
       "The data say little of {}: the posterior is hardly narrower than the prior, so that the choice of the prior matters there.",

@@ -145,6 +145,37 @@ TEST_CASE("what stands in backquotes is code, words begin with a capital, formul
   CHECK(report_html(report, {}).find("<p class=\"headline\">The checks pass ` as ever</p>") != std::string::npos);
 }
 
+TEST_CASE("sentences follow the values and never contradict the checks") {
+  Report report = example::duffing(20);
+  report.predictions.clear();
+  auto const says = [&](std::vector<Score> scores, std::string const& words) {
+    report.fit = {{"bench.train", "displacement", "mm", std::move(scores)}};
+    return report_html(report, {}).find(words) != std::string::npos;
+  };
+  CHECK(says({{"nmse", 0.01}}, "can hardly be told apart"));
+  CHECK(says({{"nmse", 140}}, "no better than a constant at the mean"));
+  CHECK(says({{"coverage_95", 0.94}}, "as wide as they say"));
+  CHECK(says({{"coverage_95", 0.7}}, "too narrow"));
+  CHECK(says({{"coverage_95", 1}}, "wider than need be"));
+  CHECK(says({{"whiteness_p", 2e-4}}, "residuals follow one another"));
+  CHECK(says({{"whiteness_p", 0.02}}, "no residual follows"));
+  CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals uncorrelated with heat, p"));
+  CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals follow the input"));
+  CHECK(says({{"chi_squared_per_sample", 0.6}}, "noise accounts for them"));
+  report.findings = {{Severity::error, "noise_size", "m", ""}};
+  CHECK(says({{"chi_squared_per_sample", 0.6}}, "smaller than the model says"));
+  CHECK(says({{"chi_squared_per_sample", 3}}, "larger than the model says"));
+  CHECK(report_html(report, {}).find("narrow every parameter") == std::string::npos);  // nothing is learnt from what failed
+}
+
+TEST_CASE("of several channels the worst is named") {
+  Report report = example::duffing(20);
+  report.predictions.clear();
+  report.fit = {{"a", "force", "N", {{"nmse", 1}}}, {"b", "force", "N", {{"nmse", 30}}}};
+  std::string const page = report_html(report, {});
+  CHECK(page.find("30.0 % of the variance of what was measured is left over (force on b)") != std::string::npos);
+}
+
 TEST_CASE("a parameter's prior stands beside its posterior, with how much narrower that is") {
   Report report = example::duffing(20);
   report.priors[0].q5 = 0.126;
