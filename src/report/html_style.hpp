@@ -98,7 +98,7 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   body { max-width: none; padding: 0; }
   nav, .skip { display: none; }
   a { color: inherit; text-decoration: none; }
-  figure, tr, .headline, dt, dd { break-inside: avoid; }
+  figure, .scroll, tr, .headline, dt, dd { break-inside: avoid; }
   h2, h3, h4, caption, thead { break-after: avoid; }
   .whole + .whole { break-before: page; }
   .scroll, pre, .equations { overflow: visible; }
