@@ -23,6 +23,13 @@ Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajector
   if (prediction.rows)  // of any order: shown as they stand in the file
     for (std::size_t i = 0; i < prediction.time.size(); ++i) prediction.time[i] = experiment.first_row + static_cast<double>(i);
   prediction.scored = experiment.scored;
+  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+    Quantity const& input = model.inputs[k];
+    PredictedInput driven{input.name, input.unit_text(), {}};
+    for (int i = 0; i < static_cast<int>(experiment.time.size()); ++i)
+      driven.values.push_back(input.from_si(experiment.inputs[k].sample(i)));
+    prediction.inputs.push_back(std::move(driven));
+  }
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     TrajectoryQuantity const& quantity = quantities[q];
     // A state that a channel of its name observes is shown once, as the channel.

@@ -118,7 +118,7 @@ class Discover {
     report.timing = {{"wall_seconds", wall.count()}};
     report.verdict = headline(discovery, report.equations, report.findings);
     report.discovery = std::move(discovery);
-    write_result(report, session_.result_folder(task_), session_.options.figures);
+    write_result(report, session_.result_folder(task_), session_.options.pictures());
     session_.out << terminal_summary(report);
     if (!report.discovery->source.empty())
       session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,

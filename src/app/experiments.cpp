@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/session.hpp"
+#include "app/truth.hpp"
 #include "core/files.hpp"
 #include "data/digest.hpp"
 #include "model/past.hpp"
@@ -274,6 +275,7 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   info.scored = static_cast<int>(std::count(data.experiment.scored.begin(), data.experiment.scored.end(), 1));
   info.scored_rows = scored_rows(data.experiment);
   info.samples_sha256 = samples_digest(data.experiment, model);
+  info.truth = true_values(data.record.comments, model, data.use.name);
   for (Quantity const& input : model.inputs)
     for (DataInputUse const& use : block.inputs)
       if (use.input == input.name)

@@ -19,6 +19,7 @@
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
+#include "app/restoring_force.hpp"
 #include "app/search_near.hpp"
 #include "app/session.hpp"
 #include "app/settling.hpp"
@@ -154,8 +155,7 @@ class Fit {
     add_derived(*compiled_, *space_, result.draws);
     for (std::size_t c = static_cast<std::size_t>(result.draws.parameter_count); c < result.draws.names.size(); ++c)
       report.summary.push_back(of_column(result.draws, c));
-    for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
-      report.predictions.push_back(fitted_rows(result.draws, e, report.findings));
+    for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e) add_fitted_rows(result.draws, e, report);
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
     report.modes = result.modes;
     report.settings = {{"backend", what_.backend}};
@@ -209,19 +209,22 @@ class Fit {
     return findings;
   }
 
-  // Bands over the fitted rows of an experiment, for the report, and how far the trajectories drift from constraints.
-  Prediction fitted_rows(Draws const& draws, int e, Findings& findings) const {
+  // Bands and restoring forces over the fitted rows of an experiment, and how far the trajectories drift from constraints.
+  void add_fitted_rows(Draws const& draws, int e, Report& report) const {
     Experiment const& experiment = data_[static_cast<std::size_t>(e)].experiment;
     LaneArray const columns = spread(draws, 100);
     LaneArray parameters(static_cast<int>(model_.parameters.size()), columns.width());
     space_->select(space_->values_of_declared(columns), e, parameters);
     Trajectory const trajectory(compiled_, experiment, preparation_.solver, start_rows(what_.start), session_.interruptible());
     Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, e));
-    for (Finding& finding : drift_findings(session_, model_, result, experiment.name)) findings.push_back(std::move(finding));
+    for (Finding& finding : drift_findings(session_, model_, result, experiment.name))
+      report.findings.push_back(std::move(finding));
     Prediction prediction = bands_along(trajectory.quantities(), result, experiment, model_);
     for (Finding& finding : band_findings(prediction, result.failed(), result.failed(), data_.size() > 1))
-      findings.push_back(std::move(finding));
-    return prediction;
+      report.findings.push_back(std::move(finding));
+    for (RestoringForce& force : restoring_forces(model_, trajectory.quantities(), result, parameters, experiment))
+      report.forces.push_back(std::move(force));
+    report.predictions.push_back(std::move(prediction));
   }
 
   Session& session_;

@@ -86,7 +86,7 @@ ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpo
   report.timing = {{"wall_seconds", wall.count()},
                    {"threads", static_cast<std::int64_t>(session.threads())},
                    {"lanes", static_cast<std::int64_t>(session.options.execution.lanes)}};
-  write_result(report, session.result_folder(task), session.options.figures);
+  write_result(report, session.result_folder(task), session.options.pictures());
   session.out << terminal_summary(report);
   if (interrupted) {
     session.notices << fmt::format("{}: interrupted; go on with --resume\n", task.name);

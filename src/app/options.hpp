@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/progress.hpp"
+#include "report/figure_format.hpp"
 #include "simulate/simulator.hpp"
 
 namespace sysid {
@@ -15,6 +17,10 @@ struct RunOptions {
   bool force = false;   // overwrite results of the same name
   bool resume = false;  // go on from checkpoints, keep what is complete
   bool figures = true;
+  std::vector<FigureFormat> figure_formats = {FigureFormat::svg};  // of the pictures beside the scripts
+
+  /// None without figures.
+  std::vector<FigureFormat> pictures() const { return figures ? figure_formats : std::vector<FigureFormat>{}; }
   std::optional<std::uint64_t> seed;  // in place of the file's
   ExecutionOptions execution;         // lanes, threads: change nothing in the results
   double checkpoint_interval = 30;    // [s]

@@ -12,6 +12,7 @@
 #include "app/process_fit.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
+#include "app/restoring_force.hpp"
 #include "app/solver_record.hpp"
 #include "app/stored_draws.hpp"
 #include "likelihood/trajectory.hpp"
@@ -75,7 +76,7 @@ class Predict {
                      : report.ledger.failed() > 0     ? "some trajectories do not stay finite"
                      : missed                         ? "all trajectories stay finite, but the data lie outside their bands"
                                                       : "all trajectories stay finite";
-    write_result(report, session_.result_folder(task_), session_.options.figures);
+    write_result(report, session_.result_folder(task_), session_.options.pictures());
     session_.out << terminal_summary(report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   }
@@ -114,6 +115,10 @@ class Predict {
     for (Finding& finding :
          check_ranges(model_, experiment, fitted_.solver, free_start_ ? what_.start.rows : 0, draws, session_.options.execution))
       report.findings.push_back(std::move(finding));
+    // Parameters that change from step to step have no force of their own.
+    if (!what_.redraw_each_step)
+      for (RestoringForce& force : restoring_forces(model_, trajectory.quantities(), result, draws, experiment))
+        report.forces.push_back(std::move(force));
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name))
       report.findings.push_back(std::move(finding));
     report.ledger.merge(result.ledger);

@@ -10,6 +10,7 @@
 #include "app/function_ranges.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
+#include "app/restoring_force.hpp"
 #include "app/session.hpp"
 #include "app/solver_record.hpp"
 #include "app/stored_draws.hpp"
@@ -73,7 +74,7 @@ class PredictSelection {
     report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
                      : report.ledger.failed() > 0     ? "some trajectories do not stay finite"
                                                       : "all trajectories stay finite";
-    write_result(report, session_.result_folder(task_), session_.options.figures);
+    write_result(report, session_.result_folder(task_), session_.options.pictures());
     session_.out << terminal_summary(report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   }
@@ -117,6 +118,9 @@ class PredictSelection {
                                            parameters, session_.options.execution))
         report.findings.push_back(std::move(finding));
       if (k == lead) {
+        for (RestoringForce& force :
+             restoring_forces(compiled->model, trajectory->quantities(), result, parameters, data[e].experiment))
+          report.forces.push_back(std::move(force));
         leading_failed = result.failed();
         quantities = trajectory->quantities();
         all.values = std::move(result.values);

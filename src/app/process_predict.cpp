@@ -58,7 +58,7 @@ class ProcessPredict {
     report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
                      : missed                         ? "the data lie outside their bands more often than they should"
                                                       : "all trajectories stay finite";
-    write_result(report, session_.result_folder(task_), session_.options.figures);
+    write_result(report, session_.result_folder(task_), session_.options.pictures());
     session_.out << terminal_summary(report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   }

@@ -14,6 +14,7 @@
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
+#include "app/restoring_force.hpp"
 #include "app/results.hpp"
 #include "app/selection_checks.hpp"
 #include "app/session.hpp"
@@ -112,6 +113,9 @@ class Select {
       if (candidate.space->dimension() != candidate.simulated->dimension())
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
       report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, candidate.compiled->model));
+      for (RestoringForce& force :
+           restoring_forces(candidate.compiled->model, trajectory.quantities(), result, parameters, experiment))
+        report.forces.push_back(std::move(force));
       Findings left_out = leave_out_noise(candidate.compiled->model, report.predictions.back());
       if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
@@ -199,7 +203,7 @@ class Select {
     for (SelectedModel const& model : selection.result.models)
       kept.push_back({model.probability, model.died_in > 0 ? Draws{} : resampled_draws(model, seed_)});
     report.selection = std::move(selection);
-    write_result(report, session_.result_folder(task_), session_.options.figures);
+    write_result(report, session_.result_folder(task_), session_.options.pictures());
     session_.out << terminal_summary(report);
     if (interrupted) {
       session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);

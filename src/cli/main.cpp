@@ -231,6 +231,28 @@ int document(CommandLine const& line) {
   return code(ExitCode::success);
 }
 
+/// What gnuplot cannot draw is refused before hours of sampling, not after.
+void add_figures_option(CLI::App& verb, std::vector<FigureFormat>& formats) {
+  verb.add_option_function<std::vector<std::string>>(
+          "--figures",
+          [&formats](std::vector<std::string> const& names) {
+            formats.clear();
+            for (std::string const& name : names) {
+              auto const format = find_figure_format(name);
+              if (!format)
+                throw CLI::ValidationError("--figures",
+                                           fmt::format("{} is no format of figures; there are svg, png, pdf and text", name));
+              if (*format != FigureFormat::svg && !can_draw(*format))
+                throw CLI::ValidationError("--figures",
+                                           fmt::format("gnuplot cannot draw {} here; the Debian package gnuplot-nox can", name));
+              if (std::find(formats.begin(), formats.end(), *format) == formats.end()) formats.push_back(*format);
+            }
+          },
+          "what figures are drawn as: svg, png, pdf or text, several with commas between (default: svg)")
+      ->delimiter(',')
+      ->type_name("FORMAT,...");
+}
+
 void add_run_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("file", line.file, "the .sysid file")->required();
   verb.add_option("-o,--output", line.run.output, "folder for results (default: results)");
@@ -249,6 +271,7 @@ void add_run_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("--checkpoint-interval", line.run.checkpoint_interval, "seconds between checkpoints")->check(CLI::PositiveNumber);
   verb.add_option("--interrupt-after", line.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
   verb.add_flag("!--no-figures", line.run.figures, "leave figures as scripts");
+  add_figures_option(verb, line.run.figure_formats);
   verb.add_flag("-q,--quiet", line.quiet, "no progress, no notices");
 }
 

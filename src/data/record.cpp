@@ -88,6 +88,7 @@ std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostic
   Record record;
   record.path = request.path;
   record.digest = table->digest();
+  record.comments = table->comments();
   std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(*table, request); });
   if (!time) complete_record = false;
   // Inputs of independent rows are read at rows alone.

@@ -42,6 +42,7 @@ struct Record {
   std::optional<Unit> time_unit;              // in which people read them; absent: seconds
   std::vector<InputSignal> inputs;            // over the whole record
   std::vector<std::vector<double>> measured;  // [N] each, NaN where missing; empty: not in this data
+  std::vector<std::string> comments;          // before the header of the file
 
   int rows() const { return static_cast<int>(time.size()); }
 };

@@ -172,10 +172,10 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
   if (!is_utf8(table.bytes_)) throw UserError(data_errors::not_text(table.name_, mention));
 
   Lines line(table.bytes_, table.bytes_.starts_with("\xef\xbb\xbf") ? 3 : 0);
-  bool header_found = false, comments = false;
+  bool header_found = false;
   while (!header_found && line.next()) {
     std::string_view const text = trimmed(line.text());
-    if (text.starts_with('#')) comments = true;
+    if (text.starts_with('#')) table.comments_.emplace_back(trimmed(text.substr(1)));
     header_found = !text.empty() && !text.starts_with('#');
   }
   if (!header_found) throw UserError(data_errors::no_header(table.name_, mention));
@@ -186,7 +186,8 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
   });
   if (!closed) throw UserError(data_errors::open_quote(table.name_, line.number, mention));
   if (all_numbers(table.columns_))
-    throw UserError(data_errors::header_of_numbers(table.name_, line.number, table.columns_.front(), comments, mention));
+    throw UserError(
+        data_errors::header_of_numbers(table.name_, line.number, table.columns_.front(), !table.comments_.empty(), mention));
 
   int const columns = static_cast<int>(table.columns_.size());
   int empty_lines = 0;  // not rows when they end the file

@@ -28,6 +28,8 @@ class Table {
   int line(int row) const { return header_line_ + row; }
   /// SHA-256 of the file's bytes.
   std::string const& digest() const { return digest_; }
+  /// The comment lines before the header, without their `#` and the blanks around.
+  std::vector<std::string> const& comments() const { return comments_; }
 
   /// The numbers of one column, quiet NaN where the cell is empty or NA. Decimal point whatever the locale; a leading + and blanks
   /// around a number are allowed. UserError: no such column (naming those there are), more than one, or a cell that is neither a
@@ -38,7 +40,7 @@ class Table {
   std::string_view cell(int row, int column) const;
 
   std::string name_, bytes_, digest_;
-  std::vector<std::string> columns_;
+  std::vector<std::string> columns_, comments_;
   std::vector<std::uint64_t>
       cells_;  // [rows x (columns + 1)]: where each cell begins; the last entry of a row: one past its end + 1
   int rows_ = 0;

@@ -12,8 +12,8 @@ namespace {
 
 using namespace plot;
 
-/// More samples than this in 760 pixels are a blot.
-constexpr std::size_t shown_samples = 1000;
+/// More samples than this in a column are a blot.
+constexpr std::size_t shown_samples = 600;
 
 struct Window {
   std::size_t first = 0, count = 0;
@@ -56,9 +56,16 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   bool const has_noise = !noisy_lower.empty(), has_data = !measured.empty();
   bool const has_band = has_noise || quantity.response.draws != 1;  // an optimum is one trajectory
 
-  double const point_size = time.size() > 100 ? 0.28 : 0.5;
-  int const width = 760, height = has_data ? 430 : 290;
-  Axis x = axis(time.front(), time.back(), 8);
+  double const point_size = time.size() > 100 ? 0.24 : 0.5;
+  std::vector<Key> keys;
+  if (has_data) keys.push_back({Key::points, data, "measured"});
+  keys.push_back({Key::line, model, has_band ? "posterior mean" : "model"});
+  if (has_band) keys.push_back({Key::area, response_band, "95 % of the response"});
+  if (has_noise) keys.push_back({Key::area, noise_band, "95 % with noise"});
+  int const width = column_width, left = 70, right = width - 14;
+  int const legend_rows = legend_height(keys, 10, right);
+  int const height = (has_data ? 330 : 200) + legend_rows;
+  Axis x = axis(time.front(), time.back(), 6);
   x.reach_ticks();
   std::pair<double, double> extent = range(mean);
   for (auto const* series : {&lower, &upper, &noisy_lower, &noisy_upper, &measured})
@@ -84,18 +91,12 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   }
   out.script += data_block("fit", rows);
 
-  Panel top = panel_at(78, width - 14.0, has_data ? 158.0 : 44.0, height - 34.0, x, y);
-  top.x_label =
-      has_data ? "" : axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x.exponent);
+  Panel top = panel_at(left, right, has_data ? 146.0 : 44.0, height - 12.0 - legend_rows, x, y);
+  top.x_label = has_data ? "" : axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x);
   top.x_numbers = !has_data;
-  top.y_label = axis_label(quantity.name, quantity.unit, y.exponent);
+  top.y_label = axis_label(quantity.name, quantity.unit, y);
   out.script += panel(top, width, height);
-  std::vector<Key> keys;
-  if (has_data) keys.push_back({Key::points, data, "measured"});
-  keys.push_back({Key::line, model, has_band ? "posterior mean" : "model"});
-  if (has_band) keys.push_back({Key::area, response_band, "95 % of the response"});
-  if (has_noise) keys.push_back({Key::area, noise_band, "95 % with noise"});
-  out.script += legend(keys, top.right, height - 14.0, width, height);
+  out.script += legend(keys, 10, top.right, height - 12.0, width, height);
   out.script += "plot ";
   if (has_noise) out.script += fmt::format("$fit using 1:5:6 with filledcurves fc rgb '{}' fs noborder, ", noise_band);
   out.script += fmt::format("$fit using 1:3:4 with filledcurves fc rgb '{}' fs noborder, ", response_band);
@@ -109,9 +110,10 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
     for (auto& row : residual_rows)
       for (std::size_t c = 1; c < row.size(); ++c) row[c] = r.scaled(row[c]);
     out.script += data_block("residual", residual_rows);
-    Panel low = panel_at(top.left, top.right, 44, 138, x, r);
-    low.x_label = axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x.exponent);
-    low.y_label = axis_label("residual", quantity.unit, r.exponent);
+    Panel low = panel_at(top.left, top.right, 44, 128, x, r);
+    low.x_label = axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x);
+    low.y_label = axis_label("residual", quantity.unit, r);
+    low.y_label_room = 136;
     out.script += panel(low, width, height);
     out.script += fmt::format(
         "plot $residual using 1:3:4 with filledcurves fc rgb '{}' fs noborder, "
@@ -131,62 +133,6 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   if (!w.whole)
     out.caption += fmt::format(" Shown are the first {} of {} scored samples.", w.count,
                                std::count(prediction.scored.begin(), prediction.scored.end(), 1));
-  return out;
-}
-
-std::vector<double> autocorrelation(std::vector<double> const& series, int lags) {
-  double sum = 0, count = 0;
-  for (double const v : series)
-    if (std::isfinite(v)) {
-      sum += v;
-      ++count;
-    }
-  std::vector<double> out;
-  double variance = 0;
-  for (int lag = 0; lag <= lags; ++lag) {
-    double product = 0;
-    for (std::size_t i = static_cast<std::size_t>(lag); i < series.size(); ++i) {
-      double const p = (series[i] - sum / count) * (series[i - static_cast<std::size_t>(lag)] - sum / count);
-      if (std::isfinite(p)) product += p;
-    }
-    if (lag == 0) variance = product;
-    out.push_back(product / variance);
-  }
-  return out;
-}
-
-Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
-  std::vector<double> residuals;
-  double count = 0;
-  for (std::size_t i = 0; i < quantity.measured.size(); ++i) {
-    residuals.push_back(prediction.scored[i] != 0 ? quantity.measured[i] - quantity.response.mean[i] : std::nan(""));
-    if (std::isfinite(residuals.back())) ++count;
-  }
-  int const lags = static_cast<int>(std::min(60.0, count / 4));
-  std::vector<double> const values = autocorrelation(residuals, lags);
-  double const limit = 1.96 / std::sqrt(count);
-
-  int const width = 760, height = 220;
-  Figure out;
-  out.name = figure_name("residuals", prediction, quantity);
-  out.title = fmt::format("Residual autocorrelation of {}", quantity.name);
-  std::vector<std::vector<double>> rows;
-  for (int lag = 1; lag <= lags; ++lag) rows.push_back({static_cast<double>(lag), values[static_cast<std::size_t>(lag)]});
-  std::vector<double> coefficients(values.begin() + 1, values.end());
-  auto const extent = cover(range(coefficients), {-1.5 * limit, 1.5 * limit});
-  Panel p = panel_at(78, width - 14.0, 44, height - 12.0, axis(0, lags + 1, 8), axis(extent.first, extent.second, 4, 0.05));
-  p.x_label = "lag [samples]";
-  p.y_label = "autocorrelation";
-  out.script = preamble(out.name, width, height) + data_block("acf", rows) +
-               data_block("limit", {{0, -limit, limit}, {lags + 1.0, -limit, limit}}) + panel(p, width, height);
-  out.script += fmt::format(
-      "plot $limit using 1:2:3 with filledcurves fc rgb '{}' fs noborder, 0 with lines lw 1 lc rgb '{}', "
-      "$acf using 1:2 with impulses lw 3 lc rgb '{}'\nunset multiplot\n",
-      noise_band, muted, model);
-  out.caption = fmt::format(
-      "Autocorrelation of the residuals of {}. White residuals stay inside the band (95 % of them); a pattern is dynamics the "
-      "model lacks.",
-      quantity.name);
   return out;
 }
 

@@ -1,4 +1,4 @@
-// The pair plot, and the list of all figures.
+// Draws of each two parameters against each other.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,16 +31,6 @@ double correlation(std::vector<double> const& a, std::vector<double> const& b) {
   return ab / std::sqrt(aa * bb);
 }
 
-/// Leaves the first and last tick when the numbers of all would not stand side by side.
-void thin_numbers(Axis& axis, double pixels) {
-  double room = 0;
-  for (auto const& [value, text] : axis.ticks) room += 7.0 * text_width(text) + 8;
-  double const spread =
-      axis.ticks.size() < 2 ? 0 : (axis.ticks.back().first - axis.ticks.front().first) / (axis.high - axis.low) * pixels;
-  if (axis.ticks.size() > 2 && room - 7.0 * text_width(axis.ticks[0].second) > spread)
-    axis.ticks = {axis.ticks.front(), axis.ticks.back()};
-}
-
 }  // namespace
 
 Figure pair_figure(Draws const& draws) {
@@ -54,9 +44,10 @@ Figure pair_figure(Draws const& draws) {
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t d = 0; d < all[i].size(); d += stride) shown[i].push_back(all[i][d]);
 
-  int const left = 70, bottom = 52, width = 760;
+  // Three stand in one column of print, more need the page.
+  int const left = 70, bottom = 48, width = std::max(column_width, left + 6 + 110 * static_cast<int>(count));
   int const cell = (width - left - 6) / static_cast<int>(count);
-  int const tall = std::min(cell, 150);
+  int const tall = std::min(cell, 110);
   int const height = bottom + tall * static_cast<int>(count) + 6;
   Figure out{"pairs", "Pairs", "", preamble("pairs", width, height)};
   std::vector<Axis> axes;
@@ -80,7 +71,6 @@ Figure pair_figure(Draws const& draws) {
       p.top = height - 4.0 - static_cast<double>(row) * tall;
       p.bottom = p.top - tall + 8;
       p.x = axes[column];
-      thin_numbers(p.x, p.right - p.left);
       if (column > row) {
         double const r = correlation(all[row], all[column]);
         out.script +=
@@ -93,7 +83,9 @@ Figure pair_figure(Draws const& draws) {
       }
       bool const last = row + 1 == count;
       p.x_numbers = last;
-      p.x_label = last ? axis_label(draws.names[column], draws.units[column], p.x.exponent) : "";
+      p.x_label_room = cell - 6;
+      p.y_label_room = tall - 6;
+      p.x_label = last ? axis_label(draws.names[column], draws.units[column], p.x) : "";
       if (row == column) {
         constexpr std::size_t bins = 24;
         std::vector<double> counts(bins, 0);
@@ -114,7 +106,7 @@ Figure pair_figure(Draws const& draws) {
       p.y = axes[row];
       p.y_numbers = column == 0;
       p.y_label_distance = 54;
-      p.y_label = column == 0 ? axis_label(draws.names[row], draws.units[row], p.y.exponent) : "";
+      p.y_label = column == 0 ? axis_label(draws.names[row], draws.units[row], p.y) : "";
       std::vector<std::vector<double>> points;
       for (std::size_t d = 0; d < shown[row].size(); ++d)
         points.push_back({axes[column].scaled(shown[column][d]), axes[row].scaled(shown[row][d])});
@@ -129,46 +121,6 @@ Figure pair_figure(Draws const& draws) {
       "where the two alone are not; separate clouds are several modes.";
   if (draws.names.size() > shown_pairs)
     out.caption += fmt::format(" Shown are the first {} of {}.", shown_pairs, draws.names.size());
-  return out;
-}
-
-namespace {
-
-/// A state that a channel shows as it is (observe y) needs no figure of its own.
-bool repeats_a_channel(Prediction const& prediction, PredictedQuantity const& quantity) {
-  if (!quantity.measured.empty()) return false;
-  return std::any_of(prediction.quantities.begin(), prediction.quantities.end(), [&](PredictedQuantity const& other) {
-    return !other.measured.empty() && other.unit == quantity.unit && other.response.mean == quantity.response.mean;
-  });
-}
-
-}  // namespace
-
-std::vector<Figure> figures(Report const& report) {
-  std::vector<Figure> out;
-  if (report.selection) out.push_back(population_figure(*report.selection));
-  for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities)
-      if (!quantity.response.mean.empty() && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
-        out.push_back(fit_figure(prediction, quantity));
-  for (FunctionReport const& function : report.functions) out.push_back(function_figure(function));
-  if (report.selection) {
-    Report const leading = leading_model(report);
-    if (leading.draws.total() > 1 && !leading.draws.names.empty()) out.push_back(posterior_figure(leading));
-    if (leading.draws.total() > 1 && leading.draws.names.size() > 1) out.push_back(pair_figure(leading.draws));
-  }
-  bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
-  if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
-  if (has_draws && report.draws.names.size() > 1) out.push_back(pair_figure(report.draws));
-  if (has_draws) out.push_back(trace_figure(report.draws));
-  if (has_draws && report.draws.chains.size() > 1) out.push_back(rank_figure(report.draws));
-  for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities) {
-      std::size_t residuals = 0;
-      for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i)
-        if (prediction.scored[i] != 0 && std::isfinite(quantity.measured[i])) ++residuals;
-      if (residuals >= 20) out.push_back(residual_figure(prediction, quantity));
-    }
   return out;
 }
 

@@ -15,7 +15,10 @@ using namespace plot;
 Figure population_figure(SelectionReport const& selection) {
   auto const& populations = selection.result.populations;
   auto const& models = selection.result.models;
-  int const width = 760, height = 470;
+  std::vector<Key> keys;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    keys.push_back({m < std::size(chains) ? Key::line : Key::dashes, chains[m % std::size(chains)], models[m].name});
+  int const width = column_width, legend_rows = legend_height(keys, 10, width - 14), height = 350 + legend_rows;
   Figure out;
   out.name = "populations";
   out.title = "Models from population to population";
@@ -24,7 +27,7 @@ Figure population_figure(SelectionReport const& selection) {
       "towards what the noise alone leaves of the distance.";
   out.script = preamble(out.name, width, height);
 
-  Axis x = axis(1, std::max<double>(2, static_cast<double>(populations.size())), 10);
+  Axis x = axis(1, std::max<double>(2, static_cast<double>(populations.size())), 8, 0.02);
   std::erase_if(x.ticks, [](auto const& tick) { return tick.first != std::floor(tick.first); });
   std::vector<std::vector<double>> rows, thresholds;
   // What has a place on a logarithmic scale: not the first population without a threshold, nor a distance of nothing.
@@ -56,20 +59,18 @@ Figure population_figure(SelectionReport const& selection) {
   if (thresholds.empty()) thresholds.push_back({x.low, y.low});
   out.script += data_block("threshold", thresholds);
 
-  Panel top = panel_at(78, width - 14.0, 190, height - 34.0, x, axis(0, 1, 5, 0.03));
+  Panel top = panel_at(70, width - 14.0, 164, height - 14.0 - legend_rows, x, axis(0, 1, 4, 0.03));
   top.x_numbers = false;
   top.y_label = "probability";
   out.script += panel(top, width, height);
-  std::vector<Key> keys;
-  for (std::size_t m = 0; m < models.size(); ++m) keys.push_back({Key::line, chains[m % std::size(chains)], models[m].name});
-  out.script += legend(keys, top.right, height - 14.0, width, height);
+  out.script += legend(keys, 10, top.right, height - 12.0, width, height);
   out.script += "plot ";
   for (std::size_t m = 0; m < models.size(); ++m)
-    out.script += fmt::format("{}$probability using 1:{} with linespoints lw 1.6 pt 7 ps 0.4 lc rgb '{}'", m == 0 ? "" : ", ",
-                              m + 2, chains[m % std::size(chains)]);
+    out.script += fmt::format("{}$probability using 1:{} with linespoints lw 1.6 pt 7 ps 0.4 {}", m == 0 ? "" : ", ", m + 2,
+                              series_colour(m));
   out.script += "\n" + end_legend();
 
-  Panel below = panel_at(top.left, top.right, 44, 170, x, y);
+  Panel below = panel_at(top.left, top.right, 44, 146, x, y);
   below.x_label = "population";
   below.y_label = "threshold";
   out.script += panel(below, width, height);

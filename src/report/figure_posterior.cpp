@@ -1,11 +1,13 @@
-// Figures of the draws, one cell per parameter: marginals, traces, ranks.
+// Marginal posteriors, one cell per parameter: draws, their density, the prior, and the truth of made data.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
+#include "report/cells.hpp"
 #include "report/figures.hpp"
+#include "report/marginal.hpp"
 #include "report/number.hpp"
 
 namespace sysid {
@@ -14,8 +16,7 @@ namespace {
 
 using namespace plot;
 
-/// A page holds no more cells.
-constexpr std::size_t shown_parameters = 18;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> pooled(Draws const& draws, std::size_t parameter) {
   std::vector<double> out;
@@ -24,218 +25,127 @@ std::vector<double> pooled(Draws const& draws, std::size_t parameter) {
   return out;
 }
 
-std::string left_out(Draws const& draws) {
-  return draws.names.size() > shown_parameters ? fmt::format(" Shown are the first {} of {}.", shown_parameters, draws.names.size())
-                                               : "";
-}
-
-/// All draws, but for tails so long that the bulk would be one bar: then the central 98 %.
-std::pair<double, double> shown_range(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  double const low = quantile(values, 0.01), high = quantile(values, 0.99);
-  bool const long_tails = values.back() - values.front() > 8 * (high - low) && high > low;
-  return long_tails ? std::pair{low, high} : range(values);
-}
-
-/// Cells in rows of `columns`, each with room for its labels.
-struct Grid {
-  int columns, rows, cell_width, cell_height, width, height;
-  /// `below`: pixels under the last row.
-  Grid(std::size_t cells, int per_row, int w, int h, int below = 0)
-      : columns(std::min(per_row, static_cast<int>(cells))),
-        rows((static_cast<int>(cells) + columns - 1) / columns),
-        cell_width(w / columns),
-        cell_height(h),
-        width(w),
-        height(rows * h + below) {}
-  Panel cell(std::size_t index, double left, double right, double bottom, double top) const {
-    int const column = static_cast<int>(index) % columns, row = static_cast<int>(index) / columns;
-    double const x = column * cell_width, y = height - (row + 1) * cell_height;
-    return panel_at(x + left, x + cell_width - right, y + bottom, y + cell_height - top, {}, {});
-  }
-};
-
-struct Histogram {
-  double low, width;
-  std::vector<double> density;
-
-  /// Of the draws in [from, to]; the density is that of all draws.
-  Histogram(std::vector<double> values, double from, double to) {
-    std::sort(values.begin(), values.end());
-    double const n = static_cast<double>(values.size());
-    low = from;
-    double const extent = to - low;
-    double const quartiles = quantile(values, 0.75) - quantile(values, 0.25);
-    // Freedman and Diaconis 1981, kept within what the eye can read.
-    double const rule = quartiles > 0 ? extent / (2 * quartiles / std::cbrt(n)) : 1;
-    auto const bins = static_cast<std::size_t>(std::clamp(std::ceil(rule), 12.0, 48.0));
-    width = extent > 0 ? extent / static_cast<double>(bins) : 1;
-    density.assign(bins, 0);
-    for (double const v : values)
-      if (v >= from && v <= to) density[std::min(bins - 1, static_cast<std::size_t>((v - low) / width))] += 1 / (n * width);
-  }
-
-  /// The outline between two abscissae, as corners.
-  std::vector<std::vector<double>> outline(Axis const& x, double from, double to) const {
-    std::vector<std::vector<double>> out;
-    for (std::size_t b = 0; b < density.size(); ++b) {
-      double const begin = std::max(low + static_cast<double>(b) * width, from);
-      double const end = std::min(low + static_cast<double>(b + 1) * width, to);
-      if (begin >= end) continue;
-      out.push_back({x.scaled(begin), density[b]});
-      out.push_back({x.scaled(end), density[b]});
+/// What the heads of all records say of a parameter; nothing when they say different things.
+std::optional<double> truth_of(std::vector<DataInfo> const& data, std::string const& name) {
+  std::optional<double> out;
+  for (DataInfo const& each : data)
+    for (TrueValue const& stated : each.truth) {
+      if (stated.name != name) continue;
+      if (out && *out != stated.value) return std::nullopt;
+      out = stated.value;
     }
-    return out;
-  }
-};
+  return out;
+}
+
+std::vector<std::vector<double>> corners(std::vector<std::pair<double, double>> const& outline, Axis const& x, double peak) {
+  std::vector<std::vector<double>> out;
+  for (auto const& [at, density] : outline) out.push_back({x.scaled(at), density / peak});
+  return out;
+}
 
 }  // namespace
 
 Figure posterior_figure(Report const& report) {
-  std::size_t const count = std::min(report.summary.size(), shown_parameters);
-  Grid const grid(count, 3, 760, 176);
-  Figure out{"posterior", "Posterior and prior", "", preamble("posterior", grid.width, grid.height)};
-  bool any_prior = false;
-  std::string cut_names;
+  // Coefficients of unknown functions have a figure of their function.
+  std::vector<std::size_t> columns;
+  for (std::size_t c = 0; c < report.summary.size(); ++c)
+    if (!report.summary[c].coefficient) columns.push_back(c);
+  std::size_t const count = std::min(columns.size(), shown_cells);
+  bool any_prior = false, any_truth = false, any_density = false;
+  std::string cut_names, far_names, plots;
+  int const above = 20;
+  Cells const cells(count, 3, 150, 0, above);
+  auto const add_name = [](std::string& list, std::string const& name) { list += (list.empty() ? "" : ", ") + name; };
   for (std::size_t i = 0; i < count; ++i) {
-    Summary const& summary = report.summary[i];
-    std::vector<double> const values = pooled(report.draws, i);
-    auto const [low, high] = shown_range(values);
+    Summary const& summary = report.summary[columns[i]];
+    std::vector<double> const values = pooled(report.draws, columns[i]);
+    auto [low, high] = shown_range(values);
+    if (low == high) {  // a bar that can be seen
+      double const half = low == 0 ? 0.02 : 0.001 * std::fabs(low);
+      low -= half;
+      high += half;
+    }
     Histogram const histogram(values, low, high);
-    if (std::pair{low, high} != range(values)) cut_names += (cut_names.empty() ? "" : ", ") + summary.name;
-    Panel p = grid.cell(i, 14, 14, 44, 26);
-    p.x = axis(low, high, 4, 0.06);
+    if (range(values).first < low || range(values).second > high) add_name(cut_names, summary.name);
+    std::optional<double> const truth = truth_of(report.data, summary.name);
+    bool const near = truth && *truth > low - (high - low) && *truth < high + (high - low);
+    std::pair<double, double> const extent = near ? cover(std::pair(low, high), std::pair(*truth, *truth)) : std::pair{low, high};
+    Panel p = cells.cell(i, 14, 12, 46, 20);
+    p.x = axis(extent.first, extent.second, 4, 0.06);
     p.x.clear_edges(0.03);
-    double const peak = *std::max_element(histogram.density.begin(), histogram.density.end());
-    p.y = {0, 1.06 * peak, 0, {}};
+    // Densities are drawn as parts of the highest bar: the figure has no axis for them, and 10^12 none for gnuplot.
+    double const peak = histogram.peak();
+    p.y = {0, 1.08, 0, {}};
     p.y_axis = false;
-    p.x_label = axis_label(summary.name, summary.unit, p.x.exponent);
+    p.x_label = axis_label(summary.name, summary.unit, p.x);
     Summary on_axis = summary;
     on_axis.mean = p.x.scaled(summary.mean);
-    on_axis.sd = p.x.scaled(summary.sd);
+    on_axis.sd = p.x.scaled_width(summary.sd);
     p.title = mean_and_sd(on_axis);
-    double const infinity = std::numeric_limits<double>::infinity();
-    out.script += data_block(fmt::format("all{}", i), histogram.outline(p.x, -infinity, infinity));
-    out.script += data_block(fmt::format("inner{}", i), histogram.outline(p.x, summary.q5, summary.q95));
-    out.script += panel(p, grid.width, grid.height);
-    out.script += fmt::format(
-        "plot $all{0} using 1:2 with filledcurves y1=0 fc rgb '{1}' fs noborder, $inner{0} using 1:2 with filledcurves y1=0 fc rgb "
-        "'{2}' fs noborder, "
-        "$all{0} using 1:2 with lines lw 1.2 lc rgb '{3}'",
-        i, noise_band, response_band, model);
     auto const prior =
         std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& info) { return info.name == summary.name; });
-    if (prior != report.priors.end() && prior->density) {
-      any_prior = true;
-      std::vector<std::vector<double>> curve;
-      double const scale = std::pow(10.0, p.x.exponent);
-      for (int k = 0; k <= 120; ++k) {
-        double const at = p.x.low + (p.x.high - p.x.low) * k / 120;
-        curve.push_back({at, prior->density(at * scale)});
-      }
-      out.script += fmt::format(", $prior{} using 1:2 with lines lw 1.4 dt (6,4) lc rgb '{}'", i, contrast);
-      std::size_t const at = out.script.rfind(fmt::format("$all{} <<", i));
-      out.script.insert(at, data_block(fmt::format("prior{}", i), curve));
-    }
-    out.script += '\n';
-  }
-  out.script += "unset multiplot\n";
-  out.caption = fmt::format(
-      "Marginal posteriors; the darker part holds 90 %, the numbers above are mean ± sd, in the unit of the axis.{}{}{}",
-      any_prior ? " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; "
-                  "one that stands against an edge is cut "
-                  "by the prior."
-                : "",
-      cut_names.empty() ? "" : fmt::format(" Of {} the central 98 % are shown: the tails reach much farther.", cut_names),
-      left_out(report.draws));
-  return out;
-}
+    bool const has_prior = prior != report.priors.end() && prior->density;
+    any_prior = any_prior || has_prior;
 
-Figure trace_figure(Draws const& draws) {
-  std::size_t const count = std::min(draws.names.size(), shown_parameters);
-  Grid const grid(count, 2, 760, 122, 16);
-  Figure out{"trace", "Traces", "", preamble("trace", grid.width, grid.height)};
-  std::size_t longest = 1;
-  for (Chain const& chain : draws.chains) longest = std::max(longest, chain.values.size());
-  std::size_t const stride = (longest + 399) / 400;
-  for (std::size_t i = 0; i < count; ++i) {
-    auto const [low, high] = range(pooled(draws, i));
-    Panel p = grid.cell(i, 68, 16, 24, 6);
-    p.x = axis(0, static_cast<double>(longest), 4);
-    p.x.exponent = 0;
-    p.y = axis(low, high, 3, 0.05);
-    p.y_label = axis_label(draws.names[i], draws.units[i], p.y.exponent);
-    if (i / static_cast<std::size_t>(grid.columns) + 1 == static_cast<std::size_t>(grid.rows)) p.x_label = "draw";
-    std::string plots;
-    for (std::size_t c = 0; c < draws.chains.size(); ++c) {
+    std::string blocks = data_block(fmt::format("all{}", i), corners(histogram.outline(-infinity, infinity), p.x, peak));
+    blocks += data_block(fmt::format("inner{}", i), corners(histogram.outline(summary.q5, summary.q95), p.x, peak));
+    std::string curves = fmt::format(
+        "plot $all{0} using 1:2 with filledcurves y1=0 fc rgb '{1}' fs noborder, "
+        "$inner{0} using 1:2 with filledcurves y1=0 fc rgb '{2}' fs noborder",
+        i, noise_band, response_band);
+    auto const add_curve = [&](char const* what, std::vector<std::vector<double>> const& rows, std::string const& style) {
+      blocks += data_block(fmt::format("{}{}", what, i), rows);
+      curves += fmt::format(", ${}{} using 1:2 with lines {}", what, i, style);
+    };
+    constexpr int points = 121;
+    auto const place = [&](int k) { return p.x.low + (p.x.high - p.x.low) * k / (points - 1); };
+    if (has_prior) {
       std::vector<std::vector<double>> rows;
-      for (std::size_t d = 0; d < draws.chains[c].values.size(); d += stride)
-        rows.push_back({p.x.scaled(static_cast<double>(d + 1)), p.y.scaled(draws.chains[c].values[d][i])});
-      out.script += data_block(fmt::format("chain{}_{}", i, c), rows);
-      plots += fmt::format("{}$chain{}_{} using 1:2 with lines lw 0.7 lc rgb '{}'", c == 0 ? "plot " : ", ", i, c,
-                           chains[c % std::size(chains)]);
+      for (int k = 0; k < points; ++k) rows.push_back({place(k), prior->density(p.x.unscaled(place(k))) / peak});
+      add_curve("prior", rows, fmt::format("lw 1.4 dt (6,4) lc rgb '{}'", contrast));
     }
-    out.script += panel(p, grid.width, grid.height) + plots + "\n";
-  }
-  out.script += "unset multiplot\n";
-  out.caption =
-      "Draws of each chain (one colour each) in order. Chains that agree look alike, like noise around one level; a drift, steps "
-      "or "
-      "separate levels say that they have not converged.";
-  if (stride > 1) out.caption += fmt::format(" One draw in {} is shown.", stride);
-  out.caption += left_out(draws);
-  return out;
-}
-
-Figure rank_figure(Draws const& draws) {
-  constexpr int bins = 20;
-  std::size_t const count = std::min(draws.names.size(), shown_parameters);
-  Grid const grid(count, 3, 760, 150);
-  Figure out{"ranks", "Rank plots", "", preamble("ranks", grid.width, grid.height)};
-  auto const total = static_cast<double>(draws.total());
-  for (std::size_t i = 0; i < count; ++i) {
-    std::vector<double> const values = pooled(draws, i);
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-    std::vector<int> bin_of(values.size());
-    for (std::size_t r = 0; r < order.size(); ++r) bin_of[order[r]] = static_cast<int>(r * bins / order.size());
-    double const expected = total / static_cast<double>(draws.chains.size()) / bins;
-    // Counts of independent draws are binomial; chains are correlated, so the band is a guide, not a test.
-    double const spread = 1.96 * std::sqrt(expected * (1 - 1.0 / bins));
-    double largest = expected + 1.5 * spread;
-    std::string plots;
-    std::size_t draw = 0;
-    for (std::size_t c = 0; c < draws.chains.size(); ++c) {
-      std::vector<double> counts(bins, 0);
-      for (std::size_t d = 0; d < draws.chains[c].values.size(); ++d) ++counts[static_cast<std::size_t>(bin_of[draw++])];
+    double const worth = std::isfinite(summary.ess_bulk) ? std::min(summary.ess_bulk, static_cast<double>(values.size()))
+                                                         : static_cast<double>(values.size());
+    double const reach = 5 * kernel_width(values, worth);
+    auto const [smallest, largest] = range(values);
+    double const lower = has_prior ? support_end(prior->density, smallest, smallest - reach) : -infinity;
+    double const upper = has_prior ? support_end(prior->density, largest, largest + reach) : infinity;
+    std::vector<double> const density =
+        kernel_density(values, worth, p.x.unscaled(p.x.low), p.x.unscaled(p.x.high), points,
+                       lower > smallest - reach ? lower : -infinity, upper < largest + reach ? upper : infinity);
+    if (!density.empty()) {
+      any_density = true;
       std::vector<std::vector<double>> rows;
-      for (int b = 0; b < bins; ++b) {
-        rows.push_back({static_cast<double>(b) / bins, counts[static_cast<std::size_t>(b)]});
-        rows.push_back({static_cast<double>(b + 1) / bins, counts[static_cast<std::size_t>(b)]});
-      }
-      largest = std::max(largest, *std::max_element(counts.begin(), counts.end()));
-      out.script += data_block(fmt::format("rank{}_{}", i, c), rows);
-      plots += fmt::format(", $rank{}_{} using 1:2 with lines lw 1.2 lc rgb '{}'", i, c, chains[c % std::size(chains)]);
+      for (int k = 0; k < points; ++k) rows.push_back({place(k), density[static_cast<std::size_t>(k)] / peak});
+      p.y.high = std::max(p.y.high, 1.08 * *std::max_element(density.begin(), density.end()) / peak);
+      add_curve("density", rows, fmt::format("lw 1.6 lc rgb '{}'", model));
     }
-    out.script += data_block(fmt::format("guide{}", i), {{0, std::max(0.0, expected - spread), expected + spread},
-                                                         {1, std::max(0.0, expected - spread), expected + spread}});
-    Panel p = grid.cell(i, 40, 12, 44, 8);
-    p.x = axis(0, 1, 2);
-    p.y = axis(0, 1.05 * largest, 3);
-    p.y.exponent = 0;
-    p.x_label = fmt::format("rank of {}", draws.names[i]);
-    out.script += panel(p, grid.width, grid.height);
-    out.script += fmt::format("plot $guide{} using 1:2:3 with filledcurves fc rgb '{}' fs noborder{}\n", i, noise_band, plots);
+    if (near) {
+      any_truth = true;
+      add_curve("truth", {{p.x.scaled(*truth), 0}, {p.x.scaled(*truth), p.y.high}}, fmt::format("lw 1.4 lc rgb '{}'", ink));
+    } else if (truth) {
+      add_name(far_names, fmt::format("{} ({})", summary.name, pretty_number(significant(*truth, 4))));
+    }
+    plots += blocks + panel(p, cells.width, cells.height) + curves + '\n';
+    if (i == 0) plots += end_legend();
   }
-  out.script += "unset multiplot\n";
+  std::vector<Key> keys = {{Key::area, response_band, "90 % of the draws"}};
+  if (any_density) keys.push_back({Key::line, model, "density"});
+  if (any_prior) keys.push_back({Key::dashes, contrast, "prior"});
+  if (any_truth) keys.push_back({Key::line, ink, "truth"});
+  Figure out{"posterior", "Posterior and prior", "", preamble("posterior", cells.width, cells.height)};
+  out.script += legend(keys, 10, cells.width - 12.0, cells.height - 9.0, cells.width, cells.height) + plots + "unset multiplot\n";
   out.caption =
-      "How often each chain's draws fall into each twentieth of all draws (ranks as shares of the whole). Converged chains are "
-      "level and "
-      "inside the band, which holds for independent draws; a slope or a hump is a chain that sits elsewhere or spreads "
-      "otherwise "
-      "than the rest." +
-      left_out(draws);
+      "Marginal posteriors, as a histogram of the draws and as a smooth density; the darker part holds 90 %, the numbers "
+      "above are mean ± sd, in the unit of the axis.";
+  if (any_prior)
+    out.caption +=
+        " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; one that stands against "
+        "an edge is cut by the prior.";
+  if (any_truth) out.caption += " The upright line is the value that the data were made with.";
+  if (!far_names.empty()) out.caption += fmt::format(" Made with values outside what is shown: {}.", far_names);
+  if (!cut_names.empty()) out.caption += fmt::format(" Of {} the central 98 % are shown: the tails reach much farther.", cut_names);
+  out.caption += cells_left_out(columns.size());
   return out;
 }
 

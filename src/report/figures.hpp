@@ -14,9 +14,23 @@ std::vector<plot::Figure> figures(Report const& report);
 
 /// Mean, bands and data of a quantity along the record, with its residuals below when it was measured.
 plot::Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity);
-/// Autocorrelation of the residuals of a measured quantity.
+/// Autocorrelation of the residuals of a measured quantity, and their correlation with each input before them.
 plot::Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity);
-/// Marginal posteriors as histograms, the prior dashed.
+/// Whether rows are independent and inputs vary, so that a measured quantity can be seen over them.
+bool over_inputs(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Mean, bands and data of a measured quantity over each input: a curve where there is one input.
+plot::Figure input_figure(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Restoring force against displacement and against velocity: loops of a hysteresis, a curve of a spring.
+plot::Figure loop_figure(RestoringForce const& force);
+/// Restoring force over displacement and velocity, with where the data lie. The surface is not empty.
+plot::Figure surface_figure(RestoringForce const& force);
+/// How sure the terms of an equation of a discovery are.
+plot::Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation);
+/// Whether any term that was chosen has a coefficient with a spread.
+bool has_coefficients(DiscoveredEquation const& equation);
+/// Posterior densities of the coefficients of the terms that were chosen.
+plot::Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation);
+/// Marginal posteriors as histograms and densities, the prior dashed, the truth of made data as a line.
 plot::Figure posterior_figure(Report const& report);
 /// Draws of each chain in order.
 plot::Figure trace_figure(Draws const& draws);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "report/csv.hpp"
+#include "report/plot.hpp"
 
 namespace sysid {
 
@@ -25,7 +26,7 @@ std::string function_csv(FunctionReport const& function) {
 }
 
 Figure function_figure(FunctionReport const& function) {
-  int const width = 760, height = 300, count = static_cast<int>(function.cuts.size());
+  int const width = column_width, height = 230, count = static_cast<int>(function.cuts.size());
   Figure out;
   out.name = "function_" + identifier(function.name);
   out.title = fmt::format("The function {} that was found", function.name);
@@ -36,15 +37,15 @@ Figure function_figure(FunctionReport const& function) {
   std::pair<double, double> values{0, 0};
   for (auto const& cut : function.cuts)
     for (FunctionPoint const& point : cut) values = cover(values, range({point.q5, point.q95, point.mean}));
-  Axis const y = axis(values.first, values.second, 5, 0.06);
+  Axis const y = axis(values.first, values.second, 4, 0.06);
   for (int d = 0; d < count; ++d) {
     auto const i = static_cast<std::size_t>(d);
     auto const& cut = function.cuts[i];
-    Axis const x = axis(cut.front().inputs[i], cut.back().inputs[i], 5);
-    double const step = (width - 78.0) / count, left = 78 + d * step;
-    Panel p = panel_at(left, left + step - 22, 58, height - 20.0, x, y);
-    p.x_label = axis_label(function.inputs[i].first, function.inputs[i].second, x.exponent);
-    if (d == 0) p.y_label = axis_label(function.name, function.unit, y.exponent);
+    Axis const x = axis(cut.front().inputs[i], cut.back().inputs[i], count == 1 ? 6 : 3);
+    double const step = (width - 70.0) / count, left = 70 + d * step;
+    Panel p = panel_at(left, left + step - 16, 44, height - 12.0, x, y);
+    p.x_label = axis_label(function.inputs[i].first, function.inputs[i].second, x);
+    if (d == 0) p.y_label = axis_label(function.name, function.unit, y);
     p.y_numbers = d == 0;
     std::vector<std::vector<double>> rows;
     for (FunctionPoint const& point : cut)

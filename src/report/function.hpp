@@ -1,11 +1,14 @@
 // An unknown function of an equation, as it was found: a table and a figure of it.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "report/plot.hpp"
-
 namespace sysid {
+
+namespace plot {
+struct Figure;
+}
 
 /// The function at one place over the draws, declared units.
 struct FunctionPoint {

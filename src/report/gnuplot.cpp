@@ -1,4 +1,4 @@
-// gnuplot as a child process: script in, SVG out, through a temporary folder.
+// gnuplot as a child process: script in, picture out, through a temporary folder.
 #include "report/gnuplot.hpp"
 
 #include <fcntl.h>
@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
@@ -46,7 +47,7 @@ int run_gnuplot(std::vector<std::string> arguments, fs::path const& folder) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  std::string const output = folder.empty() ? "/dev/null" : (folder / "figure.svg").string();
+  std::string const output = folder.empty() ? "/dev/null" : (folder / "picture").string();
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
@@ -147,18 +148,71 @@ std::vector<std::string> as_written(std::string_view colour) {
 
 }  // namespace
 
+namespace {
+
+struct FormatRow {
+  FigureFormat format;
+  std::string_view name, extension, terminal;
+};
+constexpr FormatRow formats[] = {
+    {FigureFormat::svg, "svg", "svg", "svg"},
+    {FigureFormat::png, "png", "png", "pngcairo"},
+    {FigureFormat::pdf, "pdf", "pdf", "pdfcairo"},
+    {FigureFormat::text, "text", "txt", "dumb"},
+};
+
+FormatRow const& row(FigureFormat format) { return formats[static_cast<std::size_t>(format)]; }
+
+/// Without the feeds between plots, blanks at the ends of lines, and lines without anything above and below.
+std::string trimmed(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    std::size_t const end = std::min(text.find('\n'), text.size());
+    std::string line(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    std::erase(line, '\f');
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (!line.empty() || !out.empty()) out += line + '\n';
+  }
+  while (out.ends_with("\n\n")) out.pop_back();
+  return out;
+}
+
+}  // namespace
+
+std::string_view name(FigureFormat format) { return row(format).name; }
+
+std::string_view extension(FigureFormat format) { return row(format).extension; }
+
+std::optional<FigureFormat> find_figure_format(std::string_view name) {
+  for (FormatRow const& each : formats)
+    if (each.name == name) return each.format;
+  return std::nullopt;
+}
+
 bool gnuplot_installed() { return run_gnuplot({"gnuplot", "--version"}, {}) == 0; }
 
-std::optional<std::string> draw(plot::Figure const& figure) {
+bool can_draw(FigureFormat format) {
+  return run_gnuplot({"gnuplot", "-d", "-e", fmt::format("set terminal {}", row(format).terminal)}, {}) == 0;
+}
+
+std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format, int columns) {
   TemporaryFolder const folder;
   if (folder.path.empty()) return std::nullopt;
   try {
     write_file(folder.path / "figure.gnuplot", figure.script);
-    if (run_gnuplot({"gnuplot", "-d", (folder.path / "figure.gnuplot").string()}, folder.path) != 0) return std::nullopt;
-    std::string svg = read_file(folder.path / "figure.svg");
-    if (svg.find("</svg>") == std::string::npos) return std::nullopt;
-    polish(svg, plot::identifier(figure.name));
-    return svg;
+    std::string const variables = fmt::format("format = '{}'; columns = {}", name(format), std::max(columns, 20));
+    if (run_gnuplot({"gnuplot", "-d", "-e", variables, (folder.path / "figure.gnuplot").string()}, folder.path) != 0)
+      return std::nullopt;
+    std::string picture = read_file(folder.path / "picture");
+    if (format == FigureFormat::text) return trimmed(picture);
+    // A terminal that gnuplot does not have makes no error of its own.
+    if (format == FigureFormat::png && !picture.starts_with("\x89PNG")) return std::nullopt;
+    if (format == FigureFormat::pdf && !picture.starts_with("%PDF")) return std::nullopt;
+    if (format != FigureFormat::svg) return picture;
+    if (picture.find("</svg>") == std::string::npos) return std::nullopt;
+    polish(picture, plot::identifier(figure.name));
+    return picture;
   } catch (IoError const&) {
     return std::nullopt;  // a figure is worth no failed run; the report says what is missing
   }

@@ -3,14 +3,16 @@
 #include <optional>
 #include <string>
 
+#include "report/figure_format.hpp"
 #include "report/plot.hpp"
 
 namespace sysid {
 
 bool gnuplot_installed();
 
-/// The figure as a standalone SVG, the same bytes for the same script; nothing when gnuplot is missing or refuses.
-std::optional<std::string> draw(plot::Figure const& figure);
+/// The figure as a file's content; nothing when gnuplot is missing or refuses. SVG and text are the same bytes for the same script.
+/// columns: characters that text is wide, of any number from 20 on.
+std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format = FigureFormat::svg, int columns = 80);
 
 /// A standalone SVG as a part of a page: no prologue, no background, colours by the page's variables (`--fig-ink`, ...), so that it
 /// follows light and dark.

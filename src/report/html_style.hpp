@@ -10,8 +10,8 @@ inline constexpr std::string_view page_style = R"css(:root {
   --good: #22694b; --doubtful: #875a06; --bad: #a82e26;
   --fig-ink: #1f2933; --fig-muted: #66717d; --fig-rule: #e3e7ec; --fig-paper: none; --fig-model: #1b5e9b; --fig-band: #a9c8e4;
   --fig-noise-band: #dce8f3; --fig-data: #3d4852; --fig-contrast: #b4541a;
-  --fig-chain-1: #1b5f9c; --fig-chain-2: #c8741f; --fig-chain-3: #2d8a6b; --fig-chain-4: #7a5195;
-  --fig-chain-5: #8c6d31; --fig-chain-6: #4a90a4; --fig-chain-7: #a63d57; --fig-chain-8: #5c7a29;
+  --fig-chain-1: #1b5f9c; --fig-chain-2: #c8741f; --fig-chain-3: #44aa99; --fig-chain-4: #882255;
+  --fig-chain-5: #56b4e9; --fig-chain-6: #6b4226; --fig-chain-7: #332288; --fig-chain-8: #101418;
 }
 @media screen and (prefers-color-scheme: dark) {
   :root {
@@ -19,8 +19,8 @@ inline constexpr std::string_view page_style = R"css(:root {
     --good: #5cbf92; --doubtful: #dcab4f; --bad: #e8857c;
     --fig-ink: #dfe4ea; --fig-muted: #95a1ad; --fig-rule: #2a323b; --fig-model: #7db8e8; --fig-band: #33597c;
     --fig-noise-band: #20354a; --fig-data: #c3cbd3; --fig-contrast: #ee9a63;
-    --fig-chain-1: #7db8e8; --fig-chain-2: #eaa35c; --fig-chain-3: #67c2a2; --fig-chain-4: #b793d1;
-    --fig-chain-5: #c9ab6b; --fig-chain-6: #86c5d6; --fig-chain-7: #e08aa0; --fig-chain-8: #a3c26a;
+    --fig-chain-1: #7db8e8; --fig-chain-2: #e0862f; --fig-chain-3: #7fe0c4; --fig-chain-4: #d05a92;
+    --fig-chain-5: #cfe6ff; --fig-chain-6: #8f6238; --fig-chain-7: #7a6ae8; --fig-chain-8: #f2e6b0;
   }
 }
 * { box-sizing: border-box; }

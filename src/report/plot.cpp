@@ -10,11 +10,17 @@
 
 namespace sysid::plot {
 
-double Axis::scaled(double value) const { return value / std::pow(10.0, exponent); }
+double Axis::scaled(double value) const { return (value - origin) / std::pow(10.0, exponent); }
+double Axis::unscaled(double number) const { return origin + number * std::pow(10.0, exponent); }
+double Axis::scaled_width(double width) const { return width / std::pow(10.0, exponent); }
+
+std::string series_colour(std::size_t index) {
+  return fmt::format("lc rgb '{}' dt {}", chains[index % std::size(chains)], 1 + index / std::size(chains));
+}
 
 Axis axis(double low, double high, int count, double margin) {
   // What differs in its rounding alone is constant: ticks between could not be told apart, nor counted.
-  if (!(high - low > 1e-9 * std::max(std::fabs(low), std::fabs(high)))) {
+  if (!(high - low > 1e-12 * std::max(std::fabs(low), std::fabs(high)))) {
     double const around = low == 0 ? 1 : 0.05 * std::fabs(low);
     low -= around;
     high += around;
@@ -23,7 +29,14 @@ Axis axis(double low, double high, int count, double margin) {
   low -= margin * width;
   high += margin * width;
   Axis out;
-  double const largest = std::max(std::fabs(low), std::fabs(high));
+  if (high - low < 1e-5 * std::max(std::fabs(low), std::fabs(high))) {
+    // As many digits as all numbers in the range share, which is what the text says as well.
+    double const digit = std::pow(10.0, std::ceil(std::log10(high - low)));
+    out.origin = std::round((low + high) / 2 / digit) * digit;
+    out.origin_text =
+        pretty_number(fmt::format("{:.{}g}", out.origin, 2 + static_cast<int>(std::log10(std::fabs(out.origin) / digit))));
+  }
+  double const largest = std::max(std::fabs(low - out.origin), std::fabs(high - out.origin));
   int const power = static_cast<int>(std::floor(std::log10(largest)));
   if (power >= 4 || power <= -3) out.exponent = static_cast<int>(std::floor(power / 3.0)) * 3;
   out.low = out.scaled(low);
@@ -68,6 +81,31 @@ std::string axis_label(std::string_view name, std::string_view unit, int exponen
   return inside.empty() ? std::string(name) : fmt::format("{} [{}]", name, inside);
 }
 
+std::string axis_label(std::string_view name, std::string_view unit, Axis const& axis) {
+  if (axis.origin_text.empty()) return axis_label(name, unit, axis.exponent);
+  bool const below = axis.origin < 0;
+  return axis_label(
+      fmt::format("{} {} {}", name, below ? "+" : "−", below ? axis.origin_text.substr(std::string("−").size()) : axis.origin_text),
+      unit, axis.exponent);
+}
+
+double text_pixels(std::string_view text) {
+  return 6.7 * static_cast<double>(text_width(text));  // a little more than the mean advance of 12 pixels Helvetica
+}
+
+std::string shortened(std::string_view text, double pixels) {
+  if (text_pixels(text) <= pixels) return std::string(text);
+  std::size_t const bracket = text.ends_with(']') ? text.rfind(" [") : std::string_view::npos;
+  std::string_view const unit = bracket == std::string_view::npos ? std::string_view{} : text.substr(bracket);
+  std::string_view name = text.substr(0, text.size() - unit.size());
+  // Whole characters, two at least.
+  while (text_width(name) > 2 && text_pixels(name) + text_pixels("…") + text_pixels(unit) > pixels) {
+    do name.remove_suffix(1);
+    while (!name.empty() && (static_cast<unsigned char>(text[name.size()]) & 0xC0) == 0x80);
+  }
+  return fmt::format("{}…{}", name, unit);
+}
+
 std::pair<double, double> range(std::vector<double> const& values) {
   std::pair<double, double> out(0, 1);
   bool first = true;
@@ -85,10 +123,14 @@ std::pair<double, double> cover(std::pair<double, double> a, std::pair<double, d
 
 std::string quote(std::string_view text) {
   std::string out = "'";
-  for (char const c : text) {
-    if (c == '\n' || c == '\r') continue;
-    if (c == '\'') out += '\'';
-    out += c;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t const run = std::min(text.find_first_not_of('\'', at), text.size()) - at;
+    // gnuplot 5 reads one doubled quote; two in a row it takes for an end.
+    if (run > 1) out += fmt::format("'.\"{}\".'", text.substr(at, run));
+    if (run == 1) out += "''";
+    at += run;
+    if (at < text.size() && text[at] != '\n' && text[at] != '\r') out += text[at];
+    ++at;
   }
   return out + "'";
 }
@@ -106,16 +148,36 @@ std::string identifier(std::string_view text) {
 }
 
 std::string preamble(std::string_view name, int width, int height) {
-  return fmt::format(
-      "set encoding utf8\n"
-      "set terminal svg size {0},{1} dynamic noenhanced font 'Helvetica,12' name '{2}' background rgb '{3}'\n"
-      "set border 3 lw 1 lc rgb '{4}'\n"
-      "set tics nomirror out scale 0.6 textcolor rgb '{5}'\n"
-      "set grid back lt 1 lw 1 lc rgb '{6}'\n"
-      "set offsets 0,0,0,0\n"
-      "unset key\n"
-      "set multiplot\n",
-      width, height, identifier(name), paper, muted, ink, rule);
+  // Column width in print is 85 mm.
+  double const inches = 85.0 / 25.4 / column_width, points = 72 * inches;
+  std::string const shared = fmt::format("noenhanced background rgb '{}'", paper);
+  std::string out = fmt::format(
+      "# gnuplot {0}.gnuplot > {0}.svg draws this; gnuplot -e \"format='pdf'\" {0}.gnuplot > {0}.pdf as PDF, also 'png' and "
+      "'text'\n"
+      "if (!exists(\"format\")) format = 'svg'\n"
+      "if (!exists(\"columns\")) columns = {1}\n"
+      "set encoding utf8\n",
+      name, width / 6);
+  out += fmt::format("if (format eq 'svg') set terminal svg size {},{} dynamic font 'Helvetica,12' name '{}' {}\n", width, height,
+                     identifier(name), shared);
+  out += fmt::format(
+      "if (format eq 'png') set terminal pngcairo size {},{} font 'Helvetica,9' fontscale 3 linewidth 3 pointscale 3 {}\n",
+      3 * width, 3 * height, shared);
+  out += fmt::format(
+      "if (format eq 'pdf') set terminal pdfcairo size {:.4f}in,{:.4f}in font 'Helvetica,{:.2f}' linewidth {:.2f} "
+      "pointscale {:.2f} {}\n",
+      width * inches, height * inches, 12 * points, points, points, shared);
+  // Characters are twice as high as wide.
+  out += fmt::format("if (format eq 'text') set terminal dumb size columns,int(columns*{:.4f} + 0.5) noenhanced\n",
+                     height / (2.0 * width));
+  return out + fmt::format(
+                   "set border 3 lw 1 lc rgb '{}'\n"
+                   "set tics nomirror out scale 0.6 textcolor rgb '{}'\n"
+                   "if (format ne 'text') set grid back lt 1 lw 1 lc rgb '{}'\n"
+                   "set offsets 0,0,0,0\n"
+                   "unset key\n"
+                   "set multiplot\n",
+                   muted, ink, rule);
 }
 
 std::string data_block(std::string_view name, std::vector<std::vector<double>> const& rows) {
@@ -129,32 +191,64 @@ std::string data_block(std::string_view name, std::vector<std::vector<double>> c
   return out + "EOD\n";
 }
 
-std::string legend(std::vector<Key> const& keys, double right, double y, int width, int height) {
-  constexpr double sample = 22, gap = 6, between = 20, character = 6.1;  // pixels; character: the mean advance of 12 px Helvetica
-  double x = right;
-  for (Key const& key : keys) x -= sample + gap + character * text_width(key.text) + between;
-  x += between;
+namespace {
+
+constexpr double sample = 22, gap = 6, between = 18, row_height = 15;  // pixels
+
+double key_width(Key const& key) { return sample + gap + text_pixels(key.text); }
+
+/// The keys of each row, as many as stand side by side.
+std::vector<std::vector<Key>> legend_rows(std::vector<Key> const& keys, double room) {
+  std::vector<std::vector<Key>> rows;
+  double used = 0;
+  for (Key key : keys) {
+    key.text = shortened(key.text, room - sample - gap);
+    double const width = key_width(key) + between;
+    if (rows.empty() || used + width - between > room) {
+      rows.emplace_back();
+      used = 0;
+    }
+    rows.back().push_back(std::move(key));
+    used += width;
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string legend(std::vector<Key> const& keys, double left, double right, double y, int width, int height) {
   std::string out;
   int tag = 101;
-  for (Key const& key : keys) {
-    auto const at = [&](double px, double py) { return fmt::format("screen {:.5f},{:.5f}", px / width, py / height); };
-    switch (key.kind) {
-      case Key::area:
-        out += fmt::format("set object {} rectangle from {} to {} fc rgb '{}' fs solid noborder\n", tag, at(x, y - 5),
-                           at(x + sample, y + 5), key.colour);
-        break;
-      case Key::line:
-        out += fmt::format("set arrow {} from {} to {} nohead lw 1.6 lc rgb '{}'\n", tag, at(x, y), at(x + sample, y), key.colour);
-        break;
-      case Key::points:
-        out += fmt::format("set label {} '' at {} point pt 7 ps 0.4 lc rgb '{}'\n", tag + 100, at(x + sample / 2, y), key.colour);
-        break;
+  for (std::vector<Key> const& row : legend_rows(keys, right - left)) {
+    double x = right + between;
+    for (Key const& key : row) x -= key_width(key) + between;
+    for (Key const& key : row) {
+      auto const at = [&](double px, double py) { return fmt::format("screen {:.5f},{:.5f}", px / width, py / height); };
+      switch (key.kind) {
+        case Key::area:
+          out += fmt::format("set object {} rectangle from {} to {} fc rgb '{}' fs solid noborder\n", tag, at(x, y - 5),
+                             at(x + sample, y + 5), key.colour);
+          break;
+        case Key::line:
+        case Key::dashes:
+          out += fmt::format("set arrow {} from {} to {} nohead lw 1.6 dt {} lc rgb '{}'\n", tag, at(x, y), at(x + sample, y),
+                             key.kind == Key::dashes ? "(6,4)" : "1", key.colour);
+          break;
+        case Key::points:
+          out += fmt::format("set label {} '' at {} point pt 7 ps 0.4 lc rgb '{}'\n", tag + 100, at(x + sample / 2, y), key.colour);
+          break;
+      }
+      out += fmt::format("set label {} {} at {} left textcolor rgb '{}'\n", tag, quote(key.text), at(x + sample + gap, y), ink);
+      x += key_width(key) + between;
+      ++tag;
     }
-    out += fmt::format("set label {} {} at {} left textcolor rgb '{}'\n", tag, quote(key.text), at(x + sample + gap, y), ink);
-    x += sample + gap + character * text_width(key.text) + between;
-    ++tag;
+    y -= row_height;
   }
   return out;
+}
+
+int legend_height(std::vector<Key> const& keys, double left, double right) {
+  return static_cast<int>(row_height * static_cast<double>(legend_rows(keys, right - left).size()));
 }
 
 std::string end_legend() { return "unset label\nunset arrow\nunset object\n"; }
@@ -200,7 +294,37 @@ Panel panel_at(double left, double right, double bottom, double top, Axis x, Axi
   return p;
 }
 
-std::string panel(Panel const& p, int width, int height) {
+void Axis::thin_numbers(double pixels, bool upright) {
+  if (ticks.size() < 2) return;
+  double const per_unit = pixels / (high - low);
+  auto const room = [&](std::size_t i) { return upright ? 14 : text_pixels(ticks[i].second) + 7; };
+  auto const fits = [&](std::size_t first, std::size_t stride) {
+    for (std::size_t i = first; i + stride < ticks.size(); i += stride)
+      if ((room(i) + room(i + stride)) / 2 > (ticks[i + stride].first - ticks[i].first) * per_unit) return false;
+    return true;
+  };
+  // Where there is a zero it keeps its number.
+  std::size_t zero = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i)
+    if (ticks[i].first == 0) zero = i;
+  std::size_t stride = 1;
+  while (stride < ticks.size() && !fits(zero % stride, stride)) ++stride;
+  for (std::size_t i = 0; i < ticks.size(); ++i)
+    if (i % stride != zero % stride) ticks[i].second.clear();
+}
+
+std::string panel(Panel const& asked, int width, int height) {
+  Panel p = asked;
+  p.x.thin_numbers(p.right - p.left, false);
+  p.y.thin_numbers(p.top - p.bottom, true);
+  double widest = 0;
+  if (p.y_numbers)
+    for (auto const& [place, number] : p.y.ticks) widest = std::max(widest, text_pixels(number));
+  p.y_label_distance = std::max(p.y_label_distance, widest + 18);
+  // Beyond the margins it would run into its neighbours.
+  p.x_label = shortened(p.x_label, p.x_label_room > 0 ? p.x_label_room : p.right - p.left + 24);
+  p.y_label = shortened(p.y_label, p.y_label_room > 0 ? p.y_label_room : p.top - p.bottom + 20);
+  p.title = shortened(p.title, p.right - p.left + 24);
   std::string out = fmt::format(
       "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\n",
       p.left / width, p.right / width, p.bottom / height, p.top / height);

@@ -24,6 +24,12 @@ struct PredictedQuantity {
   std::vector<double> measured;  // [N], NaN where missing; empty for what is not measured
 };
 
+/// What the record drives the model with, declared unit.
+struct PredictedInput {
+  std::string name, unit;
+  std::vector<double> values;  // [N]
+};
+
 struct Prediction {
   std::string experiment;
   std::vector<double> time;          // [N] s, or row numbers
@@ -32,6 +38,7 @@ struct Prediction {
   bool rows = false;                 // rows are independent: there is no time
   std::vector<std::uint8_t> scored;  // [N]
   std::vector<PredictedQuantity> quantities;
+  std::vector<PredictedInput> inputs = {};  // in the model's order
 };
 
 struct Score {

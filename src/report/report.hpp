@@ -17,6 +17,7 @@
 #include "report/discovery.hpp"
 #include "report/function.hpp"
 #include "report/prediction.hpp"
+#include "report/restoring_force.hpp"
 #include "report/selection.hpp"
 
 namespace sysid {
@@ -40,6 +41,12 @@ struct PriorInfo {
   std::optional<double> q5 = {}, q95 = {};   // declared unit; empty where they are not known
 };
 
+/// A value that a record was made with, as its head states it; in the declared unit of the parameter.
+struct TrueValue {
+  std::string name, unit;
+  double value = 0;
+};
+
 struct DataInfo {
   std::string name;  // "bench.train"
   std::string file, sha256;
@@ -48,6 +55,7 @@ struct DataInfo {
   std::string scored_rows;         // which: "101..500", counted from 1
   std::string samples_sha256;      // of the measured samples that the likelihood reads, with their rows and in their declared units
   std::vector<std::string> notes;  // "input x = force [N], held (zero_order)"
+  std::vector<TrueValue> truth = {};
 };
 
 /// The scores of a channel on an experiment.
@@ -86,6 +94,7 @@ struct Report {
   std::optional<Evidence> evidence;       // of a fit that has come to its end
   std::vector<std::string> noise;         // of a fit: its parameters that only the noise reads
   std::vector<FunctionReport> functions;  // unknown ones of the equations
+  std::vector<RestoringForce> forces;     // of each experiment and oscillator that has one
   std::vector<ReportTable> tables;
   std::optional<SelectionReport> selection;
   std::optional<DiscoveryReport> discovery;

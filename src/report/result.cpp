@@ -32,7 +32,11 @@ bool is_result_file(std::string const& name) {
          between("polished_", ".csv");
 }
 
-bool is_figure_file(std::string const& name) { return name.ends_with(".svg") || name.ends_with(".gnuplot"); }
+bool is_figure_file(std::string const& name) {
+  for (char const* ending : {".svg", ".png", ".pdf", ".txt", ".gnuplot"})
+    if (name.ends_with(ending)) return true;
+  return false;
+}
 
 std::vector<fs::path> files_of_result(fs::path const& folder) {
   std::vector<fs::path> out;
@@ -60,7 +64,7 @@ void prepare_result(fs::path const& folder, bool force) {
   make_folder(folder);
 }
 
-void write_result(Report const& report, fs::path const& folder, bool pictures) {
+void write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
   make_folder(folder);
   // What an interrupted run left may have more files than its end: chains of models that died later.
   for (fs::path const& file : files_of_result(folder)) remove_file(file);
@@ -74,12 +78,8 @@ void write_result(Report const& report, fs::path const& folder, bool pictures) {
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
     write_file(folder / prediction_names[p], predict_csv(report, report.predictions[p]));
-  std::vector<DrawnFigure> const drawn = drawn_figures(report, pictures);
-  for (DrawnFigure const& each : drawn) {
-    make_folder(folder / "figures");
-    write_file(folder / "figures" / (each.figure.name + ".gnuplot"), each.figure.script);
-    if (each.svg) write_file(folder / "figures" / (each.figure.name + ".svg"), *each.svg);
-  }
+  std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
+  write_figures(drawn, folder, pictures);
   write_file(folder / "report.html", report_html(report, drawn));
   write_file(folder / "report.cbor", record_bytes(report));
   if (!report.resolved_text.empty()) write_file(folder / "resolved.sysid", report.resolved_text);
@@ -92,6 +92,18 @@ std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
   bool const can_draw = pictures && gnuplot_installed();
   for (plot::Figure const& figure : figures(report)) drawn.push_back({figure, can_draw ? draw(figure) : std::nullopt});
   return drawn;
+}
+
+void write_figures(std::vector<DrawnFigure> const& figures, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
+  for (DrawnFigure const& each : figures) {
+    make_folder(folder / "figures");
+    write_file(folder / "figures" / (each.figure.name + ".gnuplot"), each.figure.script);
+    if (!gnuplot_installed()) continue;
+    for (FigureFormat const format : pictures) {
+      auto const picture = format == FigureFormat::svg ? each.svg : draw(each.figure, format);
+      if (picture) write_file(folder / "figures" / fmt::format("{}.{}", each.figure.name, extension(format)), *picture);
+    }
+  }
 }
 
 std::string draws_file(std::size_t chain) { return fmt::format("draws_{}.csv", chain + 1); }

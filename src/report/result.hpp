@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "report/figure_format.hpp"
 #include "report/html.hpp"
 #include "report/report.hpp"
 
@@ -17,12 +18,17 @@ bool holds_result(std::filesystem::path const& folder);
 void prepare_result(std::filesystem::path const& folder, bool force);
 
 /// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, report.cbor, resolved.sysid,
-/// timing.json and, last of all, summary.json: where it stands, the result is whole. Without `pictures` figures are left as
-/// scripts. IoError names the file that could not be written.
-void write_result(Report const& report, std::filesystem::path const& folder, bool pictures = true);
+/// timing.json and, last of all, summary.json: where it stands, the result is whole. `pictures`: what figures are drawn as, beside
+/// their scripts; with none the page has none either. IoError names the file that could not be written.
+void write_result(Report const& report, std::filesystem::path const& folder,
+                  std::vector<FigureFormat> const& pictures = {FigureFormat::svg});
 
 /// All figures of a report, drawn where `pictures` are wanted and gnuplot is there.
 std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures);
+
+/// Their scripts, and each as `pictures` say where gnuplot draws it, into figures/ of the folder.
+void write_figures(std::vector<DrawnFigure> const& figures, std::filesystem::path const& folder,
+                   std::vector<FigureFormat> const& pictures);
 
 // Names of its files, as the writer gives them and the reader looks for them.
 

@@ -269,6 +269,7 @@ Report leading_model(Report const& report) {
   leading.task = report.task;
   leading.model_name = model.name;
   leading.priors = report.priors;
+  leading.data = report.data;
   leading.draws = resampled_draws(model, report.selection->resampling_seed);
   for (WeightedSummary const& s : model.summaries) leading.summary.push_back(as_summary(s, effective(model.weight)));
   return leading;

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <regex>
+#include <sstream>
 
+#include "core/random.hpp"
 #include "example.hpp"
 #include "report/gnuplot.hpp"
 
@@ -104,7 +106,7 @@ TEST_CASE("a long record is shown in part and says so") {
   quantity.response.lower = quantity.response.upper = quantity.measured = quantity.response.mean;
   prediction.scored.assign(5000, 1);
   plot::Figure const figure = fit_figure(prediction, quantity);
-  CHECK(figure.caption.ends_with("Shown are the first 1000 of 5000 scored samples."));
+  CHECK(figure.caption.ends_with("Shown are the first 600 of 5000 scored samples."));
   CHECK(figure.script.size() < 200000);
 }
 
@@ -141,6 +143,212 @@ TEST_CASE("curves are written to a tenth of a pixel") {
   REQUIRE(path != std::string::npos);
   std::string const coordinates = svg->substr(path, svg->find('\'', path + 4) - path);
   CHECK_MESSAGE(!std::regex_search(coordinates, std::regex("\\.[0-9][0-9]")), coordinates);
+}
+
+namespace {
+
+/// The rows of a block of a script.
+std::vector<std::vector<double>> block(std::string const& script, std::string const& name) {
+  std::size_t const begin = script.find("$" + name + " << EOD\n");
+  if (begin == std::string::npos) return {};
+  std::istringstream lines(script.substr(begin));
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::vector<double>> rows;
+  while (std::getline(lines, line) && line != "EOD") {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; cells >> cell;) rows.back().push_back(cell == "NaN" ? std::nan("") : std::stod(cell));
+  }
+  return rows;
+}
+
+/// A duffing report whose residuals contain the input of `lag` samples before.
+Report late_input(std::size_t lag) {
+  Report report = example::duffing(40);
+  PredictedInput input{"x", "N", {}};
+  Stream stream({3, Purpose::test, 0, 0});
+  for (int i = 0; i < 500; ++i) input.values.push_back(10 * stream.normal());
+  PredictedQuantity& quantity = report.predictions[0].quantities[0];
+  for (std::size_t i = lag; i < 500; ++i) quantity.measured[i] += 0.002 * input.values[i - lag];
+  report.predictions[0].inputs.push_back(input);
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("residuals that follow the input seven samples late show it at lag seven") {
+  Report const report = late_input(7);
+  plot::Figure const figure = residual_figure(report.predictions[0], report.predictions[0].quantities[0]);
+  auto const bars = block(figure.script, "input0"), limits = block(figure.script, "input0_limit");
+  REQUIRE(bars.size() == 61);
+  auto const highest = std::max_element(bars.begin(), bars.end(), [](auto const& a, auto const& b) { return a[1] < b[1]; });
+  CHECK((*highest)[0] == 7);
+  CHECK((*highest)[1] > 3 * limits[1][2]);
+  // And nothing of the kind where they do not; 5 % of 61 lags may leave the band.
+  auto const quiet =
+      block(residual_figure(late_input(0).predictions[0], example::duffing(40).predictions[0].quantities[0]).script, "input0");
+  CHECK(std::count_if(quiet.begin(), quiet.end(), [&](auto const& bar) { return std::fabs(bar[1]) > limits[1][2]; }) <= 9);
+}
+
+TEST_CASE("an input that does not vary has no correlation and no panel") {
+  Report report = late_input(7);
+  for (double& each : report.predictions[0].inputs[0].values) each = 3;
+  plot::Figure const figure = residual_figure(report.predictions[0], report.predictions[0].quantities[0]);
+  CHECK(block(figure.script, "input0").empty());
+  CHECK(figure.caption.find("does not vary") != std::string::npos);
+}
+
+TEST_CASE("the value that data were made with is a line at its place, where all records agree on it") {
+  Report report = example::duffing(40);
+  report.data[0].truth = {{"m", "kg", 1.0001}, {"beta", "1/m^2", 9e11}};
+  plot::Figure figure = posterior_figure(report);
+  REQUIRE(block(figure.script, "truth0").size() == 2);
+  CHECK(block(figure.script, "truth0")[0][0] == doctest::Approx(1.0001));
+  CHECK(block(figure.script, "truth2").empty());  // nobody says
+  CHECK(block(figure.script, "truth4").empty());  // far outside
+  CHECK(figure.caption.find("Made with values outside what is shown: beta (9.000·10¹¹)") != std::string::npos);
+  report.data.push_back(report.data[0]);
+  report.data[1].truth[0].value = 1.0002;
+  CHECK(block(posterior_figure(report).script, "truth0").empty());
+}
+
+TEST_CASE("figures are drawn as SVG, PNG, PDF and characters from one script") {
+  if (!gnuplot_installed()) return;
+  plot::Figure const figure = posterior_figure(example::duffing(40));
+  for (FigureFormat const format : {FigureFormat::svg, FigureFormat::png, FigureFormat::pdf, FigureFormat::text}) {
+    REQUIRE(can_draw(format));
+    CHECK(find_figure_format(name(format)) == format);
+    CHECK_MESSAGE(draw(figure, format).has_value(), name(format));
+  }
+  CHECK_FALSE(find_figure_format("jpeg").has_value());
+  CHECK(draw(figure, FigureFormat::png)->starts_with("\x89PNG"));
+  CHECK(draw(figure, FigureFormat::pdf)->starts_with("%PDF"));
+}
+
+TEST_CASE("a figure of characters fits the columns that there are, whatever their number") {
+  if (!gnuplot_installed()) return;
+  for (plot::Figure const& figure : figures(example::duffing(40)))
+    for (int const columns : {40, 80, 157}) {
+      auto const text = draw(figure, FigureFormat::text, columns);
+      REQUIRE(text.has_value());
+      CHECK(text->find('\f') == std::string::npos);
+      CHECK(text->find('\x1b') == std::string::npos);
+      int lines = 0;
+      std::istringstream in(*text);
+      for (std::string line; std::getline(in, line); ++lines)
+        CHECK(std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }) <=
+              columns);
+      CHECK(lines > columns / 12);
+      CHECK(draw(figure, FigureFormat::text, columns) == text);
+    }
+}
+
+TEST_CASE("forty parameters, twelve chains, values of 1e-12, long names and a band with holes are drawn") {
+  if (!gnuplot_installed()) return;
+  Report report = example::duffing(20);
+  for (int p = 5; p < 40; ++p) {
+    report.draws.names.push_back("a_parameter_whose_name_does_not_end_" + std::to_string(p));
+    report.draws.units.emplace_back("N s/m^3");
+  }
+  Stream stream({4, Purpose::test, 0, 0});
+  for (Chain& chain : report.draws.chains)
+    for (auto& row : chain.values)
+      for (int p = 5; p < 40; ++p) row.push_back(stream.normal() * std::pow(10.0, p % 25 - 12) + (p % 3 == 0 ? 15.9145 : 0));
+  while (report.draws.chains.size() < 12) report.draws.chains.push_back(report.draws.chains[report.draws.chains.size() % 4]);
+  for (std::size_t p = 5; p < 40; ++p) {
+    ChainValues values;
+    for (Chain const& chain : report.draws.chains) {
+      values.emplace_back();
+      for (auto const& row : chain.values) values.back().push_back(row[p]);
+    }
+    report.summary.push_back(summarise(report.draws.names[p], report.draws.units[p], values));
+  }
+  for (Band* band : {&report.predictions[0].quantities[0].response, &report.predictions[0].quantities[0].noisy})
+    for (auto* column : {&band->mean, &band->lower, &band->upper})
+      for (std::size_t i = 0; i < 500; ++i) (*column)[i] = i > 200 && i < 240 ? std::nan("") : 1e-12 * (*column)[i];
+  for (plot::Figure const& figure : figures(report)) {
+    CHECK_MESSAGE(draw(figure).has_value(), figure.name);
+    CHECK(figure.script.find("inf") == std::string::npos);
+  }
+}
+
+TEST_CASE("terms of a discovery stand in the order of how sure they are, with their coefficients' densities") {
+  DiscoveryReport discovery;
+  discovery.measure = "inclusion probability";
+  DiscoveredEquation equation;
+  equation.target = "m*y'' - x";
+  for (int j = 0; j < 30; ++j) {
+    DiscoveredTerm term;
+    term.text = j == 3 ? "y''" : "y'''^" + std::to_string(j);
+    term.unit = "N/m";
+    term.kept = j == 3 || j == 7;
+    term.fate = j == 0 ? "known" : term.kept ? "kept" : "dropped";
+    term.measure = term.kept ? 0.99 + 0.001 * j : 0.01 * j;
+    term.coefficient = 1e4;
+    term.sd = j == 7 ? 0 : 20;
+    equation.terms.push_back(term);
+  }
+  discovery.equations.push_back(equation);
+  plot::Figure const bars = inclusion_figure(discovery, 0);
+  CHECK(block(bars.script, "kept").size() == 2);
+  CHECK(block(bars.script, "kept")[0][3] == doctest::Approx(0.997));
+  CHECK(block(bars.script, "dropped").size() == 22);
+  CHECK(bars.caption.find("first 24 of 29") != std::string::npos);
+  REQUIRE(has_coefficients(equation));
+  plot::Figure const densities = coefficient_figure(discovery, 0);
+  CHECK(block(densities.script, "all0").size() == 81);
+  CHECK(block(densities.script, "all1").empty());  // without a spread there is no density
+  if (gnuplot_installed()) CHECK((draw(bars).has_value() && draw(densities).has_value()));
+  equation.terms.resize(3);
+  CHECK_FALSE(has_coefficients(equation));
+}
+
+TEST_CASE("rows of any order have a figure over their inputs, a curve where there is one") {
+  Prediction prediction;
+  prediction.experiment = "e";
+  prediction.rows = true;
+  PredictedQuantity quantity;
+  quantity.name = "y";
+  PredictedInput first{"a", "m", {}}, second{"b", "s", {}};
+  for (int i = 0; i < 50; ++i) {
+    double const x = (i * 37) % 50;
+    prediction.time.push_back(i);
+    prediction.scored.push_back(1);
+    first.values.push_back(x);
+    second.values.push_back(i % 7);
+    quantity.measured.push_back(x * x + 1);
+    quantity.response.mean.push_back(x * x);
+    quantity.response.lower.push_back(x * x - 3);
+    quantity.response.upper.push_back(x * x + 3);
+  }
+  quantity.response.draws = 100;
+  prediction.inputs = {first};
+  REQUIRE(over_inputs(prediction, quantity));
+  auto const rows = block(input_figure(prediction, quantity).script, "input0");
+  REQUIRE(rows.size() == 50);
+  CHECK(std::is_sorted(rows.begin(), rows.end(), [](auto const& a, auto const& b) { return a[0] < b[0]; }));
+  prediction.inputs = {first, second};
+  CHECK(block(input_figure(prediction, quantity).script, "input1").size() == 50);
+  if (gnuplot_installed()) CHECK(draw(input_figure(prediction, quantity)).has_value());
+  for (double& each : prediction.inputs[0].values) each = 1;
+  prediction.inputs.resize(1);
+  CHECK_FALSE(over_inputs(prediction, quantity));
+  prediction.rows = false;
+  prediction.inputs = {first};
+  CHECK_FALSE(over_inputs(prediction, quantity));
+}
+
+TEST_CASE("twenty models have twenty keys, told apart by colour and dashes, in rows that end within the figure") {
+  std::vector<plot::Key> keys;
+  for (int m = 0; m < 20; ++m) keys.push_back({plot::Key::line, plot::chains[0], "a_model_with_a_long_name_" + std::to_string(m)});
+  std::string const script = plot::legend(keys, 10, 466, 900, 480, 1000);
+  std::regex const place("at screen ([0-9.]+),([0-9.]+) left");
+  int found = 0;
+  for (std::sregex_iterator at(script.begin(), script.end(), place), end; at != end; ++at, ++found)
+    CHECK(std::stod((*at)[1]) * 480 < 300);
+  CHECK(found == 20);
+  CHECK(plot::legend_height(keys, 10, 466) >= 10 * 15);
 }
 
 TEST_CASE("the autocorrelation of an alternating series alternates") {

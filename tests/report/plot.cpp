@@ -75,7 +75,9 @@ TEST_CASE("a range that falls short of a tick by a hair is lengthened") {
 }
 
 TEST_CASE("a text cannot leave its quotes") {
-  CHECK(quote("y''") == "'y'''''");
+  CHECK(quote("y'") == "'y'''");
+  CHECK(quote("y'' [kg]") == "'y'.\"''\".' [kg]'");
+  CHECK(quote("'''") == "''.\"'''\".''");
   CHECK(quote("a\nplot 1") == "'aplot 1'");
 }
 
@@ -87,4 +89,37 @@ TEST_CASE("names of files and identifiers are plain") {
 TEST_CASE("the range ignores what is not finite") {
   CHECK(range({std::nan(""), 2, -1, INFINITY}) == std::pair(-1.0, 2.0));
   CHECK(range({std::nan("")}) == std::pair(0.0, 1.0));
+}
+
+TEST_CASE("numbers that would run into each other are left out, zero keeps its own") {
+  Axis a = axis(-3, 3, 6);
+  REQUIRE(a.ticks.size() == 7);
+  a.thin_numbers(60, false);
+  int left = 0;
+  for (auto const& [place, number] : a.ticks)
+    if (!number.empty()) ++left;
+  CHECK(left < 7);
+  CHECK(a.ticks[3].second == "0");
+  Axis wide = axis(-3, 3, 6);
+  wide.thin_numbers(600, false);
+  for (auto const& [place, number] : wide.ticks) CHECK_FALSE(number.empty());
+}
+
+TEST_CASE("what hardly varies is counted from what its numbers share") {
+  Axis const a = axis(15.9145 - 2e-7, 15.9145 + 2e-7, 4, 0.05);
+  CHECK(a.origin_text == "15.9145");
+  CHECK(a.exponent == -9);
+  CHECK(a.scaled(15.9145 + 1e-7) == doctest::Approx(100).epsilon(1e-6));
+  CHECK(a.unscaled(a.scaled(15.9145001)) == doctest::Approx(15.9145001).epsilon(1e-14));
+  CHECK(axis_label("f", "Hz", a) == "f − 15.9145 [nHz]");
+  CHECK(axis_label("f", "Hz", axis(-15.9145 - 2e-7, -15.9145 + 2e-7, 4, 0.05)) == "f + 15.9145 [nHz]");
+  CHECK(axis(15.9, 15.95, 4).origin_text.empty());
+}
+
+TEST_CASE("a text that is too wide loses the end of its name, not its unit") {
+  CHECK(shortened("k [N/m]", 200) == "k [N/m]");
+  std::string const label = shortened("a_name_that_is_much_longer_than_its_place [10⁹ N/m³]", 150);
+  CHECK(label.ends_with("… [10⁹ N/m³]"));
+  CHECK(text_pixels(label) <= 150);
+  CHECK(shortened("äöüäöüäöüäöü", 40).ends_with("…"));
 }

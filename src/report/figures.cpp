@@ -1,0 +1,63 @@
+// Which figures a report has, in reading order.
+#include "report/figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sysid {
+
+using namespace plot;
+
+namespace {
+
+/// A state that a channel shows as it is (observe y) needs no figure of its own.
+bool repeats_a_channel(Prediction const& prediction, PredictedQuantity const& quantity) {
+  if (!quantity.measured.empty()) return false;
+  return std::any_of(prediction.quantities.begin(), prediction.quantities.end(), [&](PredictedQuantity const& other) {
+    return !other.measured.empty() && other.unit == quantity.unit && other.response.mean == quantity.response.mean;
+  });
+}
+
+}  // namespace
+
+std::vector<Figure> figures(Report const& report) {
+  std::vector<Figure> out;
+  if (report.selection) out.push_back(population_figure(*report.selection));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (!quantity.response.mean.empty() && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
+        out.push_back(fit_figure(prediction, quantity));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (over_inputs(prediction, quantity)) out.push_back(input_figure(prediction, quantity));
+  for (FunctionReport const& function : report.functions) out.push_back(function_figure(function));
+  for (RestoringForce const& force : report.forces) {
+    out.push_back(loop_figure(force));
+    if (!force.surface.empty()) out.push_back(surface_figure(force));
+  }
+  if (report.discovery)
+    for (std::size_t e = 0; e < report.discovery->equations.size(); ++e) {
+      if (!report.discovery->equations[e].terms.empty()) out.push_back(inclusion_figure(*report.discovery, e));
+      if (has_coefficients(report.discovery->equations[e])) out.push_back(coefficient_figure(*report.discovery, e));
+    }
+  if (report.selection) {
+    Report const leading = leading_model(report);
+    if (leading.draws.total() > 1 && !leading.draws.names.empty()) out.push_back(posterior_figure(leading));
+    if (leading.draws.total() > 1 && leading.draws.names.size() > 1) out.push_back(pair_figure(leading.draws));
+  }
+  bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
+  if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
+  if (has_draws && report.draws.names.size() > 1) out.push_back(pair_figure(report.draws));
+  if (has_draws) out.push_back(trace_figure(report.draws));
+  if (has_draws && report.draws.chains.size() > 1) out.push_back(rank_figure(report.draws));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities) {
+      std::size_t residuals = 0;
+      for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i)
+        if (prediction.scored[i] != 0 && std::isfinite(quantity.measured[i])) ++residuals;
+      if (residuals >= 20) out.push_back(residual_figure(prediction, quantity));
+    }
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,33 @@
+// What an oscillator pulls back with along a record, and over its displacement and velocity.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace sysid {
+
+/// Of q'' = a(q, q', ..., x): the part of the force x that does not accelerate,
+///
+///   f = x - a / (da/dx)                     Masri and Caughey 1979: m q'' + f(q, q') = x,
+///
+/// in the unit of x; where no input enters the acceleration, f = -a, the force of one unit of mass. Declared units.
+struct RestoringForce {
+  std::string experiment;
+  std::string displacement, displacement_unit, velocity, velocity_unit, force_unit;
+  bool per_mass = false;
+
+  /// Places along a record.
+  struct Path {
+    std::vector<double> displacement, velocity, force;
+  };
+  Path model;               // along the trajectory of the draw that moves nearest to the mean of all
+  Path data;                // of the measured samples, smoothed and differentiated; empty: the noise leaves nothing to see
+  int half_width = 0;       // of the cubics through the samples by which that was done
+  std::string why_no_data;  // a clause; empty when there are data
+
+  /// f over a grid of displacements and velocities at the same draw: rows of displacement, [rows x columns]. Empty where f depends
+  /// on more than the two, as of a hysteresis.
+  std::vector<double> grid_displacement, grid_velocity;
+  std::vector<std::vector<double>> surface;
+};
+
+}  // namespace sysid

@@ -1,0 +1,156 @@
+// What figures need of a run: values that data were made with, inputs, restoring forces.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "app/restoring_force.hpp"
+#include "app/truth.hpp"
+#include "running.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::string const oscillator = R"(
+model spring {
+  input   x [N]
+  state   y [mm]
+  initial y = 0, y' = 0
+  parameter m  [kg]     ~ log_uniform(0.1, 10)
+  parameter c  [N s/m]  ~ log_uniform(2, 200)
+  parameter k  [N/m]    ~ log_uniform(1e3, 1e5)
+  parameter k3 [N/m^3]  ~ log_uniform(5e8, 5e10)
+  parameter sigma [m]   ~ log_uniform(1e-8, 1e-3)
+  m*y'' + c*y' + k*y + k3*y^3 = x
+  observe displacement ~ normal(y, sd = sigma)
+}
+data bench {
+  file    "made.csv"
+  time    t [s]
+  input   x = x [N] hold zero_order
+  measure displacement = displacement [mm]
+}
+truth = simulate spring with values(m = 1, c = 20, k = 1e4, k3 = 5e9), input x = gaussian(sd = 10), noise = NOISE [percent],
+    samples = 400, rate = 1000 [Hz], seed = 1, file = "made.csv"
+best = fit spring to bench with map, seed = 1
+)";
+
+std::vector<std::vector<double>> block(std::string const& script, std::string const& name) {
+  std::size_t const begin = script.find("$" + name + " << EOD\n");
+  REQUIRE_MESSAGE(begin != std::string::npos, name);
+  std::istringstream lines(script.substr(begin));
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::vector<double>> rows;
+  while (std::getline(lines, line) && line != "EOD") {
+    std::istringstream cells(line);
+    std::vector<double> row;
+    for (std::string cell; cells >> cell;) row.push_back(cell == "NaN" ? std::nan("") : std::stod(cell));
+    if (!row.empty()) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// "10³" or a prefix in an axis label is left to the eye; here the largest number says which power was taken out.
+double largest(std::vector<std::vector<double>> const& rows, std::size_t column) {
+  double out = 0;
+  for (auto const& row : rows) out = std::max(out, std::fabs(row[column]));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the restoring force of a spring is the one it was made with, by the model and by the data") {
+  CaseRun const run(with(oscillator, "NOISE", "1"), {});
+  std::string const script = run.file("best/figures/loop_bench_y.gnuplot");
+  // m, m/s and N: the state is in mm, the input in N.
+  auto const rows = block(script, "displacement_data");
+  auto const speeds = block(script, "velocity_data");
+  REQUIRE(rows.size() > 100);
+  REQUIRE(rows.size() == speeds.size());
+  CHECK(script.find("'restoring force [N]'") != std::string::npos);
+  // What scale each axis has: displacement in mm or µm, velocity in mm/s.
+  double const displacement_scale = script.find("'y [mm]'") != std::string::npos ? 1e-3 : 1e-6;
+  REQUIRE(script.find("'y [mm]'") != std::string::npos);
+  double const velocity_scale = 1e-3;
+  CHECK(script.find("'y'' [mm/s]'") == std::string::npos);  // quotes are doubled
+  double square = 0, size = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double const y = rows[i][0] * displacement_scale, v = speeds[i][0] * velocity_scale;
+    double const force = 1e4 * y + 5e9 * y * y * y + 20 * v;
+    square += (rows[i][1] - force) * (rows[i][1] - force);
+    size += force * force;
+  }
+  // The noise that is left is a tenth of the force, what smoothing bends at most another.
+  CHECK(std::sqrt(square / size) < 0.2);
+  CHECK(std::filesystem::exists(run.folder.path() / "results/best/figures/surface_bench_y.gnuplot"));
+  CHECK(largest(rows, 1) > 1);
+}
+
+TEST_CASE("data that are noise once they are differentiated twice are left out, and the figure says why") {
+  CaseRun const run(with(oscillator, "NOISE", "60"), {});
+  std::string const script = run.file("best/figures/loop_bench_y.gnuplot");
+  CHECK(script.find("$displacement_data") == std::string::npos);
+  CHECK(run.file("best/report.html").find("smoothing that their noise asks for") ==
+        std::string::npos);  // pictures are off in tests
+}
+
+TEST_CASE("a hysteresis has loops and no surface, a first-order model neither") {
+  std::string hysteresis = with(oscillator, "NOISE", "1");
+  hysteresis = with(hysteresis, "state   y [mm]", "state   y [mm], z [N]");
+  hysteresis = with(hysteresis, "y' = 0", "y' = 0, z = 0");
+  hysteresis =
+      with(hysteresis, "  m*y'' + c*y' + k*y + k3*y^3 = x", "  m*y'' + c*y' + z = x\n  z' = k*y' - k3/1e9 [1/m]*abs(y')*z");
+  CaseRun const run(with(hysteresis, "k3 [N/m^3]", "k3 [1]"), {});
+  std::filesystem::path const figures = run.folder.path() / "results/best/figures";
+  CHECK(std::filesystem::exists(figures / "loop_bench_y.gnuplot"));
+  CHECK_FALSE(std::filesystem::exists(figures / "surface_bench_y.gnuplot"));
+}
+
+TEST_CASE("values that data were made with come with their unit, and only from what simulate wrote") {
+  std::vector<std::string> const head = {
+      "made by sysid 0.1.0: truth of model m, seed 1", "k = 18.6 [N/mm]", "c = 60 [kg]", "other = 1 [N]", "n = 2 [-]",
+      "column x [N]: zero_order between samples"};
+  Model model;
+  for (char const* name : {"k", "c", "n"}) {
+    Parameter parameter;
+    parameter.name = name;
+    model.parameters.push_back(parameter);
+  }
+  model.parameters[0].unit = divide(*unit_atom("N"), *unit_atom("m"));
+  model.parameters[0].unit->text = "N/m";
+  model.parameters[0].per_experiment = true;
+  model.parameters[1].unit = *unit_atom("N");
+  std::vector<TrueValue> const values = true_values(head, model, "first");
+  REQUIRE(values.size() == 2);  // of c the dimension is another
+  CHECK(values[0].name == "k[first]");
+  CHECK(values[0].value == doctest::Approx(18600).epsilon(1e-12));
+  CHECK(values[0].unit == "N/m");
+  CHECK(values[1].name == "n");
+  CHECK(true_values({"k = 18.6 [N/mm]"}, model, "first").empty());
+}
+
+TEST_CASE("the second difference is exact for parabolas and smooths by weights of sum one") {
+  for (int const half_width : {2, 5, 11}) {
+    SecondDifference const difference(half_width);
+    REQUIRE(difference.weights.size() == static_cast<std::size_t>(2 * half_width + 1));
+    REQUIRE(difference.smoothing.size() == static_cast<std::size_t>(2 * half_width - 1));
+    double curvature = 0, sum = 0, noise = 0, again = 0;
+    auto const y = [](int k) { return 3 - 2 * k + 0.5 * 7 * k * k + 0.3 * k * k * k; };
+    for (int k = -half_width; k <= half_width; ++k) {
+      curvature += difference.weights[static_cast<std::size_t>(k + half_width)] * y(k);
+      noise += std::pow(difference.weights[static_cast<std::size_t>(k + half_width)], 2);
+    }
+    for (int k = 1 - half_width; k < half_width; ++k) {
+      double const weight = difference.smoothing[static_cast<std::size_t>(k + half_width - 1)];
+      sum += weight;
+      again += weight * (y(k + 1) - 2 * y(k) + y(k - 1));
+    }
+    CHECK(curvature == doctest::Approx(7).epsilon(1e-10));
+    CHECK(sum == doctest::Approx(1).epsilon(1e-10));
+    CHECK(again == doctest::Approx(7).epsilon(1e-10));
+    CHECK(difference.noise == doctest::Approx(std::sqrt(noise)).epsilon(1e-12));
+  }
+}
