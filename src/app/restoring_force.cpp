@@ -123,7 +123,7 @@ double around(InputSignal const& input, int row) {
   return sum / weights;
 }
 
-/// Half the mean size of deviations from the mean.
+/// Root mean square of deviations from the mean.
 double spread_of(std::vector<double> const& values) {
   double mean = 0, square = 0;
   for (double const v : values) mean += v / static_cast<double>(values.size());
@@ -131,11 +131,19 @@ double spread_of(std::vector<double> const& values) {
   return std::sqrt(square);
 }
 
+/// The rows up to the last that is looked at: more scored samples than this show nothing more of a force.
+std::size_t looked_at(Experiment const& experiment) {
+  constexpr int samples = 4000;
+  int scored = 0;
+  std::size_t rows = 0;
+  while (rows < experiment.scored.size() && scored < samples) scored += experiment.scored[rows++];
+  return rows;
+}
+
 class Along {
  public:
-  Along(Model const& model, Graph const& graph, Oscillator const& oscillator, ConstLanes parameters, int draw,
-        Experiment const& experiment)
-      : model_(model), graph_(graph), oscillator_(oscillator), experiment_(experiment) {
+  Along(Model const& model, Graph const& graph, Oscillator const& oscillator, ConstLanes parameters, int draw)
+      : graph_(graph), oscillator_(oscillator) {
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       auto const fixed = model.parameters[p].value ? graph.constant_value(*model.parameters[p].value) : std::nullopt;
       double const given = parameters(static_cast<int>(p), draw);
@@ -160,10 +168,8 @@ class Along {
   double restoring(std::vector<double> const& states) const { return force(value(oscillator_.at_rest, states)); }
 
  private:
-  Model const& model_;
   Graph const& graph_;
   Oscillator const& oscillator_;
-  Experiment const& experiment_;
   std::vector<double> parameters_;
   double gain_ = nan;
 };
@@ -321,9 +327,9 @@ std::vector<RestoringForce> restoring_forces(Model const& model, std::span<Traje
     auto const& moved = result.values[static_cast<std::size_t>(columns[oscillator.displacement])];
     int const draw = central_draw(moved);
     if (draw < 0 || draw >= parameters.width()) continue;
-    Along const along(model, graph, oscillator, parameters, draw, experiment);
+    Along const along(model, graph, oscillator, parameters, draw);
 
-    std::vector<std::vector<double>> states(moved.front().size(), std::vector<double>(model.states.size()));
+    std::vector<std::vector<double>> states(looked_at(experiment), std::vector<double>(model.states.size()));
     for (std::size_t s = 0; s < model.states.size(); ++s) {
       auto const& values = result.values[static_cast<std::size_t>(columns[s])][static_cast<std::size_t>(draw)];
       for (std::size_t i = 0; i < states.size(); ++i) states[i][s] = model.states[s].to_si(values[i]);

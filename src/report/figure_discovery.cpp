@@ -49,7 +49,7 @@ Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation) 
   }
   bool const probability = discovery.measure != "contribution";
   int const width = column_width, row = 18, height = 62 + row * static_cast<int>(order.size());
-  double const left = std::min(widest + 18, 170.0);
+  double const left = std::min(widest + 30, 180.0);
   Figure out;
   out.name = equation_name(discovery, "inclusion", equation);
   out.title = fmt::format("Terms of {}", found.target);

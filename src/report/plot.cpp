@@ -150,6 +150,7 @@ std::string identifier(std::string_view text) {
 std::string preamble(std::string_view name, int width, int height) {
   // Column width in print is 85 mm.
   double const inches = 85.0 / 25.4 / column_width, points = 72 * inches;
+  // gnuplot's cairo terminals take a point for 4/3 of a pixel, and in PDF for two thirds of itself.
   std::string const shared = fmt::format("noenhanced background rgb '{}'", paper);
   std::string out = fmt::format(
       "# gnuplot {0}.gnuplot > {0}.svg draws this; gnuplot -e \"format='pdf'\" {0}.gnuplot > {0}.pdf as PDF, also 'png' and "
@@ -166,7 +167,7 @@ std::string preamble(std::string_view name, int width, int height) {
   out += fmt::format(
       "if (format eq 'pdf') set terminal pdfcairo size {:.4f}in,{:.4f}in font 'Helvetica,{:.2f}' linewidth {:.2f} "
       "pointscale {:.2f} {}\n",
-      width * inches, height * inches, 12 * points, points, points, shared);
+      width * inches, height * inches, 1.5 * 12 * points, points, points, shared);
   // Characters are twice as high as wide.
   out += fmt::format("if (format eq 'text') set terminal dumb size columns,int(columns*{:.4f} + 0.5) noenhanced\n",
                      height / (2.0 * width));
