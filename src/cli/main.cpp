@@ -29,7 +29,7 @@ namespace {
 
 struct CommandLine {
   std::string file, dump, error_format = "text", instruction_set, topic, code;
-  std::vector<std::string> files;
+  std::vector<std::string> files, figures;
   RunOptions run;
   bool quiet = false, only_check = false;
   std::optional<std::filesystem::path> page;  // where `report` writes
@@ -231,26 +231,24 @@ int document(CommandLine const& line) {
   return code(ExitCode::success);
 }
 
-/// What gnuplot cannot draw is refused before hours of sampling, not after.
-void add_figures_option(CLI::App& verb, std::vector<FigureFormat>& formats) {
-  verb.add_option_function<std::vector<std::string>>(
-          "--figures",
-          [&formats](std::vector<std::string> const& names) {
-            formats.clear();
-            for (std::string const& name : names) {
-              auto const format = find_figure_format(name);
-              if (!format)
-                throw CLI::ValidationError("--figures",
-                                           fmt::format("{} is no format of figures; there are svg, png, pdf and text", name));
-              if (*format != FigureFormat::svg && !can_draw(*format))
-                throw CLI::ValidationError("--figures",
-                                           fmt::format("gnuplot cannot draw {} here; the Debian package gnuplot-nox can", name));
-              if (std::find(formats.begin(), formats.end(), *format) == formats.end()) formats.push_back(*format);
-            }
-          },
-          "what figures are drawn as: svg, png, pdf or text, several with commas between (default: svg)")
-      ->delimiter(',')
-      ->type_name("FORMAT,...");
+/// Why figures cannot be drawn as this, before hours of sampling and not after; empty when they can.
+std::string refuse_figure_format(std::string const& name) {
+  auto const format = find_figure_format(name);
+  if (!format) return fmt::format("`{}` is no format of figures; there are svg, png, pdf and text", name);
+  // Without gnuplot there are scripts, which the page says: nobody has asked for more.
+  if (*format != FigureFormat::svg && !can_draw(*format))
+    return fmt::format("gnuplot cannot draw {} here; the Debian package gnuplot-nox can", name);
+  return "";
+}
+
+/// Each once, in the order asked for; nothing asked for: SVG.
+std::vector<FigureFormat> figure_formats(std::vector<std::string> const& names) {
+  std::vector<FigureFormat> formats;
+  for (std::string const& name : names) {
+    FigureFormat const format = *find_figure_format(name);
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  }
+  return formats.empty() ? std::vector{FigureFormat::svg} : formats;
 }
 
 void add_run_options(CLI::App& verb, CommandLine& line) {
@@ -271,7 +269,11 @@ void add_run_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("--checkpoint-interval", line.run.checkpoint_interval, "seconds between checkpoints")->check(CLI::PositiveNumber);
   verb.add_option("--interrupt-after", line.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
   verb.add_flag("!--no-figures", line.run.figures, "leave figures as scripts");
-  add_figures_option(verb, line.run.figure_formats);
+  verb.add_option("--figures", line.figures,
+                  "what figures are drawn as: svg, png, pdf or text, several with commas between (default: svg)")
+      ->delimiter(',')
+      ->type_name("FORMAT,...")
+      ->check(refuse_figure_format);
   verb.add_flag("-q,--quiet", line.quiet, "no progress, no notices");
 }
 
@@ -293,6 +295,7 @@ int main(int argument_count, char** arguments) {
     verb->callback([&, verbs] {
       if (!line.instruction_set.empty())
         force_instruction_set(line.instruction_set == "avx2" ? InstructionSet::avx2 : InstructionSet::avx512);
+      line.run.figure_formats = figure_formats(line.figures);
       exit = run(line, verbs);
     });
   };

@@ -69,7 +69,9 @@ Figure rank_figure(Draws const& draws) {
     std::vector<double> const values = pooled(draws, i);
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return values[a] < values[b] || (std::isnan(values[b]) && !std::isnan(values[a]));
+    });
     std::vector<int> bin_of(values.size());
     for (std::size_t r = 0; r < order.size(); ++r) bin_of[order[r]] = static_cast<int>(r * bins / order.size());
     double const expected = total / static_cast<double>(draws.chains.size()) / bins;

@@ -90,12 +90,14 @@ Figure pair_figure(Draws const& draws) {
         constexpr std::size_t bins = 24;
         std::vector<double> counts(bins, 0);
         double const low = axes[row].low, extent = axes[row].high - low;
-        for (double const v : all[row])
+        for (double const v : all[row]) {
+          if (!std::isfinite(v)) continue;
           ++counts[std::min(bins - 1, static_cast<std::size_t>((axes[row].scaled(v) - low) / extent * static_cast<double>(bins)))];
+        }
         std::vector<std::vector<double>> outline;
         for (std::size_t b = 0; b < bins; ++b)
           for (std::size_t edge : {b, b + 1}) outline.push_back({low + extent * static_cast<double>(edge) / bins, counts[b]});
-        p.y = {0, 1.08 * *std::max_element(counts.begin(), counts.end()), 0, {}};
+        p.y = {0, 1.08 * std::max(1.0, *std::max_element(counts.begin(), counts.end())), 0, {}};
         p.y_axis = false;
         out.script += data_block(fmt::format("h{}", row), outline) + panel(p, width, height);
         out.script += fmt::format(

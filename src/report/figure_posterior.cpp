@@ -18,10 +18,13 @@ using namespace plot;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// The finite ones, sorted.
 std::vector<double> pooled(Draws const& draws, std::size_t parameter) {
   std::vector<double> out;
   for (Chain const& chain : draws.chains)
     for (auto const& row : chain.values) out.push_back(row[parameter]);
+  std::erase_if(out, [](double each) { return !std::isfinite(each); });
+  std::sort(out.begin(), out.end());
   return out;
 }
 
@@ -59,6 +62,17 @@ Figure posterior_figure(Report const& report) {
   for (std::size_t i = 0; i < count; ++i) {
     Summary const& summary = report.summary[columns[i]];
     std::vector<double> const values = pooled(report.draws, columns[i]);
+    if (values.empty()) {
+      Panel p = cells.cell(i, 14, 12, 46, 20);
+      p.x = p.y = axis(0, 1, 1);
+      p.x.ticks.clear();
+      p.y_axis = false;
+      p.x_label = axis_label(summary.name, summary.unit);
+      p.title = "no finite draw";
+      plots += panel(p, cells.width, cells.height) + "plot NaN\n";
+      if (i == 0) plots += end_legend();
+      continue;
+    }
     auto [low, high] = shown_range(values);
     if (low == high) {  // a bar that can be seen
       double const half = low == 0 ? 0.02 : 0.001 * std::fabs(low);
@@ -66,7 +80,7 @@ Figure posterior_figure(Report const& report) {
       high += half;
     }
     Histogram const histogram(values, low, high);
-    if (range(values).first < low || range(values).second > high) add_name(cut_names, summary.name);
+    if (values.front() < low || values.back() > high) add_name(cut_names, summary.name);
     std::optional<double> const truth = truth_of(report.data, summary.name);
     bool const near = truth && *truth > low - (high - low) && *truth < high + (high - low);
     std::pair<double, double> const extent = near ? cover(std::pair(low, high), std::pair(*truth, *truth)) : std::pair{low, high};
@@ -107,7 +121,7 @@ Figure posterior_figure(Report const& report) {
     double const worth = std::isfinite(summary.ess_bulk) ? std::min(summary.ess_bulk, static_cast<double>(values.size()))
                                                          : static_cast<double>(values.size());
     double const reach = 5 * kernel_width(values, worth);
-    auto const [smallest, largest] = range(values);
+    double const smallest = values.front(), largest = values.back();
     double const lower = has_prior ? support_end(prior->density, smallest, smallest - reach) : -infinity;
     double const upper = has_prior ? support_end(prior->density, largest, largest + reach) : infinity;
     std::vector<double> const density =

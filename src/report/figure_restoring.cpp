@@ -120,8 +120,9 @@ Figure surface_figure(RestoringForce const& force) {
   std::vector<double> values;
   for (auto const& row : force.surface) values.insert(values.end(), row.begin(), row.end());
   auto const [low, high] = range(values);
-  Axis const x = axis(force.grid_displacement.front(), force.grid_displacement.back(), 3),
-             y = axis(force.grid_velocity.front(), force.grid_velocity.back(), 3), z = axis(low, high, 4, 0.02);
+  constexpr double edge = 0.002;  // lest the outer lines of the mesh are cut by their rounding
+  Axis const x = axis(force.grid_displacement.front(), force.grid_displacement.back(), 3, edge),
+             y = axis(force.grid_velocity.front(), force.grid_velocity.back(), 3, edge), z = axis(low, high, 4, 0.02);
   int const width = column_width, height = 310;
   Figure out;
   out.name = figure_name("surface", force);
@@ -160,10 +161,9 @@ Figure surface_figure(RestoringForce const& force) {
   out.script += label('x', axis_label(force.displacement, force.displacement_unit, x), "rotate parallel offset 0,-0.6");
   out.script += label('y', axis_label(force.velocity, force.velocity_unit, y), "rotate parallel offset 0,-0.6");
   out.script += label('z', axis_label(force_name(force), force.force_unit, z), "rotate by 90 offset 1,0");
-  out.script += fmt::format("set hidden3d\nsplot $mesh using 1:2:3 with lines lw 0.8 lc rgb '{}'{}\nunset multiplot\n", model,
-                            points.empty() ? ""
-                                           : fmt::format(", $points using 1:2:3 with points pt 7 ps 0.2 lc rgb '{}' nohidden3d",
-                                                         has_data ? data : contrast));
+  out.script += fmt::format(
+      "splot $mesh using 1:2:3 with lines lw 0.8 lc rgb '{}'{}\nunset multiplot\n", model,
+      points.empty() ? "" : fmt::format(", $points using 1:2:3 with points pt 7 ps 0.2 lc rgb '{}'", has_data ? data : contrast));
   out.caption = fmt::format(
       "The restoring force over displacement and velocity, by the model, over what the record reaches. Where no points lie the "
       "model "

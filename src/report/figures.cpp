@@ -1,6 +1,8 @@
 // Which figures a report has, in reading order.
 #include "report/figures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +11,8 @@ namespace sysid {
 using namespace plot;
 
 namespace {
+
+constexpr std::size_t most_forces = 3;
 
 /// A state that a channel shows as it is (observe y) needs no figure of its own.
 bool repeats_a_channel(Prediction const& prediction, PredictedQuantity const& quantity) {
@@ -31,9 +35,14 @@ std::vector<Figure> figures(Report const& report) {
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (over_inputs(prediction, quantity)) out.push_back(input_figure(prediction, quantity));
   for (FunctionReport const& function : report.functions) out.push_back(function_figure(function));
+  std::size_t shown_forces = 0;
   for (RestoringForce const& force : report.forces) {
+    // A fleet of fifty has one spring: it is not looked at fifty times.
+    if (shown_forces++ == most_forces) break;
     out.push_back(loop_figure(force));
     if (!force.surface.empty()) out.push_back(surface_figure(force));
+    if (shown_forces == most_forces && report.forces.size() > most_forces)
+      out.back().caption += fmt::format(" Of {} restoring forces the first {} are shown.", report.forces.size(), most_forces);
   }
   if (report.discovery)
     for (std::size_t e = 0; e < report.discovery->equations.size(); ++e) {

@@ -5,21 +5,29 @@
 #include <cmath>
 #include <numbers>
 
-#include "inference/convergence.hpp"
-#include "report/plot.hpp"
-
 namespace sysid {
 
-Histogram::Histogram(std::vector<double> values, double from, double to) : low(from) {
-  std::sort(values.begin(), values.end());
-  double const n = static_cast<double>(values.size());
+namespace {
+
+/// Of type 7, as `quantile` has it.
+double quantile_of(std::vector<double> const& sorted, double probability) {
+  double const place = probability * static_cast<double>(sorted.size() - 1);
+  auto const below = static_cast<std::size_t>(place);
+  std::size_t const above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+}  // namespace
+
+Histogram::Histogram(std::vector<double> const& sorted, double from, double to) : low(from) {
+  double const n = static_cast<double>(sorted.size());
   double const extent = to - low;
-  double const quartiles = quantile(values, 0.75) - quantile(values, 0.25);
+  double const quartiles = quantile_of(sorted, 0.75) - quantile_of(sorted, 0.25);
   double const rule = quartiles > 0 ? extent / (2 * quartiles / std::cbrt(n)) : 1;
   auto const bins = static_cast<std::size_t>(std::clamp(std::ceil(rule), 12.0, 40.0));
   width = extent > 0 ? extent / static_cast<double>(bins) : 1;
   density.assign(bins, 0);
-  for (double const v : values)
+  for (double const v : sorted)
     if (v >= from && v <= to) density[std::min(bins - 1, static_cast<std::size_t>((v - low) / width))] += 1 / (n * width);
 }
 
@@ -37,11 +45,10 @@ std::vector<std::pair<double, double>> Histogram::outline(double from, double to
   return out;
 }
 
-std::pair<double, double> shown_range(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  double const low = quantile(values, 0.01), high = quantile(values, 0.99);
-  bool const long_tails = values.back() - values.front() > 8 * (high - low) && high > low;
-  return long_tails ? std::pair{low, high} : plot::range(values);
+std::pair<double, double> shown_range(std::vector<double> const& sorted) {
+  double const low = quantile_of(sorted, 0.01), high = quantile_of(sorted, 0.99);
+  bool const long_tails = sorted.back() - sorted.front() > 8 * (high - low) && high > low;
+  return long_tails ? std::pair{low, high} : std::pair(sorted.front(), sorted.back());
 }
 
 double support_end(std::function<double(double)> const& density, double inside, double towards) {
@@ -53,20 +60,19 @@ double support_end(std::function<double(double)> const& density, double inside, 
   return inside;
 }
 
-double kernel_width(std::vector<double> values, double n) {
-  if (values.size() < 2) return 0;
-  std::sort(values.begin(), values.end());
+double kernel_width(std::vector<double> const& sorted, double n) {
+  if (sorted.size() < 2) return 0;
   double mean = 0, square = 0;
-  for (double const v : values) mean += v / static_cast<double>(values.size());
-  for (double const v : values) square += (v - mean) * (v - mean);
-  double const sd = std::sqrt(square / static_cast<double>(values.size() - 1));
-  double const quartiles = (quantile(values, 0.75) - quantile(values, 0.25)) / 1.34;
+  for (double const v : sorted) mean += v / static_cast<double>(sorted.size());
+  for (double const v : sorted) square += (v - mean) * (v - mean);
+  double const sd = std::sqrt(square / static_cast<double>(sorted.size() - 1));
+  double const quartiles = (quantile_of(sorted, 0.75) - quantile_of(sorted, 0.25)) / 1.34;
   return 0.9 * (quartiles > 0 ? std::min(sd, quartiles) : sd) * std::pow(std::max(n, 1.0), -0.2);
 }
 
-std::vector<double> kernel_density(std::vector<double> const& values, double n, double from, double to, int points, double lower,
+std::vector<double> kernel_density(std::vector<double> const& sorted, double n, double from, double to, int points, double lower,
                                    double upper) {
-  double const h = kernel_width(values, n);
+  double const h = kernel_width(sorted, n);
   double const size = std::max(std::fabs(from), std::fabs(to));
   if (!(h > 1e-13 * size) || !(to > from) || points < 2) return {};
   // Draws in cells a fifth of a kernel wide first: what they lose in place cannot be seen.
@@ -77,12 +83,12 @@ std::vector<double> kernel_density(std::vector<double> const& values, double n, 
     double const place = (v - (from - reach)) / cell;
     if (place >= 0 && place < static_cast<double>(cells)) mass[static_cast<std::size_t>(place)] += 1;
   };
-  for (double const v : values) {
+  for (double const v : sorted) {
     add(v);
     if (std::isfinite(lower) && v - lower < reach) add(2 * lower - v);
     if (std::isfinite(upper) && upper - v < reach) add(2 * upper - v);
   }
-  double const scale = 1 / (static_cast<double>(values.size()) * h * std::sqrt(2 * std::numbers::pi));
+  double const scale = 1 / (static_cast<double>(sorted.size()) * h * std::sqrt(2 * std::numbers::pi));
   std::vector<double> out;
   for (int k = 0; k < points; ++k) {
     double const at = from + (to - from) * k / (points - 1);

@@ -1,4 +1,4 @@
-// One parameter's draws as a histogram and as a smooth density.
+// One parameter's draws as a histogram and as a smooth density. Draws are sorted, rising.
 #pragma once
 #include <functional>
 #include <utility>
@@ -12,14 +12,14 @@ struct Histogram {
   double low, width;
   std::vector<double> density;
 
-  Histogram(std::vector<double> values, double from, double to);
+  Histogram(std::vector<double> const& sorted, double from, double to);
   double peak() const;
   /// The outline between two abscissae, as corners: {abscissa, density}.
   std::vector<std::pair<double, double>> outline(double from, double to) const;
 };
 
 /// All draws, but for tails so long that the bulk would be one bar: then the central 98 %.
-std::pair<double, double> shown_range(std::vector<double> values);
+std::pair<double, double> shown_range(std::vector<double> const& sorted);
 
 /// Where a density that is positive at `inside` ends on the way to `towards`: the abscissa; `towards` where it does not end.
 double support_end(std::function<double(double)> const& density, double inside, double towards);
@@ -30,9 +30,9 @@ double support_end(std::function<double(double)> const& density, double inside, 
 ///
 /// n: how many independent draws these are worth. Mass beyond `lower` and `upper`, outside which there can be none, is reflected
 /// there. Empty where draws do not vary.
-std::vector<double> kernel_density(std::vector<double> const& values, double n, double from, double to, int points, double lower,
+std::vector<double> kernel_density(std::vector<double> const& sorted, double n, double from, double to, int points, double lower,
                                    double upper);
 /// h.
-double kernel_width(std::vector<double> values, double n);
+double kernel_width(std::vector<double> const& sorted, double n);
 
 }  // namespace sysid

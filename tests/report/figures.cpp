@@ -273,6 +273,21 @@ TEST_CASE("forty parameters, twelve chains, values of 1e-12, long names and a ba
   }
 }
 
+TEST_CASE("draws that are not finite leave the others to be seen, and where there are none the figure says so") {
+  if (!gnuplot_installed()) return;
+  Report report = example::duffing(40);
+  for (Chain& chain : report.draws.chains)
+    for (std::size_t d = 0; d < chain.values.size(); ++d) {
+      chain.values[d][0] = std::nan("");
+      if (d % 3 == 0) chain.values[d][1] = d % 2 == 0 ? std::nan("") : INFINITY;
+    }
+  for (plot::Figure const& figure : figures(report)) CHECK_MESSAGE(draw(figure).has_value(), figure.name);
+  std::string const script = posterior_figure(report).script;
+  CHECK(script.find("'no finite draw'") != std::string::npos);
+  CHECK(block(script, "all0").empty());
+  CHECK(block(script, "all1").size() >= 24);
+}
+
 TEST_CASE("terms of a discovery stand in the order of how sure they are, with their coefficients' densities") {
   DiscoveryReport discovery;
   discovery.measure = "inclusion probability";
