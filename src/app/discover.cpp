@@ -115,7 +115,7 @@ class Discover {
     for (auto const& [name, value] : what_.form_settings.all()) report.settings.emplace_back(name, value);
     report.resolved_text = resolved_discover(session_, task_, what_, seed_);
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
-    report.timing = {{"wall_seconds", wall.count()}};
+    report.timing.emplace_back("wall_seconds", wall.count());
     report.verdict = headline(discovery, report.equations, report.findings);
     report.discovery = std::move(discovery);
     write_result(report, session_.result_folder(task_), session_.options.pictures());

@@ -83,9 +83,9 @@ ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpo
   Verdict const verdict = judge(report.findings);
   report.verdict = verdict.text;
   std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
-  report.timing = {{"wall_seconds", wall.count()},
-                   {"threads", static_cast<std::int64_t>(session.threads())},
-                   {"lanes", static_cast<std::int64_t>(session.options.execution.lanes)}};
+  report.timing.emplace_back("wall_seconds", wall.count());
+  report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
+  report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
   write_result(report, session.result_folder(task), session.options.pictures());
   session.out << terminal_summary(report);
   if (interrupted) {

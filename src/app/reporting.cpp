@@ -114,6 +114,7 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   report.what = std::move(what);
   report.seed = seed;
   add_repetition(session, task, report);
+  report.timing = {{"file", std::filesystem::absolute(session.source.name()).lexically_normal().string()}};
   Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
   report.model_name = model.name;
   report.model_title = model.title;

@@ -195,9 +195,9 @@ class Select {
     report.tables = selection_tables(selection);
     report.verdict = headline(selection, report.findings);
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
-    report.timing = {{"wall_seconds", wall.count()},
-                     {"threads", static_cast<std::int64_t>(session_.threads())},
-                     {"lanes", static_cast<std::int64_t>(session_.options.execution.lanes)}};
+    report.timing.emplace_back("wall_seconds", wall.count());
+    report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
+    report.timing.emplace_back("lanes", static_cast<std::int64_t>(session_.options.execution.lanes));
     std::vector<SelectedCandidate>& kept = session_.selected[index_];
     kept.clear();
     for (SelectedModel const& model : selection.result.models)

@@ -46,46 +46,53 @@ double number(std::string_view text) {
   return value;
 }
 
-Chain read_chain(std::string const& text, std::vector<std::string> const& parameters, std::string const& path) {
-  Chain chain;
+}  // namespace
+
+std::vector<std::vector<double>> read_draws_rows(std::filesystem::path const& path, std::vector<std::string> const& own,
+                                                 std::vector<std::string> const& parameters) {
+  std::string const text = read_file(path);
+  std::vector<std::vector<double>> rows;
   std::vector<std::size_t> columns;
-  std::size_t lp = 0, accept = 0, prior = 0, likelihood = 0;
   for (std::string_view const line : split(text, '\n')) {
     if (line.empty() || line.front() == '#') continue;
     auto const cells = split(line, ',');
     if (columns.empty()) {
-      // The sampler's own four columns come first; a parameter may have the name of one of them.
-      auto const find = [&](std::string const& name, std::ptrdiff_t from = 0) {
-        auto const place = std::find(cells.begin() + std::min<std::ptrdiff_t>(from, std::ssize(cells)), cells.end(), name);
+      auto const find = [&](std::string const& name, std::size_t from) {
+        auto const place =
+            std::find(cells.begin() + std::min(std::ssize(cells), static_cast<std::ptrdiff_t>(from)), cells.end(), name);
         if (place == cells.end())
           throw UserError({Severity::error,
                            "E6201",
-                           fmt::format("`{}` has no column `{}`: it is of another model", path, name),
+                           fmt::format("`{}` has no column `{}`: it is of another model", path.string(), name),
                            std::nullopt,
                            {},
                            "run the fit again, with --force or another -o"});
         return static_cast<std::size_t>(place - cells.begin());
       };
-      lp = find("lp__");
-      accept = find("accept_stat__");
-      prior = find("log_prior__");
-      likelihood = find("log_likelihood__");
-      for (std::string const& name : parameters) columns.push_back(find(stan_name(name), 4));
+      for (std::string const& name : own) columns.push_back(find(name, 0));
+      // A parameter may have the name of one of the sampler's own.
+      for (std::string const& name : parameters) columns.push_back(find(stan_name(name), own.size()));
       continue;
     }
-    if (cells.size() <= std::max({lp, accept, prior, likelihood})) continue;  // a row cut short
-    std::vector<double> values;
+    if (cells.size() <= *std::max_element(columns.begin(), columns.begin() + std::ssize(own))) continue;  // a row cut short
+    std::vector<double>& values = rows.emplace_back();
     for (std::size_t const column : columns) values.push_back(column < cells.size() ? number(cells[column]) : std::nan(""));
-    chain.values.push_back(std::move(values));
-    chain.log_density.push_back(number(cells[lp]));
-    chain.acceptance.push_back(number(cells[accept]));
-    chain.log_prior.push_back(number(cells[prior]));
-    chain.log_likelihood.push_back(number(cells[likelihood]));
+  }
+  return rows;
+}
+
+Chain read_chain(std::filesystem::path const& path, std::vector<std::string> const& parameters) {
+  Chain chain;
+  for (std::vector<double> const& row :
+       read_draws_rows(path, {"lp__", "accept_stat__", "log_prior__", "log_likelihood__"}, parameters)) {
+    chain.log_density.push_back(row[0]);
+    chain.acceptance.push_back(row[1]);
+    chain.log_prior.push_back(row[2]);
+    chain.log_likelihood.push_back(row[3]);
+    chain.values.emplace_back(row.begin() + 4, row.end());
   }
   return chain;
 }
-
-}  // namespace
 
 FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::string> const& parameters) {
   FittedModel fitted;
@@ -93,7 +100,7 @@ FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::st
   fitted.draws.parameter_count = static_cast<int>(parameters.size());
   for (int k = 1; std::filesystem::exists(folder / fmt::format("draws_{}.csv", k)); ++k) {
     auto const path = folder / fmt::format("draws_{}.csv", k);
-    fitted.draws.chains.push_back(read_chain(read_file(path), parameters, path.string()));
+    fitted.draws.chains.push_back(read_chain(path, parameters));
   }
   auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
   if (summary.is_object() && summary.contains("settings")) fitted.solver = read_solver(summary["settings"]);
@@ -153,7 +160,7 @@ std::vector<SelectedCandidate> const& selected_candidates(Session& session, int 
           parameter_space(without_noise_parameters(session.file.models[static_cast<std::size_t>(fit.model)]), fit.experiments);
       candidate.draws.names = names_of(*space);
       candidate.draws.parameter_count = static_cast<int>(candidate.draws.names.size());
-      candidate.draws.chains.push_back(read_chain(read_file(path), candidate.draws.names, path.string()));
+      candidate.draws.chains.push_back(read_chain(path, candidate.draws.names));
     }
     candidates.push_back(std::move(candidate));
   }

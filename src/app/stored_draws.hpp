@@ -10,6 +10,14 @@ namespace sysid {
 /// are of another model.
 FittedModel const& fitted_model(Session& session, int fit);
 
+/// The rows of a file of draws: columns of the sampler, `own`, which come first there, then those of the parameters by the user's
+/// names. UserError where one is missing, IoError where the file cannot be read.
+std::vector<std::vector<double>> read_draws_rows(std::filesystem::path const& path, std::vector<std::string> const& own,
+                                                 std::vector<std::string> const& parameters);
+
+/// A file in the form of Stan's CSV.
+Chain read_chain(std::filesystem::path const& path, std::vector<std::string> const& parameters);
+
 /// summary.json and draws_N.csv of a folder. parameters: names the draws must have, in order.
 FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::string> const& parameters);
 

@@ -19,6 +19,7 @@
 #include "core/instruction_set.hpp"
 #include "core/interrupt.hpp"
 #include "core/progress_terminal.hpp"
+#include "exchange/export.hpp"
 #include "lsp/server.hpp"
 #include "repl/prompt.hpp"
 #include "syntax/format.hpp"
@@ -30,6 +31,7 @@ namespace {
 struct CommandLine {
   std::string file, dump, error_format = "text", instruction_set, topic, code;
   std::vector<std::string> files, figures;
+  int draws = 200;
   RunOptions run;
   bool quiet = false, only_check = false;
   std::optional<std::filesystem::path> page;  // where `report` writes
@@ -170,6 +172,38 @@ int report(CommandLine const& line) {
   return guarded(line, Source("sysid", ""), [&] {
     std::cout << report_results(line.file, line.page, line.run.figures).string() << '\n';
     return code(ExitCode::success);
+  });
+}
+
+int export_results(CommandLine line) {
+  return guarded(line, Source("sysid", ""), [&] {
+    ExportedResults const results = find_results(line.topic);
+    require_exportable(results, line.run.force);
+    if (line.draws == 0) {
+      export_netcdf(results, nullptr, 0, std::cout);
+      return code(ExitCode::success);
+    }
+    if (line.file.empty()) line.file = results.file.string();
+    if (line.file.empty() || !std::filesystem::exists(line.file)) {
+      complain(line,
+               line.file.empty() ? fmt::format("`{}` does not say of which file its results are", line.topic)
+                                 : fmt::format("`{}`, of which the results are, is not there", line.file),
+               "name it with --model FILE, or export what the results hold themselves with --draws 0");
+      return code(line.file.empty() ? ExitCode::user_error : ExitCode::io);
+    }
+    line.run.output = results.run;
+    std::optional<Source> source = read_source(line.file);
+    return guarded(line, *source, [&] {
+      Diagnostics diagnostics;
+      auto const file = load(*source, diagnostics);
+      if (diagnostics.has_errors()) show(diagnostics, *source, line);
+      if (!file) return code(ExitCode::user_error);
+      SilentProgress silent;
+      std::ostream nowhere(nullptr);
+      Session session(*source, *file, line.run, silent, nowhere, nowhere);
+      export_netcdf(results, &session, line.draws, std::cout);
+      return code(ExitCode::success);
+    });
   });
 }
 
@@ -327,6 +361,14 @@ int main(int argument_count, char** arguments) {
   reporting->add_option("-o,--output", line.page, "the file to write (default: report.html in the folder)");
   reporting->add_flag("!--no-figures", line.run.figures, "leave figures out");
   reporting->callback([&] { exit = report(line); });
+  CLI::App* exporting = app.add_subcommand("export", "write results for ArviZ and xarray: InferenceData in NetCDF-4");
+  exporting->add_option("results", line.topic, "folder of a fit or selection, or of a whole run")->required();
+  exporting->add_option("--model", line.file, "the .sysid file that the results are of (default: the one they were made from)");
+  exporting->add_option("--draws", line.draws, "draws to simulate for likelihoods and predictions (0: only what is stored)")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  exporting->add_flag("--force", line.run.force, "replace files that are there");
+  exporting->callback([&] { exit = export_results(line); });
   CLI::App* formatting = app.add_subcommand("fmt", "rewrite files in canonical layout");
   formatting->add_option("files", line.files, "the .sysid files; - reads standard input and writes standard output")->required();
   formatting->add_flag("--check", line.only_check, "change nothing; name the files that would change and exit with 1");

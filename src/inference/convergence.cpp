@@ -25,12 +25,17 @@ double mean_of(std::vector<double> const& x) {
   return rough + rest / n;
 }
 
-/// Sample variance, divisor n - 1.
+/// Sample variance, divisor n - 1. What additions round off is summed beside (Neumaier 1974), so that the last digit is that of
+/// programs that sum in a wider type.
 double variance_of(std::vector<double> const& x) {
   double const mean = mean_of(x);
-  double sum = 0;
-  for (double const v : x) sum += (v - mean) * (v - mean);
-  return sum / (static_cast<double>(x.size()) - 1);
+  double sum = 0, rest = 0;
+  for (double const v : x) {
+    double const square = (v - mean) * (v - mean), next = sum + square;
+    rest += sum > square ? sum - next + square : square - next + sum;
+    sum = next;
+  }
+  return (sum + rest) / (static_cast<double>(x.size()) - 1);
 }
 
 std::vector<double> pooled(ChainValues const& draws) {

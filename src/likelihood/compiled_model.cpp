@@ -260,6 +260,16 @@ std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compi
   return finish(folded, std::move(source));
 }
 
+std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled) {
+  Folded folded(compiled.model, keeps_unknowns(compiled));
+  SimulationSource source = dynamics(folded, compiled);
+  for (std::size_t c = 0; c < compiled.model.channels.size(); ++c) {
+    source.channels.push_back({});
+    source.records.push_back(channel_density(folded, compiled.model.channels[c], static_cast<int>(c)).sample);
+  }
+  return finish(folded, std::move(source));
+}
+
 std::string dump_program(CompiledModel const& compiled) {
   return fmt::format("{}\n# likelihood\n{}", ParameterSpace(compiled.model, {{}}).dump(),
                      dump(*compiled.likelihood, names_of(compiled)));

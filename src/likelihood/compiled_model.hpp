@@ -46,6 +46,9 @@ std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::
 std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compiled, Graph grown,
                                                       std::span<NodeId const> per_channel);
 
+/// A program whose records are, per channel, the log density of its sample, of the declared unit; NaN where there is no sample.
+std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled);
+
 /// What `--dump program` prints: the likelihood program and the kernels of the prior.
 std::string dump_program(CompiledModel const& compiled);
 

@@ -39,6 +39,26 @@ Json parameters(std::vector<Summary> const& summaries) {
   return out;
 }
 
+/// Where draws were thinned, `parameters` are of all iterations: those of the kept ones, which other programs take from the files.
+Json kept_draws(Report const& report) {
+  std::vector<Summary> summaries;
+  for (std::size_t c = 0; c < report.draws.names.size(); ++c) {
+    ChainValues values;
+    for (Chain const& chain : report.draws.chains) {
+      values.emplace_back();
+      for (auto const& draw : chain.values) values.back().push_back(draw[c]);
+    }
+    summaries.push_back(summarise(report.draws.names[c], report.draws.units[c], values));
+  }
+  return parameters(summaries);
+}
+
+bool thinned(Report const& report) {
+  for (auto const& [name, value] : report.settings)
+    if (auto const* thin = std::get_if<std::int64_t>(&value); name == "thin" && thin != nullptr) return *thin > 1;
+  return false;
+}
+
 Json named_values(std::vector<double> const& values, std::vector<std::string> const& names) {
   Json out = Json::object();
   for (std::size_t i = 0; i < values.size() && i < names.size(); ++i) out[names[i]] = values[i];
@@ -88,6 +108,7 @@ std::string summary_json(Report const& report) {
   out["what"] = report.what;
   out["model"] = report.model_name;
   out["parameters"] = parameters(report.summary);
+  if (thinned(report) && report.draws.total() > 1) out["kept_draws"] = kept_draws(report);
   if (report.selection) {
     out["models"] = models_json(*report.selection);
     out["populations"] = populations_json(*report.selection);

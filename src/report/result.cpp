@@ -20,8 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that `write_result` gives.
-bool is_result_file(std::string const& name) {
+/// Names that `write_result` gives, and those of exports, which belong to the result that they were made of: TASK.nc,
+/// TASK_MODEL.nc.
+bool is_result_file(std::string const& name, std::string const& task) {
+  if (name.ends_with(".nc") && (name == task + ".nc" || name.starts_with(task + "_"))) return true;
   auto const between = [&](std::string_view begin, std::string_view end) {
     return name.size() >= begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
   };
@@ -42,7 +44,8 @@ std::vector<fs::path> files_of_result(fs::path const& folder) {
   std::vector<fs::path> out;
   std::error_code ignored;
   for (fs::directory_entry const& entry : fs::directory_iterator(folder, ignored))
-    if (is_result_file(entry.path().filename())) out.push_back(entry.path());
+    if (is_result_file(entry.path().filename(), (folder / "").lexically_normal().parent_path().filename()))
+      out.push_back(entry.path());
   for (fs::directory_entry const& entry : fs::directory_iterator(folder / "figures", ignored))
     if (is_figure_file(entry.path().filename())) out.push_back(entry.path());
   return out;

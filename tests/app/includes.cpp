@@ -40,6 +40,7 @@ std::map<std::string, Folders> const allowed = {
     {"lsp", {"lsp", "assist", "syntax", "core"}},
     {"typeset", {"typeset", "syntax", "core"}},
     {"report", {"report", "typeset", "inference", "likelihood", "core"}},
+    {"exchange", {"exchange", "app", "report", "inference", "likelihood", "core"}},
 };
 
 }  // namespace
@@ -69,6 +70,7 @@ TEST_CASE("includes point one way, Boost.Spirit stays in grammar/ and SUNDIALS i
         }
         if (line.starts_with("#include <boost/spirit")) CHECK(folder == "grammar");
         if (line.starts_with("#include <nlopt")) CHECK(folder == "gaussian_process");
+        if (line.starts_with("#include <netcdf")) CHECK(folder == "exchange");
         for (char const* header : {"<cvode", "<ida", "<arkode", "<nvector", "<sunmatrix", "<sunlinsol", "<sundials"})
           if (line.starts_with(std::string("#include ") + header)) CHECK(folder == "simulate");
       }

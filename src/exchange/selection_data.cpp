@@ -1,0 +1,97 @@
+// particles_MODEL.csv, draws_MODEL.csv and polished_MODEL_N.csv to groups.
+#include "exchange/selection_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/stored_draws.hpp"
+#include "core/diagnostic.hpp"
+#include "exchange/draws_group.hpp"
+#include "report/number.hpp"
+#include "report/selection.hpp"
+
+namespace sysid {
+namespace {
+
+/// Names and units of a candidate's parameters, from their summaries.
+Draws parameters_of(nlohmann::ordered_json const& summaries) {
+  Draws draws;
+  for (auto const& [name, summary] : summaries.items()) {
+    draws.names.push_back(name);
+    draws.units.push_back(summary.value("unit", std::string()));
+  }
+  draws.parameter_count = static_cast<int>(draws.names.size());
+  return draws;
+}
+
+void add_weighted(InferenceData& data, std::filesystem::path const& path, Draws particles) {
+  std::vector<double> weight, distance, population;
+  particles.chains.emplace_back();
+  for (std::vector<double> const& row : read_draws_rows(path, {"weight__", "distance__", "population__"}, particles.names)) {
+    weight.push_back(row[0]);
+    distance.push_back(row[1]);
+    population.push_back(row[2]);
+    particles.chains.front().values.emplace_back(row.begin() + 3, row.end());
+  }
+  NetcdfGroup group("weighted_posterior"), stats("weighted_sample_stats");
+  add_draws(group, particles);
+  add_chain_dimensions(stats, 1, weight.size());
+  stats.add({"weight", {"chain", "draw"}, std::move(weight), {}});
+  stats.add({"distance", {"chain", "draw"}, std::move(distance), {}});
+  stats.add({"population", {"chain", "draw"}, std::move(population), {}});
+  data.add(std::move(group));
+  data.add(std::move(stats));
+}
+
+}  // namespace
+
+std::vector<std::string> living_candidates(StoredResult const& stored) {
+  std::vector<std::string> names;
+  auto const models = stored.summary.value("models", nlohmann::ordered_json::object());
+  for (auto const& [name, model] : models.items())
+    if (std::filesystem::exists(stored.folder / fmt::format("draws_{}.csv", model_file_name(name)))) names.push_back(name);
+  return names;
+}
+
+std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
+  std::vector<CandidateData> candidates;
+  for (std::string const& name : living_candidates(stored)) {
+    nlohmann::ordered_json const& model = stored.summary["models"][name];
+    std::string const file = model_file_name(name);
+    CandidateData candidate{name, {provenance(stored), {}, {}}};
+    for (auto& [key, value] : candidate.data.attributes)
+      if (key == "model") value = name;
+    candidate.data.attributes.emplace_back("model_probability", shortest(model.value("probability", 0.0)));
+    Draws const parameters = parameters_of(model.value("parameters", nlohmann::ordered_json::object()));
+    Draws resampled = parameters;
+    resampled.chains.push_back(read_chain(stored.folder / fmt::format("draws_{}.csv", file), resampled.names));
+    NetcdfGroup posterior("posterior");
+    add_draws(posterior, resampled);
+    candidate.data.add(std::move(posterior));
+    add_weighted(candidate.data, stored.folder / fmt::format("particles_{}.csv", file), parameters);
+    // Chains on the likelihood know parameters of the noise, too.
+    Draws polished = parameters_of(model.value("polished", nlohmann::ordered_json::object()));
+    for (int c = 1; std::filesystem::exists(stored.folder / fmt::format("polished_{}_{}.csv", file, c)); ++c)
+      polished.chains.push_back(read_chain(stored.folder / fmt::format("polished_{}_{}.csv", file, c), polished.names));
+    if (!polished.chains.empty() && !polished.names.empty()) {
+      NetcdfGroup group("polished_posterior");
+      add_draws(group, polished);
+      candidate.data.add(std::move(group));
+    }
+    candidate.data.left_out.push_back("posterior_predictive, log_likelihood: a selection by distance says nothing about the noise");
+    candidates.push_back(std::move(candidate));
+  }
+  return candidates;
+}
+
+void add_candidate_data(Session& session, int select, std::vector<CandidateData>& candidates) {
+  selected_candidates(session, select);  // refuses results of another text or other data
+  SelectTask const& what = std::get<SelectTask>(session.file.tasks[static_cast<std::size_t>(select)].what);
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
+  for (std::size_t k = 0; k < set.models.size(); ++k)
+    for (CandidateData& candidate : candidates)
+      if (candidate.name == set.models[k].name) add_data(session, what.fits[k], candidate.data);
+}
+
+}  // namespace sysid

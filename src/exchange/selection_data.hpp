@@ -1,0 +1,23 @@
+// A selection as InferenceData: each living candidate has parameters of its own, and so a file of its own.
+#pragma once
+#include "exchange/inference_data.hpp"
+
+namespace sysid {
+
+struct CandidateData {
+  std::string name;  // of the model: "bouc_wen(n = 2)"
+  InferenceData data;
+};
+
+/// The models that have draws, by name.
+std::vector<std::string> living_candidates(StoredResult const& stored);
+
+/// Per living candidate: posterior, its particles resampled to equal weights; weighted_posterior and weighted_sample_stats, the
+/// particles themselves with weight, distance and population; polished_posterior, where chains on its likelihood were run.
+std::vector<CandidateData> stored_candidates(StoredResult const& stored);
+
+/// observed_data and constant_data of each. The session's results are those that the candidates were read from: UserError where its
+/// model or data do not belong to them.
+void add_candidate_data(Session& session, int select, std::vector<CandidateData>& candidates);
+
+}  // namespace sysid

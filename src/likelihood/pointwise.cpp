@@ -1,0 +1,47 @@
+// Records of the densities, a few dozen parameter vectors at a time so that long records fit in memory.
+#include "likelihood/pointwise.hpp"
+
+#include <algorithm>
+
+namespace sysid {
+namespace {
+
+constexpr int vectors_at_once = 64;
+
+}  // namespace
+
+PointwiseLikelihood::PointwiseLikelihood(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment,
+                                         SolverSettings const& solver, int start_rows, ExecutionOptions options)
+    : compiled_(std::move(compiled)), simulator_([&] {
+        auto const program = compile_densities(*compiled_);
+        return Simulator(program, Schedule(*program, experiment, solver), options);
+      }()) {
+  if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, solver, options);
+  samples_.resize(compiled_->model.channels.size());
+  for (std::size_t c = 0; c < samples_.size(); ++c)
+    for (int i = 0; i < simulator_.schedule().samples(); ++i)
+      if (simulator_.schedule().summed(static_cast<int>(c), i)) samples_[c].push_back(i);
+}
+
+std::vector<std::vector<std::vector<double>>> PointwiseLikelihood::run(ConstLanes parameters) const {
+  std::vector<std::vector<std::vector<double>>> values(samples_.size());
+  int const channels = static_cast<int>(samples_.size()), last = simulator_.schedule().last_summed();
+  for (int first = 0; first < parameters.width(); first += vectors_at_once) {
+    int const width = std::min(vectors_at_once, parameters.width() - first);
+    LaneArray block(compiled_->parameter_rows(), width);
+    for (int r = 0; r < parameters.rows(); ++r)
+      for (int w = 0; w < width; ++w) block(r, w) = parameters(r, first + w);
+    if (start_) start_->estimate(block);
+    LaneArray records(last * channels, width);
+    std::vector<Outcome> outcome(static_cast<std::size_t>(width));
+    simulator_.records(block, 0, last, records, outcome);
+    for (int c = 0; c < channels; ++c)
+      for (int w = 0; w < width; ++w) {
+        values[static_cast<std::size_t>(c)].emplace_back();
+        for (int const i : samples(c)) values[static_cast<std::size_t>(c)].back().push_back(records(i * channels + c, w));
+      }
+  }
+  return values;
+}
+
+}  // namespace sysid
