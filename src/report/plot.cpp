@@ -97,13 +97,19 @@ std::string shortened(std::string_view text, double pixels) {
   if (text_pixels(text) <= pixels) return std::string(text);
   std::size_t const bracket = text.ends_with(']') ? text.rfind(" [") : std::string_view::npos;
   std::string_view const unit = bracket == std::string_view::npos ? std::string_view{} : text.substr(bracket);
-  std::string_view name = text.substr(0, text.size() - unit.size());
-  // Whole characters, two at least.
-  while (text_width(name) > 2 && text_pixels(name) + text_pixels("…") + text_pixels(unit) > pixels) {
-    do name.remove_suffix(1);
-    while (!name.empty() && (static_cast<unsigned char>(text[name.size()]) & 0xC0) == 0x80);
-  }
-  return fmt::format("{}…{}", name, unit);
+  std::string_view const name = text.substr(0, text.size() - unit.size());
+  // Where whole characters begin. The last ones stay: they are what numbered names differ in.
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < name.size(); ++i)
+    if ((static_cast<unsigned char>(name[i]) & 0xC0U) != 0x80U) begins.push_back(i);
+  std::size_t const tail = begins.size() > 8 ? 3 : 0;
+  std::size_t head = begins.size() > tail ? begins.size() - tail - 1 : 0;
+  auto const left = [&] {
+    return fmt::format("{}…{}{}", name.substr(0, begins.empty() ? 0 : begins[head]),
+                       tail == 0 ? "" : name.substr(begins[begins.size() - tail]), unit);
+  };
+  while (head > 2 && text_pixels(left()) > pixels) --head;
+  return left();
 }
 
 std::pair<double, double> range(std::vector<double> const& values) {

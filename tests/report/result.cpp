@@ -37,6 +37,23 @@ TEST_CASE("a result folder holds draws per chain, prediction, summary, timing, r
   CHECK(files.contains("figures/posterior.svg") == gnuplot_installed());
 }
 
+TEST_CASE("pictures stand beside each other in the formats asked for, and go with the result they are of") {
+  if (!gnuplot_installed()) return;
+  TemporaryFolder const folder;
+  fs::path const path = folder.path() / "posterior";
+  write_result(example::duffing(10), path, {FigureFormat::pdf, FigureFormat::text, FigureFormat::png});
+  auto files = contents(path);
+  for (char const* ending : {"gnuplot", "pdf", "txt", "png"})
+    CHECK_MESSAGE(files.contains(std::string("figures/posterior.") + ending), ending);
+  CHECK_FALSE(files.contains("figures/posterior.svg"));
+  CHECK(files["report.html"].find("<svg") != std::string::npos);  // the page has its own
+  write_result(example::duffing(10), path, {});
+  files = contents(path);
+  CHECK(files.contains("figures/posterior.gnuplot"));
+  for (char const* ending : {"svg", "pdf", "txt", "png"}) CHECK_FALSE(files.contains(std::string("figures/posterior.") + ending));
+  CHECK(files["report.html"].find("<svg") == std::string::npos);
+}
+
 TEST_CASE("the same result is the same bytes but for the timing") {
   TemporaryFolder const folder;
   Report report = example::duffing(10);
