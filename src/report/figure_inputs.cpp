@@ -77,7 +77,7 @@ Figure input_figure(Prediction const& prediction, PredictedQuantity const& quant
     auto const [low, high] = range(input.values);
     Axis const x = axis(low, high, inputs.size() == 1 ? 6 : 3, 0.02);
     double const left = 70 + static_cast<double>(k) * step;
-    Panel p = panel_at(left, left + step - 14, 44, height - 12.0 - legend_rows, x, y);
+    Panel p = panel_at(left, k + 1 == inputs.size() ? width - 14.0 : left + step - 30, 44, height - 12.0 - legend_rows, x, y);
     p.x_label = axis_label(input.name, input.unit, x);
     p.y_numbers = k == 0;
     if (k == 0) p.y_label = axis_label(quantity.name, quantity.unit, y);

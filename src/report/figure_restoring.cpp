@@ -86,7 +86,7 @@ Figure loop_figure(RestoringForce const& force) {
     auto const x_extent = extent(side.of_model, side.of_data);
     Axis const x = axis(x_extent.first, x_extent.second, 4, 0.04);
     double const left = 70 + static_cast<double>(k) * step;
-    Panel p = panel_at(left, left + step - 14, 44, height - 28.0, x, y);
+    Panel p = panel_at(left, k == 0 ? left + step - 30 : width - 14.0, 44, height - 28.0, x, y);
     p.x_label = axis_label(side.label, side.unit, x);
     p.y_numbers = k == 0;
     if (k == 0) p.y_label = axis_label(force_name(force), force.force_unit, y);

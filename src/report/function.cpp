@@ -43,7 +43,7 @@ Figure function_figure(FunctionReport const& function) {
     auto const& cut = function.cuts[i];
     Axis const x = axis(cut.front().inputs[i], cut.back().inputs[i], count == 1 ? 6 : 3);
     double const step = (width - 70.0) / count, left = 70 + d * step;
-    Panel p = panel_at(left, left + step - 16, 44, height - 12.0, x, y);
+    Panel p = panel_at(left, d + 1 == count ? width - 16.0 : left + step - 30, 44, height - 12.0, x, y);
     p.x_label = axis_label(function.inputs[i].first, function.inputs[i].second, x);
     if (d == 0) p.y_label = axis_label(function.name, function.unit, y);
     p.y_numbers = d == 0;
