@@ -112,7 +112,7 @@ class Task {
   std::string model() const {
     std::string out;
     if (!report_.equations.empty()) {
-      out += "<div class=\"equations\">\n";
+      out += "<div class=\"equations\" role=\"group\" tabindex=\"0\" aria-label=\"Equations\">\n";
       for (std::string const& equation : report_.equations) out += fmt::format("<p>{}</p>\n", typeset(equation));
       out += "</div>\n";
     }

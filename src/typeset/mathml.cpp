@@ -115,8 +115,12 @@ class MathMl final : public Notation {
     auto const [open, close] = fence == Fence::bars       ? std::pair("|", "|")
                                : fence == Fence::brackets ? std::pair("[", "]")
                                                           : std::pair("(", ")");
-    return fmt::format("<mrow><mo form=\"prefix\" stretchy=\"true\">{}</mo>{}<mo form=\"postfix\" stretchy=\"true\">{}</mo></mrow>",
-                       open, inside, close);
+    // Around what is no taller than a letter they would grow all the same where the reader has no font for mathematics.
+    bool const tall =
+        inside.find("<mfrac") != inside.npos || inside.find("<mtable") != inside.npos || inside.find("<msqrt") != inside.npos;
+    return fmt::format(
+        "<mrow><mo form=\"prefix\" stretchy=\"{0}\">{1}</mo>{2}<mo form=\"postfix\" stretchy=\"{0}\">{3}</mo></mrow>", tall, open,
+        inside, close);
   }
   std::string dotted(std::string const& base, int dots) const override {
     constexpr std::string_view accents[] = {"\u02D9", "\u00A8", "\u20DB"};

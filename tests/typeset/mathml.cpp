@@ -82,3 +82,13 @@ TEST_CASE("what XML would read as its own is escaped") {
   CHECK(fault(*formula) == "");
   CHECK(formula->find("alttext=\"a = if b &lt; c and b &gt; 1 then 1 else 0\"") != std::string::npos);
 }
+
+TEST_CASE("parentheses grow around fractions and roots alone") {
+  auto const grows = [](char const* text) {
+    return sysid::mathml(text).value_or("").find("stretchy=\"true\"") != std::string::npos;
+  };
+  CHECK(grows("a = 2*(b/c + 1)"));
+  CHECK(grows("a = (sqrt(b) + 1)*c"));
+  CHECK_FALSE(grows("initial y = 0, y' = 0"));
+  CHECK_FALSE(grows("observe force ~ normal(Cd*U*abs(U), sd = sigma)"));
+}
