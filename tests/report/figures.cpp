@@ -85,12 +85,14 @@ TEST_CASE("a script that gnuplot refuses gives no picture and no exception") {
 TEST_CASE("a figure in the page takes its colours from the page") {
   plot::Figure const figure{"f", "", "", ""};
   std::string const svg =
-      "<?xml version=\"1.0\"?>\n<svg \n viewBox=\"0 0 1 1\"><path stroke='rgb( 27,  94, 155)'/><text fill=\"rgb(31,41,51)\"/><rect "
+      "<?xml version=\"1.0\"?>\n<svg \n viewBox=\"0 0 480 1\"><path stroke='rgb( 27,  94, 155)'/><text "
+      "fill=\"rgb(31,41,51)\"/><rect "
       "fill=\"#ffffff\"/></svg>\n";
-  CHECK(embedded(svg, figure) ==
-        "<svg role=\"img\" aria-label=\"f\"\n viewBox=\"0 0 1 1\"><path stroke='var(--fig-model)'/><text "
-        "fill=\"var(--fig-ink)\"/><rect "
-        "fill=\"var(--fig-paper)\"/></svg>\n");
+  CHECK(
+      embedded(svg, figure) ==
+      "<svg role=\"img\" aria-label=\"f\" style=\"max-width:672px\"\n viewBox=\"0 0 480 1\"><path stroke='var(--fig-model)'/><text "
+      "fill=\"var(--fig-ink)\"/><rect "
+      "fill=\"var(--fig-paper)\"/></svg>\n");
 }
 
 TEST_CASE("a long record is shown in part and says so") {
