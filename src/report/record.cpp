@@ -51,7 +51,8 @@ using json = nlohmann::json;
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorNumbers, distribution, arguments, lower, upper, scale)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorInfo, name, unit, text, numbers, q5, q95)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, notes, truth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
@@ -62,6 +63,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Mode, declared, sd, log_density, log_mass, sh
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evidence, log_evidence, reason, along_axes, modes, of_likelihood)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, kind, where, count, time, example, names)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FunctionPoint, inputs, mean, sd, q5, q95)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PredictedInput, name, unit, values)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RestoringForce::Path, displacement, velocity, force)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RestoringForce, experiment, displacement, displacement_unit, velocity, velocity_unit, force_unit,
+                                   per_mass, model, data, half_width, why_no_data, grid_displacement, grid_velocity, surface)
 
 void to_json(json& out, Ledger const& ledger) { out = {{"solves", ledger.solves()}, {"failures", ledger.failures()}}; }
 void from_json(json const& stored, Ledger& ledger) {
@@ -117,7 +122,8 @@ void from_json(json const& stored, PredictedQuantity& quantity) {
 
 void to_json(json& out, Prediction const& prediction) {
   out = {{"experiment", prediction.experiment}, {"length", prediction.time.size()}, {"time_unit", prediction.time_unit},
-         {"time_scale", prediction.time_scale}, {"rows", prediction.rows},          {"quantities", prediction.quantities}};
+         {"time_scale", prediction.time_scale}, {"rows", prediction.rows},          {"quantities", prediction.quantities},
+         {"inputs", prediction.inputs}};
 }
 void from_json(json const& stored, Prediction& prediction) {
   stored.at("experiment").get_to(prediction.experiment);
@@ -127,6 +133,7 @@ void from_json(json const& stored, Prediction& prediction) {
   stored.at("rows").get_to(prediction.rows);
   prediction.scored.assign(prediction.time.size(), 0);
   stored.at("quantities").get_to(prediction.quantities);
+  stored.at("inputs").get_to(prediction.inputs);
 }
 
 void to_json(json& out, FunctionReport const& function) {
@@ -225,8 +232,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, model_name, model_title, equations, model_text, resolved_text,
                                    priors, data, draws, summary, verdict, findings, fit, predictions, modes, evidence, noise,
-                                   functions, tables, selection, discovery, ledger, seed, place, command, unseeded, settings,
-                                   versions)
+                                   functions, forces, tables, selection, discovery, ledger, seed, place, command, unseeded,
+                                   settings, versions)
 
 namespace {
 
