@@ -34,6 +34,13 @@ Report whole_result(fs::path const& folder) {
   return report;
 }
 
+std::set<fs::path> task_folders(fs::path const& run) {
+  std::set<fs::path> tasks;
+  for (fs::directory_entry const& entry : fs::directory_iterator(run))
+    if (entry.is_directory() && is_result(entry.path())) tasks.insert(entry.path());
+  return tasks;
+}
+
 /// Of a run's tasks, in the order of its file.
 std::vector<Report> reports_in(fs::path const& folder) {
   if (!fs::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
@@ -42,10 +49,7 @@ std::vector<Report> reports_in(fs::path const& folder) {
     reports.push_back(whole_result(folder));
     return reports;
   }
-  std::set<fs::path> tasks;
-  for (fs::directory_entry const& entry : fs::directory_iterator(folder))
-    if (entry.is_directory() && is_result(entry.path())) tasks.insert(entry.path());
-  for (fs::path const& task : tasks) reports.push_back(whole_result(task));
+  for (fs::path const& task : task_folders(folder)) reports.push_back(whole_result(task));
   std::stable_sort(reports.begin(), reports.end(), [](Report const& a, Report const& b) { return a.place < b.place; });
   if (reports.empty())
     throw UserError({Severity::error,
@@ -66,6 +70,14 @@ fs::path report_results(fs::path const& folder, std::optional<fs::path> const& o
   fs::path const path = output.value_or(folder / "report.html");
   write_file(path, is_result(folder) ? report_html(pages.front().report, pages.front().figures) : run_html(pages));
   return path;
+}
+
+void redraw_figures(fs::path const& folder, std::vector<FigureFormat> const& formats) {
+  (void)reports_in(folder);  // says what is wrong with any before the first is written
+  for (fs::path const& task : is_result(folder) ? std::set{folder} : task_folders(folder)) {
+    Report const report = whole_result(task);
+    write_figures(drawn_figures(report, true), task, formats);
+  }
 }
 
 }  // namespace sysid

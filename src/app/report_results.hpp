@@ -2,6 +2,9 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <vector>
+
+#include "report/figure_format.hpp"
 
 namespace sysid {
 
@@ -10,5 +13,8 @@ namespace sysid {
 /// UserError where there are no results, or they are damaged: the page of before stays as it is.
 std::filesystem::path report_results(std::filesystem::path const& folder, std::optional<std::filesystem::path> const& output,
                                      bool pictures);
+
+/// Draws the figures of a task's folder, or of all of a run's, anew: into figures/ of each, beside the scripts. Errors as above.
+void redraw_figures(std::filesystem::path const& folder, std::vector<FigureFormat> const& formats);
 
 }  // namespace sysid

@@ -168,8 +168,19 @@ int compare(CommandLine const& line) {
   });
 }
 
+/// Each once, in the order asked for; nothing asked for: SVG.
+std::vector<FigureFormat> figure_formats(std::vector<std::string> const& names) {
+  std::vector<FigureFormat> formats;
+  for (std::string const& name : names) {
+    FigureFormat const format = *find_figure_format(name);
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  }
+  return formats.empty() ? std::vector{FigureFormat::svg} : formats;
+}
+
 int report(CommandLine const& line) {
   return guarded(line, Source("sysid", ""), [&] {
+    if (!line.figures.empty()) redraw_figures(line.file, figure_formats(line.figures));
     std::cout << report_results(line.file, line.page, line.run.figures).string() << '\n';
     return code(ExitCode::success);
   });
@@ -275,14 +286,12 @@ std::string refuse_figure_format(std::string const& name) {
   return "";
 }
 
-/// Each once, in the order asked for; nothing asked for: SVG.
-std::vector<FigureFormat> figure_formats(std::vector<std::string> const& names) {
-  std::vector<FigureFormat> formats;
-  for (std::string const& name : names) {
-    FigureFormat const format = *find_figure_format(name);
-    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
-  }
-  return formats.empty() ? std::vector{FigureFormat::svg} : formats;
+void add_figures_option(CLI::App& verb, CommandLine& line) {
+  verb.add_option("--figures", line.figures,
+                  "what figures are drawn as: svg, png, pdf or text, several with commas between (default: svg)")
+      ->delimiter(',')
+      ->type_name("FORMAT,...")
+      ->check(refuse_figure_format);
 }
 
 void add_run_options(CLI::App& verb, CommandLine& line) {
@@ -303,11 +312,7 @@ void add_run_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("--checkpoint-interval", line.run.checkpoint_interval, "seconds between checkpoints")->check(CLI::PositiveNumber);
   verb.add_option("--interrupt-after", line.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
   verb.add_flag("!--no-figures", line.run.figures, "leave figures as scripts");
-  verb.add_option("--figures", line.figures,
-                  "what figures are drawn as: svg, png, pdf or text, several with commas between (default: svg)")
-      ->delimiter(',')
-      ->type_name("FORMAT,...")
-      ->check(refuse_figure_format);
+  add_figures_option(verb, line);
   verb.add_flag("-q,--quiet", line.quiet, "no progress, no notices");
 }
 
@@ -360,6 +365,7 @@ int main(int argument_count, char** arguments) {
   reporting->add_option("results", line.file, "the folder of a task, or of a whole run")->required();
   reporting->add_option("-o,--output", line.page, "the file to write (default: report.html in the folder)");
   reporting->add_flag("!--no-figures", line.run.figures, "leave figures out");
+  add_figures_option(*reporting, line);
   reporting->callback([&] { exit = report(line); });
   CLI::App* exporting = app.add_subcommand("export", "write results for ArviZ and xarray: InferenceData in NetCDF-4");
   exporting->add_option("results", line.topic, "folder of a fit or selection, or of a whole run")->required();

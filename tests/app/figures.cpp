@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "app/report_results.hpp"
 #include "app/restoring_force.hpp"
+#include "app/stored_pages.hpp"
 #include "app/truth.hpp"
 #include "running.hpp"
 
@@ -74,6 +76,19 @@ TEST_CASE("the restoring force of a spring is the one it was made with, by the m
   // The noise that is left is a tenth of the force, what smoothing bends at most another.
   CHECK(std::sqrt(square / size) < 0.2);
   CHECK(std::filesystem::exists(run.folder.path() / "results/best/figures/surface_bench_y.gnuplot"));
+  // All of it comes back from the folder.
+  CHECK(test::broken_promises(run.folder.path() / "results") == "");
+}
+
+TEST_CASE("figures are drawn anew from the folder of their results") {
+  if (!can_draw(FigureFormat::pdf)) return;
+  CaseRun const run(with(oscillator, "NOISE", "1"), {});
+  std::filesystem::path const results = run.folder.path() / "results", figures = results / "best/figures";
+  redraw_figures(results, {FigureFormat::text, FigureFormat::pdf});
+  CHECK(std::filesystem::exists(figures / "loop_bench_y.txt"));
+  CHECK(read_file(figures / "surface_bench_y.pdf").starts_with("%PDF"));
+  CHECK_FALSE(std::filesystem::exists(figures / "loop_bench_y.svg"));
+  CHECK_THROWS_AS(redraw_figures(run.folder.path() / "nowhere", {FigureFormat::svg}), IoError);
 }
 
 TEST_CASE("data that are noise once they are differentiated twice are left out") {
