@@ -6,6 +6,7 @@
 
 #include "app/check_file.hpp"
 #include "app/check_looked_at.hpp"
+#include "app/check_process.hpp"
 
 namespace sysid {
 namespace {
@@ -33,16 +34,18 @@ std::string obstacle(LookedAt const& look, PriorDraws const& prior, std::vector<
 }  // namespace
 
 void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
-  if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty()) {
-    page.left_out = "what needs draws of the prior: the model has a Gaussian process";
-    return;
-  }
-  LookedAt const look(session, what, data, page);
-  for (Parameter const& parameter : look.model().parameters)
+  Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
+  for (Parameter const& parameter : written.parameters)
     if (parameter.prior && !parameter.prior->row->proper) {
       page.left_out = fmt::format("what needs draws of the prior: that of {} is {}", parameter.name, parameter.prior->row->name);
       return;
     }
+  if (!written.processes.empty()) {
+    look_at_processes(session, what, data, page);
+    page.left_out = "identifiability: the model has a Gaussian process";
+    return;
+  }
+  LookedAt const look(session, what, data, page);
   std::string const unlooked = look.model().integrated() ? "identifiability and the solver: " : "identifiability: ";
   PriorDraws const prior = draw_prior(look);
   std::vector<int> const sized = describe_prior(look, prior);

@@ -9,11 +9,11 @@ namespace {
 /// Beyond so many observations a filter is the faster.
 constexpr Eigen::Index many = 300;
 
+}  // namespace
+
 bool filters(Covariance const& covariance, Observations const& observations) {
   return observations.values.size() > many && has_state_space(covariance);
 }
-
-}  // namespace
 
 Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient) {
   return filters(covariance, observations) ? state_space_marginal(covariance, observations, parameters, with_gradient)

@@ -6,6 +6,9 @@
 
 namespace sysid::gaussian_process {
 
+/// Whether filtering it is, with work proportional to the number of observations; else it grows with its cube.
+bool filters(Covariance const& covariance, Observations const& observations);
+
 /// As `dense_marginal`.
 Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient);
 

@@ -111,9 +111,31 @@ Json findings_array(Findings const& findings) {
   return out;
 }
 
+Json process_object(ProcessPage const& page) {
+  Json lines = Json::array();
+  for (ProcessPage::Line const& line : page.lines) {
+    Json each = {{"name", line.name},    {"what", line.what},           {"unit", line.unit},
+                 {"q5", line.prior.low}, {"median", line.prior.middle}, {"q95", line.prior.high}};
+    if (line.inputs)
+      each["inputs"] = {{"range", line.inputs->range}, {"spacing", line.inputs->spacing}, {"places", line.inputs->places}};
+    lines.push_back(std::move(each));
+  }
+  return {{"channel", page.channel},
+          {"unit", page.unit},
+          {"draws", page.draws},
+          {"failed", page.failed},
+          {"rows", page.rows},
+          {"repeated_rows", page.repeated},
+          {"filtered", page.filtered},
+          {"measured_sd", page.measured_sd},
+          {"priors", lines}};
+}
+
 void add_outlook(Outlook const& outlook, Json& out) {
   out["prior"] = outlook.prior ? prior_object(*outlook.prior) : Json(nullptr);
   out["information"] = outlook.information ? information_object(*outlook.information) : Json(nullptr);
+  out["processes"] = Json::array();
+  for (ProcessPage const& process : outlook.processes) out["processes"].push_back(process_object(process));
   out["left_out"] = outlook.left_out;
 }
 

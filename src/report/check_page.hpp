@@ -96,12 +96,35 @@ struct InformationPage {
   std::optional<double> response_move;                // of a candidate: of the middle response, as a part of its sd, when refined
 };
 
+/// What the priors of a channel's Gaussian processes say of data like these.
+struct ProcessPage {
+  std::string channel, unit;
+  int draws = 0, failed = 0;   // failed: without a likelihood
+  int rows = 0, repeated = 0;  // repeated: with the inputs of an earlier one
+  bool filtered = false;       // the work is proportional to the rows, else to their cube
+  double measured_sd = 0;      // declared unit
+  struct Spread {
+    double low = 0, middle = 0, high = 0;  // 5, 50 and 95 % of the draws
+  };
+  struct Inputs {
+    double range = 0, spacing = 0;  // spacing: the middle gap between neighbours
+    int places = 0;                 // that differ
+  };
+  struct Line {
+    std::string name, what, unit;  // "d in temperature", "length"
+    Spread prior;                  // declared unit
+    std::optional<Inputs> inputs;  // of a length
+  };
+  std::vector<Line> lines;
+};
+
 /// What is to be expected of one model of a task: of the fitted one, or of a candidate.
 struct Outlook {
   std::string candidate;  // its name; empty in a fit
   std::optional<PriorPage> prior;
   std::optional<InformationPage> information;
-  std::string left_out;  // why something was not looked at
+  std::vector<ProcessPage> processes;  // of each channel, where the model has Gaussian processes
+  std::string left_out;                // why something was not looked at
   Findings findings;
 };
 

@@ -151,6 +151,29 @@ std::string information_text(InformationPage const& page) {
   return out;
 }
 
+std::string process_text(ProcessPage const& page) {
+  std::vector<std::string> lines = {page.failed == 0 ? fmt::format("{} draws, all of them with a likelihood", page.draws)
+                                                     : fmt::format("{} of {} without a likelihood", page.failed, page.draws)};
+  for (ProcessPage::Line const& line : page.lines) {
+    std::string text = fmt::format("{}: {} of {} to {}, the middle one {}", line.name, line.what, significant(line.prior.low, 2),
+                                   significant(line.prior.high, 2), with_unit(significant(line.prior.middle, 2), line.unit));
+    if (line.inputs)
+      text += fmt::format("; {} over {}, spaced by {}", count(line.inputs->places, "place"),
+                          with_unit(significant(line.inputs->range, 2), line.unit), significant(line.inputs->spacing, 2));
+    else
+      text += fmt::format("; sd of {} {}", page.channel, with_unit(significant(page.measured_sd, 2), page.unit));
+    lines.push_back(std::move(text));
+  }
+  if (page.rows > 0) {
+    double const work = std::pow(page.rows, 3) / 3;
+    lines.push_back(fmt::format("a likelihood of {} rows{}: {}", page.rows,
+                                page.repeated > 0 ? fmt::format(", {} with the inputs of another", page.repeated) : std::string(),
+                                page.filtered ? std::string("filtered, in steps proportional to them")
+                                              : fmt::format("{} operations, a third of their cube", significant(work, 2))));
+  }
+  return entry("processes", lines);
+}
+
 std::string findings_text(Findings const& findings) {
   std::string out;
   for (Severity const severity : {Severity::error, Severity::warning, Severity::note})
@@ -172,6 +195,7 @@ std::string task_text(TaskPage const& task) {
     if (!outlook.candidate.empty()) out += fmt::format(" candidate {}\n", outlook.candidate);
     if (outlook.prior) out += prior_text(*outlook.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
     if (outlook.information) out += information_text(*outlook.information);
+    for (ProcessPage const& process : outlook.processes) out += process_text(process);
     if (!outlook.left_out.empty()) out += entry("left out", {outlook.left_out});
     out += findings_text(outlook.findings);
   }
