@@ -98,6 +98,37 @@ TEST_CASE("data that are noise once they are differentiated twice are left out")
   CHECK(script.find("$displacement_model") != std::string::npos);
 }
 
+TEST_CASE("without an input the force is that of one unit of mass") {
+  CaseRun const run(R"(
+model decay {
+  state   angle [rad]
+  initial angle = first, angle' = 0
+  parameter w     [1/s] ~ log_uniform(1, 10)
+  parameter d     [1/s] ~ log_uniform(0.01, 1)
+  parameter first [rad] ~ uniform(0.1, 3)
+  parameter sigma [rad] ~ log_uniform(1e-6, 1)
+  angle'' + d*angle' + w^2*sin(angle) = 0
+  observe measured_angle ~ normal(angle, sd = sigma)
+}
+data bench {
+  file    "results/truth/made.csv"
+  time    t [s]
+  measure measured_angle = measured_angle [rad]
+}
+truth = simulate decay with values(w = 3, d = 0.2, first = 2.5), noise = 1 [percent], samples = 400, rate = 50 [Hz], seed = 1,
+    file = "made.csv"
+best = fit decay to bench with map, seed = 1
+)",
+                    {});
+  std::string const script = run.file("best/figures/loop_bench_angle.gnuplot");
+  CHECK(script.find("'force per mass [rad/s²]'") != std::string::npos);
+  auto const places = block(script, "displacement_model"), speeds = block(script, "velocity_model");
+  REQUIRE(places.size() == speeds.size());
+  REQUIRE(places.size() > 100);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    CHECK(places[i][1] == doctest::Approx(9 * std::sin(places[i][0]) + 0.2 * speeds[i][0]).epsilon(0.01).scale(9));
+}
+
 TEST_CASE("a hysteresis has loops and no surface") {
   std::string hysteresis = with(oscillator, "NOISE", "1");
   hysteresis = with(hysteresis, "state   y [mm]", "state   y [mm], z [N]");
