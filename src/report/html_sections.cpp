@@ -23,7 +23,8 @@ Topic topic_of(plot::Figure const& figure) {
     return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return figure.name.starts_with(word); });
   };
   if (begins({"trace", "ranks"})) return Topic::chains;
-  if (begins({"fit_", "state_", "residuals_", "correlation_", "input_", "inputs_", "loop_", "hysteresis_", "surface_", "restoring_"}))
+  if (begins(
+          {"fit_", "state_", "residuals_", "correlation_", "input_", "inputs_", "loop_", "hysteresis_", "surface_", "restoring_"}))
     return Topic::fit;
   return Topic::result;
 }
