@@ -65,10 +65,11 @@ std::vector<Report> reports_in(fs::path const& folder) {
 
 fs::path report_results(fs::path const& folder, std::optional<fs::path> const& output, bool pictures) {
   std::vector<Report> const reports = reports_in(folder);
-  std::vector<TaskPage> pages;
+  std::vector<ReportedTask> pages;
   for (Report const& report : reports) pages.push_back({report, drawn_figures(report, pictures)});
-  fs::path const path = output.value_or(folder / "report.html");
-  write_file(path, is_result(folder) ? report_html(pages.front().report, pages.front().figures) : run_html(pages));
+  fs::path path = output ? *output : folder / "report.html";
+  std::string const page = is_result(folder) ? report_html(reports.front(), pages.front().figures) : run_html(pages);
+  write_file(path, page);
   return path;
 }
 

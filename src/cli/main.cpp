@@ -34,7 +34,7 @@ struct CommandLine {
   int draws = 200;
   RunOptions run;
   bool quiet = false, only_check = false;
-  std::optional<std::filesystem::path> page;  // where `report` writes
+  std::filesystem::path page;       // where `report` writes; empty: beside the results
   std::string* messages = nullptr;  // where JSON messages go that a verb prints as part of its answer; else standard error
 };
 
@@ -181,7 +181,9 @@ std::vector<FigureFormat> figure_formats(std::vector<std::string> const& names) 
 int report(CommandLine const& line) {
   return guarded(line, Source("sysid", ""), [&] {
     if (!line.figures.empty()) redraw_figures(line.file, figure_formats(line.figures));
-    std::cout << report_results(line.file, line.page, line.run.figures).string() << '\n';
+    std::optional<std::filesystem::path> page;
+    if (!line.page.empty()) page = line.page;
+    std::cout << report_results(line.file, page, line.run.figures).string() << '\n';
     return code(ExitCode::success);
   });
 }

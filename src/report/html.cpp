@@ -61,7 +61,7 @@ std::string report_html(Report const& report, std::vector<DrawnFigure> const& fi
               contents, all(sections, 2), report.version);
 }
 
-std::string run_html(std::vector<TaskPage> const& tasks) {
+std::string run_html(std::vector<ReportedTask> const& tasks) {
   std::string contents, body;
   std::set<std::string> models;
   for (std::size_t i = 0; i < tasks.size(); ++i) {

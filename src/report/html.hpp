@@ -18,12 +18,12 @@ struct DrawnFigure {
 /// Of one task. Well-formed XML as well as HTML, without a script and without a reference to anything outside.
 std::string report_html(Report const& report, std::vector<DrawnFigure> const& figures);
 
-struct TaskPage {
+struct ReportedTask {
   Report const& report;
   std::vector<DrawnFigure> figures;
 };
 
 /// Of all tasks of a run, in order: contents first, then each as `report_html` has it. `tasks` is not empty.
-std::string run_html(std::vector<TaskPage> const& tasks);
+std::string run_html(std::vector<ReportedTask> const& tasks);
 
 }  // namespace sysid

@@ -139,6 +139,12 @@ TEST_CASE("seeds that were drawn stand in the command, or are named where others
   CHECK(repetition(mixed).unseeded == std::vector<std::string>{"posterior"});
 }
 
+TEST_CASE("a page that cannot be written is an error of input and output, whatever is made of it") {
+  DishRun const run;
+  for (fs::path const& results : {run.results, run.results / "posterior"})
+    CHECK_THROWS_AS(report_results(results, run.folder.path() / "nowhere" / "page.html", false), IoError);
+}
+
 TEST_CASE("what is missing or damaged is named, and the page of before stays") {
   DishRun const run;
   fs::path const task = run.results / "posterior";
