@@ -22,9 +22,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr SettingRow rows[] = {
-    {"samples", SettingKind::integer, "25000", 1, 1e12, "", "iterations of each chain, burn-in included"},
-    {"burn_in", SettingKind::integer, "5000", 0, 1e12, "", "first iterations, dropped; the proposal adapts in them"},
-    {"thin", SettingKind::integer, "10", 1, 1e12, "", "keep every thin-th iteration after burn-in"},
+    {"samples", SettingKind::integer, "25000", 1, 1e9, "", "iterations of each chain, burn-in included"},
+    {"burn_in", SettingKind::integer, "5000", 0, 1e9, "", "first iterations, dropped; the proposal adapts in them"},
+    {"thin", SettingKind::integer, "10", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "4", 1, 65536, "", "independent chains, run side by side"},
     {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive spherical",
      "learn the proposal's covariance in burn-in, or keep variance times identity"},
@@ -34,6 +34,9 @@ constexpr SettingRow rows[] = {
 
 /// Unthinned draws are kept for the diagnostics while they fit into this many numbers (160 MB).
 constexpr double most_recorded = 2e7;
+
+/// Draws of all chains: more than any figure shows and any other program likes to read.
+constexpr std::int64_t most_kept = 10'000'000;
 
 /// A batch of 16 lanes takes half as long again as one of 4 on the machines we know, and a chain rejects three moves in four.
 constexpr int lanes_worth_filling = 16, most_ahead = 8;
@@ -241,6 +244,9 @@ std::string refuse(Settings const& settings) {
   if (thin > samples - burn_in)
     return fmt::format("thin ({}) is more than the {} iterations left after burn-in, so no draw would be kept", thin,
                        samples - burn_in);
+  // All of them are held in memory and written out.
+  if (std::int64_t const kept = (samples - burn_in) / thin * settings.integer("chains"); kept > most_kept)
+    return fmt::format("{} draws would be kept, more than {}: raise `thin`, or take fewer samples", kept, most_kept);
   return {};
 }
 

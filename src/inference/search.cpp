@@ -10,6 +10,7 @@
 
 #include "core/elementary.hpp"
 #include "inference/descent.hpp"
+#include "inference/failed_places.hpp"
 #include "inference/identifiability.hpp"
 #include "inference/laplace.hpp"
 #include "inference/local_searches.hpp"
@@ -303,17 +304,10 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
 }
 
 Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
-  // Only the first failures are traced to a sub-expression; they are examples, their counts say little.
-  std::vector<Failure> failures = ledger.failures();
-  std::erase_if(failures, [](Failure const& each) { return each.where == Ledger::untraced; });
-  std::stable_sort(failures.begin(), failures.end(), [](Failure const& a, Failure const& b) { return a.count > b.count; });
-  std::string places;
-  for (std::size_t i = 0; i < failures.size() && i < 3; ++i)
-    places += fmt::format("{}{} in {}{}", i == 0 ? ": " : ", ", name(failures[i].kind), failures[i].where,
-                          std::isnan(failures[i].time) ? "" : fmt::format(" at t = {:.4g} s", failures[i].time));
+  std::string const places = failed_places(ledger);
   return {
       Severity::error, "no_finite_start",
-      fmt::format("the likelihood is finite at none of {} draws from the prior{}", draws, places),
+      fmt::format("the likelihood is finite at none of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
       "look at this part of the equations, narrow the priors towards values for which the model can be solved, or let the solver "
       "choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff"};
 }

@@ -22,7 +22,7 @@ constexpr SettingRow rows[] = {
      "equal probability of every number of terms, or of every support"},
     {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
     {"enumerate", SettingKind::integer, "16", 0, 24, "", "selectable terms up to which every support is weighed"},
-    {"sweeps", SettingKind::integer, "200", 1, 1e9, "", "of each Gibbs chain over all terms"},
+    {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "of each Gibbs chain over all terms"},
     {"chains", SettingKind::integer, "4", 1, 1000, "", "Gibbs chains"},
     {"supports", SettingKind::integer, "10", 1, 10000, "", "best supports that are reported"},
 };

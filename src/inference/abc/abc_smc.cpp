@@ -253,7 +253,8 @@ class Run {
   void finish() {
     if (result_.interrupted && context_.checkpoint) save();
     if (last_.number == 0) {
-      if (!result_.interrupted) result_.failure = no_population(record_, next_.threshold, plan_.particles, result_.stopped_by);
+      if (!result_.interrupted)
+        result_.failure = no_population(record_, next_.threshold, plan_.particles, result_.stopped_by, context_.ledger);
       return;
     }
     result_.populations = state_.records;

@@ -1,5 +1,6 @@
 // Words for what populations show.
 #include "inference/abc/findings.hpp"
+#include "inference/failed_places.hpp"
 
 #include <fmt/format.h>
 
@@ -75,10 +76,14 @@ std::optional<Finding> equal_distances(SelectionResult const& result) {
 
 }  // namespace
 
-Finding no_population(PopulationRecord const& record, double threshold, int particles, std::string const& stopped_by) {
+Finding no_population(PopulationRecord const& record, double threshold, int particles, std::string const& stopped_by,
+                      Ledger const& ledger) {
   bool const bounded = std::isfinite(threshold);
   std::uint64_t const beyond = record.simulated - record.failed - static_cast<std::uint64_t>(record.accepted);
-  std::string const failed = record.failed == 0 ? std::string() : fmt::format(", {} of which did not stay finite", record.failed);
+  std::string const places = failed_places(ledger);
+  std::string const failed = record.failed == 0 ? std::string()
+                                                : fmt::format(", {} of which did not stay finite{}", record.failed,
+                                                              places.empty() ? "" : fmt::format(" ({})", places));
   std::string const what =
       bounded ? fmt::format("came within the first threshold {}", threshold) : std::string("could be simulated");
   std::string help = "allow more, or take fewer `particles`";
