@@ -93,6 +93,7 @@ class Fit {
     preparation_.solver = what_.solver;
     if (what_.settle && model_.integrated()) {
       SearchSolver const search = search_solver(make, what_.solver, seed_);
+      if (context.stop_requested()) return false;
       if (search.solver != what_.solver)
         session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws leave the range of numbers\n",
                                         task_.name, accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);

@@ -24,6 +24,7 @@
 #include "app/settling.hpp"
 #include "app/solver_record.hpp"
 #include "app/task_checkpoint.hpp"
+#include "app/tolerance.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/search.hpp"
 

@@ -33,7 +33,7 @@ constexpr SettingRow rows[] = {
     {"relative_change", SettingKind::real, "0.01", 0, 1, "", "stop when it falls by no more than this part of itself"},
     {"target", SettingKind::real, "0", 0, infinity, "", "stop at this threshold"},
     {"acceptance", SettingKind::real, "0", 0, 1, "", "stop when a smaller part of the proposals is accepted"},
-    {"simulations", SettingKind::real, "1e8", 1, 1e15, "", "stop after so many in all"},
+    {"simulations", SettingKind::real, "1e8", 1, 1e18, "", "stop after so many in all"},
     {"wall_time", SettingKind::real, "0", 0, infinity, "", "stop after so many seconds, which no seed repeats; 0: no limit"},
     {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after so many"},
     {"cross_check", SettingKind::flag, "true", 0, 0, "", "set Laplace's model probabilities from the likelihood beside these"},
