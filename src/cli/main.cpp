@@ -32,6 +32,7 @@ struct CommandLine {
   std::string file, dump, error_format = "text", instruction_set, topic, code;
   std::vector<std::string> files, figures;
   int draws = 200;
+  bool stan = false, latex = false;
   RunOptions run;
   bool quiet = false, only_check = false;
   std::filesystem::path page;       // where `report` writes; empty: beside the results
@@ -188,11 +189,45 @@ int report(CommandLine const& line) {
   });
 }
 
+// Loads the .sysid file that an export needs and does the work in a session of it.
+int with_session(CommandLine const& line, std::filesystem::path const& output, std::function<void(Session&)> const& work) {
+  std::optional<Source> source = read_source(line.file);
+  return guarded(line, *source, [&] {
+    Diagnostics diagnostics;
+    auto const file = load(*source, diagnostics);
+    if (diagnostics.has_errors()) show(diagnostics, *source, line);
+    if (!file) return code(ExitCode::user_error);
+    SilentProgress silent;
+    std::ostream nowhere(nullptr);
+    RunOptions options = line.run;
+    options.output = output;
+    Session session(*source, *file, options, silent, nowhere, nowhere);
+    work(session);
+    return code(ExitCode::success);
+  });
+}
+
 int export_results(CommandLine line) {
   return guarded(line, Source("sysid", ""), [&] {
+    if (line.stan && !std::filesystem::is_directory(line.topic)) {
+      line.file = line.topic;
+      return with_session(line, line.run.output,
+                          [&](Session& session) { export_stan(session, nullptr, line.run.force, std::cout); });
+    }
+    if (line.latex) {
+      Source const source = read_source(line.topic);
+      return guarded(line, source, [&] {
+        Diagnostics diagnostics;
+        auto const tree = parse(source, diagnostics);
+        show(diagnostics, source, line);
+        if (!tree) return code(ExitCode::user_error);
+        std::cout << equations_latex(*tree);
+        return code(ExitCode::success);
+      });
+    }
     ExportedResults const results = find_results(line.topic);
-    require_exportable(results, line.run.force);
-    if (line.draws == 0) {
+    if (!line.stan) require_exportable(results, line.run.force);
+    if (!line.stan && line.draws == 0) {
       export_netcdf(results, nullptr, 0, std::cout);
       return code(ExitCode::success);
     }
@@ -204,18 +239,11 @@ int export_results(CommandLine line) {
                "name it with --model FILE, or export what the results hold themselves with --draws 0");
       return code(line.file.empty() ? ExitCode::user_error : ExitCode::io);
     }
-    line.run.output = results.run;
-    std::optional<Source> source = read_source(line.file);
-    return guarded(line, *source, [&] {
-      Diagnostics diagnostics;
-      auto const file = load(*source, diagnostics);
-      if (diagnostics.has_errors()) show(diagnostics, *source, line);
-      if (!file) return code(ExitCode::user_error);
-      SilentProgress silent;
-      std::ostream nowhere(nullptr);
-      Session session(*source, *file, line.run, silent, nowhere, nowhere);
-      export_netcdf(results, &session, line.draws, std::cout);
-      return code(ExitCode::success);
+    return with_session(line, results.run, [&](Session& session) {
+      if (line.stan)
+        export_stan(session, &results, line.run.force, std::cout);
+      else
+        export_netcdf(results, &session, line.draws, std::cout);
     });
   });
 }
@@ -369,8 +397,14 @@ int main(int argument_count, char** arguments) {
   reporting->add_flag("!--no-figures", line.run.figures, "leave figures out");
   add_figures_option(*reporting, line);
   reporting->callback([&] { exit = report(line); });
-  CLI::App* exporting = app.add_subcommand("export", "write results for ArviZ and xarray: InferenceData in NetCDF-4");
-  exporting->add_option("results", line.topic, "folder of a fit or selection, or of a whole run")->required();
+  CLI::App* exporting =
+      app.add_subcommand("export", "write results for ArviZ and xarray (InferenceData in NetCDF-4), or a model as a Stan program");
+  exporting
+      ->add_option("results", line.topic, "folder of a fit or selection, or of a whole run; with --stan or --latex a .sysid file")
+      ->required();
+  CLI::Option* const stan = exporting->add_flag("--stan", line.stan, "write fits as Stan programs with their data");
+  exporting->add_flag("--latex", line.latex, "print the models of a .sysid file as LaTeX for amsmath")->excludes(stan);
+  exporting->add_option("-o,--output", line.run.output, "of a .sysid file: folder for results (default: results)");
   exporting->add_option("--model", line.file, "the .sysid file that the results are of (default: the one they were made from)");
   exporting->add_option("--draws", line.draws, "draws to simulate for likelihoods and predictions (0: only what is stored)")
       ->check(CLI::Range(0, 1000000))

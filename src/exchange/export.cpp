@@ -7,11 +7,14 @@
 #include <set>
 
 #include "app/results.hpp"
+#include "app/stored_draws.hpp"
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
 #include "exchange/inference_data.hpp"
 #include "exchange/selection_data.hpp"
+#include "exchange/stan_program.hpp"
 #include "report/selection.hpp"
+#include "typeset/typeset.hpp"
 
 namespace sysid {
 namespace {
@@ -169,6 +172,41 @@ void export_netcdf(ExportedResults const& results, Session* session, int draws, 
       for (std::string const& line : file.data.left_out) out << "  left out: " << line << '\n';
     }
   }
+}
+
+void export_stan(Session& session, ExportedResults const* results, bool force, std::ostream& out) {
+  std::vector<std::pair<fs::path, std::string>> files;
+  auto const add = [&](Task const& task, SolverSettings const& solver) {
+    StanProgram written = stan_program(session, task, solver);
+    fs::path const folder = session.result_folder(task);
+    files.emplace_back(folder / (task.name + ".stan"), std::move(written.program));
+    files.emplace_back(folder / (task.name + ".data.json"), std::move(written.data));
+  };
+  if (results != nullptr) {
+    for (StoredResult const& stored : results->results)
+      if (stored.is("fit")) {
+        int const task = task_of(session, stored);
+        add(session.file.tasks[static_cast<std::size_t>(task)], fitted_model(session, task).solver);
+      }
+  } else {
+    for (Task const& task : session.file.tasks)
+      if (auto const* fit = std::get_if<FitTask>(&task.what)) add(task, fit->solver);
+  }
+  if (files.empty()) throw refused("there is no fit to write as a Stan program", "name a file with a fit task, or results of one");
+  for (auto const& [path, text] : files)
+    if (!force && fs::exists(path)) throw refused(fmt::format("`{}` is there already", path.string()), "add --force to replace it");
+  for (auto const& [path, text] : files) {
+    make_folder(path.parent_path());
+    write_file(path, text);
+    out << path.string() << '\n';
+  }
+}
+
+std::string equations_latex(ast::File const& file) {
+  std::string text;
+  for (ast::Item const& item : file.items)
+    if (auto const* model = std::get_if<ast::Model>(&item)) text += fmt::format("% {}\n{}\n", model->name.text, latex(*model));
+  return text;
 }
 
 }  // namespace sysid

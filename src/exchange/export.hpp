@@ -6,6 +6,7 @@
 
 #include "app/session.hpp"
 #include "exchange/stored_result.hpp"
+#include "syntax/ast.hpp"
 
 namespace sysid {
 
@@ -28,5 +29,14 @@ void require_exportable(ExportedResults const& results, bool force);
 /// what the results hold themselves. draws: how many of them are simulated once more. Says on `out` what was written, with which
 /// groups.
 void export_netcdf(ExportedResults const& results, Session* session, int draws, std::ostream& out);
+
+/// Writes fits as Stan programs, TASK.stan and TASK.data.json, into their folders of results. With results: of those fits, with the
+/// solver that they settled on; without (null): of all fits of the session's file, with the solver that they state. All are written
+/// or none: UserError as `stan_program`, and where a file is there already and `force` is not given.
+void export_stan(Session& session, ExportedResults const* results, bool force, std::ostream& out);
+
+/// The models of a text as it is written, each as one align* of amsmath behind a line that names it: equations, initial values,
+/// definitions, observations, priors. Of a text that can be read.
+std::string equations_latex(ast::File const& file);
 
 }  // namespace sysid

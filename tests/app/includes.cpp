@@ -40,7 +40,7 @@ std::map<std::string, Folders> const allowed = {
     {"lsp", {"lsp", "assist", "syntax", "core"}},
     {"typeset", {"typeset", "syntax", "core"}},
     {"report", {"report", "typeset", "inference", "likelihood", "core"}},
-    {"exchange", {"exchange", "app", "report", "inference", "likelihood", "core"}},
+    {"exchange", {"exchange", "app", "report", "typeset", "inference", "likelihood", "simulate", "expression", "syntax", "core"}},
 };
 
 }  // namespace

@@ -1,0 +1,130 @@
+// Exported Stan programs against what Stan said of them when they were recorded (fixtures/make_stan.py), and what is refused.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "app/experiments.hpp"
+#include "app/fit_target.hpp"
+#include "data/digest.hpp"
+#include "exchange/exported.hpp"
+#include "exchange/stan_program.hpp"
+#include "exchange/stan_text.hpp"
+#include "report/csv.hpp"
+
+using namespace sysid;
+using namespace sysid::testing;
+using json = nlohmann::json;
+
+namespace {
+
+/// A shipped model, read and checked, or another text in its place.
+class Opened {
+ public:
+  Opened(std::filesystem::path const& path, std::string const& text) : source_(path.string(), text) {
+    Diagnostics diagnostics;
+    file_ = load(source_, diagnostics);
+    if (!file_) throw UserError(diagnostics.all().front());
+    session_.emplace(source_, *file_, options_, silent_, out_, out_);
+  }
+
+  Session& session() { return *session_; }
+  Task const& task(std::string const& name) const {
+    for (Task const& each : file_->tasks)
+      if (each.name == name) return each;
+    throw std::runtime_error("no task " + name);
+  }
+
+ private:
+  Source source_;
+  std::optional<CheckedFile> file_;
+  RunOptions options_;
+  SilentProgress silent_;
+  std::ostringstream out_;
+  std::optional<Session> session_;
+};
+
+std::string text_of(std::string const& name) {
+  std::string const text = read_file(models / name / (name + ".sysid"));
+  return name == "silverbox" ? with(text, "start = estimated(rows = 50)", "start = rest") : text;
+}
+
+/// log prior + log likelihood of declared values, without the Jacobian.
+double log_density(ModelTarget const& target, json const& values) {
+  LaneArray declared(target.dimension(), 1), theta(target.dimension(), 1);
+  for (int p = 0; p < target.dimension(); ++p)
+    declared(p, 0) = values.at(stan_name(target.parameters()[static_cast<std::size_t>(p)].name)).get<double>();
+  target.unconstrain(declared, theta);
+  double prior = 0, likelihood = 0;
+  Ledger ledger;
+  target.log_prior(theta, std::span(&prior, 1), false);
+  target.log_likelihood(theta, std::span(&likelihood, 1), ledger);
+  return prior + likelihood;
+}
+
+std::string refusal(std::string const& name, std::string const& text, std::string const& task) {
+  Opened opened(models / name / (name + ".sysid"), text);
+  try {
+    stan_program(opened.session(), opened.task(task), std::get<FitTask>(opened.task(task).what).solver);
+  } catch (UserError const& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+}  // namespace
+
+TEST_CASE("Stan gives exported programs the log density that we do") {
+  json const record = json::parse(read_file(scripts / "fixtures/stan.json"));
+  CHECK(record.size() >= 6);
+  for (auto const& [name, recorded] : record.items()) {
+    CAPTURE(name);
+    Opened opened(models / name / (name + ".sysid"), text_of(name));
+    Task const& task = opened.task(recorded.at("task"));
+    FitTask const& fit = std::get<FitTask>(task.what);
+    StanProgram const program = stan_program(opened.session(), task, fit.solver);
+    // What was recorded is of these programs: after a change of them fixtures/make_stan.py asks Stan again.
+    CHECK(sha256(program.program) == recorded.at("program_sha256"));
+    CHECK(sha256(program.data) == recorded.at("data_sha256"));
+    auto const compiled = opened.session().compiled(fit.model, false, fit.solver.method, fit.prediction);
+    auto const space = parameter_space(compiled->model, fit.experiments);
+    auto const data = load_experiments(opened.session(), fit.experiments, compiled->model, fit.start, fit.prediction);
+    auto const target = make_fit_target(opened.session(), fit, compiled, space, experiments_of(data), fit.solver);
+    REQUIRE(recorded.at("points").size() == 5);
+    for (json const& point : recorded.at("points")) {
+      double const ours = log_density(*target, point.at("values")), stan = point.at("log_density").get<double>();
+      CAPTURE(ours);
+      CAPTURE(stan);
+      // Sums of thousands of terms in two orders, through thousands of steps.
+      CHECK(std::fabs(ours - stan) <= 1e-9 * std::fabs(stan));
+    }
+  }
+}
+
+TEST_CASE("what a Stan program cannot hold is refused by name") {
+  CHECK(refusal("silverbox", read_file(models / "silverbox/silverbox.sysid"), "posterior") ==
+        "`posterior` cannot be written as a Stan program: its start is estimated within the likelihood");
+  CHECK(refusal("robertson", read_file(models / "robertson/robertson.sysid"), "estimate") ==
+        "`estimate` cannot be written as a Stan program: it is integrated by cvode");
+  CHECK(refusal("bridge", read_file(models / "bridge/bridge.sysid"), "line_curved").find("is a Gaussian process over its rows") !=
+        std::string::npos);
+  CHECK(refusal("sir", read_file(models / "sir/sir.sysid"), "posterior").ends_with("it remembers values from row to row"));
+}
+
+TEST_CASE("names become identifiers of Stan, each its own") {
+  std::vector<std::string> taken = {"h"};
+  CHECK(stan_identifier("k3", taken) == "k3");
+  CHECK(stan_identifier("joint.k", taken) == "joint_k");
+  CHECK(stan_identifier("joint_k", taken) == "joint_k_1");
+  CHECK(stan_identifier("M[1,2]", taken) == "M_1_2");
+  CHECK(stan_identifier("h", taken) == "h_1");
+  CHECK(stan_identifier("real", taken) == "real_1");
+  CHECK(stan_identifier("y'", taken) == "y");
+  CHECK(stan_identifier("__", taken) == "parameter_");
+}
+
+TEST_CASE("numbers are reals of Stan") {
+  CHECK(stan_real(2) == "2.0");
+  CHECK(stan_real(-0.5) == "(-0.5)");
+  CHECK(stan_real(5e10) == "50000000000.0");
+  CHECK(stan_real(INFINITY) == "positive_infinity()");
+}
