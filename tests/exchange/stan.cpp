@@ -88,7 +88,8 @@ TEST_CASE("Stan gives exported programs the log density that we do") {
     auto const compiled = opened.session().compiled(fit.model, false, fit.solver.method, fit.prediction);
     auto const space = parameter_space(compiled->model, fit.experiments);
     auto const data = load_experiments(opened.session(), fit.experiments, compiled->model, fit.start, fit.prediction);
-    auto const target = make_fit_target(opened.session(), fit, compiled, space, experiments_of(data), fit.solver);
+    auto const target = make_fit_target(opened.session(), fit, compiled, space, experiments_of(data), fit.solver,
+                                        opened.session().options.execution);
     REQUIRE(recorded.at("points").size() == 5);
     for (json const& point : recorded.at("points")) {
       double const ours = log_density(*target, point.at("values")), stan = point.at("log_density").get<double>();
