@@ -161,10 +161,13 @@ class Along {
       return node.leaf_kind == LeafKind::state && index < states.size() ? states[index] : nan;
     });
   }
-  /// What the acceleration without the input is as a force.
-  double force(double acceleration) const { return oscillator_.input ? -acceleration / gain_ : -acceleration; }
+  /// What the acceleration without the input is as a force. An input may push the other way, as the acceleration of a ground does:
+  /// the force still pulls back.
+  double force(double acceleration) const { return oscillator_.input ? -acceleration / std::fabs(gain_) : -acceleration; }
   /// And what was measured of it, with the input there, which is an acceleration of gain * input.
-  double force(double acceleration, double input) const { return oscillator_.input ? input - acceleration / gain_ : -acceleration; }
+  double force(double acceleration, double input) const {
+    return oscillator_.input ? (gain_ > 0 ? input : -input) - acceleration / std::fabs(gain_) : -acceleration;
+  }
   double restoring(std::vector<double> const& states) const { return force(value(oscillator_.at_rest, states)); }
 
  private:
@@ -215,15 +218,21 @@ RestoringForce::Path differentiated(std::vector<double> const& samples, int half
                                     Along const& along, Experiment const& experiment) {
   SecondDifference const difference(half_width);
   double const step = experiment.time[1] - experiment.time[0], points = 2 * half_width + 1;
-  double second = 0, fourth = 0;
-  for (int k = -half_width; k <= half_width; ++k) second += k * k, fourth += 1.0 * k * k * k * k;
+  double second = 0, fourth = 0, sixth = 0;
+  for (int k = -half_width; k <= half_width; ++k) {
+    double const square = 1.0 * k * k;
+    second += square;
+    fourth += square * square;
+    sixth += square * square * square;
+  }
   RestoringForce::Path out;
   for (int i = half_width; i + half_width < static_cast<int>(samples.size()); ++i) {
     double place = 0, slope = 0, curvature = 0, driven = 0;
     for (int k = -half_width; k <= half_width; ++k) {
       double const y = samples[static_cast<std::size_t>(i + k)];
       curvature += difference.weights[static_cast<std::size_t>(k + half_width)] * y;
-      slope += k / second * y;
+      // Of a cubic: a parabola's slope is that of a line, which is too flat wherever the curvature is still right.
+      slope += k * (sixth - fourth * k * k) / (second * sixth - fourth * fourth) * y;
       place += (fourth - k * k * second) / (points * fourth - second * second) * y;
     }
     if (!std::isfinite(curvature) || experiment.scored[static_cast<std::size_t>(i)] == 0) continue;
@@ -254,7 +263,10 @@ void add_data(RestoringForce& out, std::vector<std::vector<double>> const& state
     if (std::isfinite(samples[i])) residuals.push_back(samples[i] - of_model[i]);
     force.push_back(along.restoring(states[i]));
   }
-  if (residuals.empty()) return;
+  if (residuals.empty()) {
+    out.why_no_data = "none of its samples was measured";
+    return;
+  }
   double const noise = spread_of(residuals), step = experiment.time[1] - experiment.time[0], spread = spread_of(force);
   double const per_acceleration = std::fabs(along.force(1.0) - along.force(0.0));
   int half_width = 2;

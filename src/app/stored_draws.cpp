@@ -40,10 +40,20 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   }
 }
 
-double number(std::string_view text) {
-  double value = std::nan("");
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
+/// Of a whole cell; nothing where it is no number.
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+UserError damaged(std::filesystem::path const& path, std::size_t draw) {
+  return UserError({Severity::error,
+                    "E6201",
+                    fmt::format("`{}` is damaged: draw {} has fewer numbers than the header names", path.string(), draw),
+                    std::nullopt,
+                    {},
+                    "run the fit again, with --force or another -o"});
 }
 
 }  // namespace
@@ -53,6 +63,7 @@ std::vector<std::vector<double>> read_draws_rows(std::filesystem::path const& pa
   std::string const text = read_file(path);
   std::vector<std::vector<double>> rows;
   std::vector<std::size_t> columns;
+  std::size_t width = 0;  // of the header
   for (std::string_view const line : split(text, '\n')) {
     if (line.empty() || line.front() == '#') continue;
     auto const cells = split(line, ',');
@@ -69,14 +80,19 @@ std::vector<std::vector<double>> read_draws_rows(std::filesystem::path const& pa
                            "run the fit again, with --force or another -o"});
         return static_cast<std::size_t>(place - cells.begin());
       };
+      width = cells.size();
       for (std::string const& name : own) columns.push_back(find(name, 0));
       // A parameter may have the name of one of the sampler's own.
       for (std::string const& name : parameters) columns.push_back(find(stan_name(name), own.size()));
       continue;
     }
-    if (cells.size() <= *std::max_element(columns.begin(), columns.begin() + std::ssize(own))) continue;  // a row cut short
-    std::vector<double>& values = rows.emplace_back();
-    for (std::size_t const column : columns) values.push_back(column < cells.size() ? number(cells[column]) : std::nan(""));
+    std::vector<double> values;
+    for (std::size_t const column : columns) {
+      std::optional<double> const value = column < cells.size() ? number(cells[column]) : std::nullopt;
+      if (cells.size() != width || !value) throw damaged(path, rows.size() + 1);
+      values.push_back(*value);
+    }
+    rows.push_back(std::move(values));
   }
   return rows;
 }

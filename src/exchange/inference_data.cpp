@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "app/bands.hpp"
 #include "app/derived_draws.hpp"
@@ -237,7 +236,6 @@ void add_simulated(Session& session, int index, StoredResult const& stored, int 
 void add_predictions(Session& session, std::vector<std::pair<Task const*, StoredResult>> const& tasks, InferenceData& data) {
   if (tasks.empty()) return;
   NetcdfGroup predictions("predictions"), constant("predictions_constant_data");
-  std::map<int, std::vector<std::int64_t>> counts;
   std::vector<std::unique_ptr<PosteriorTrajectories>> all;
   for (auto const& [task, stored] : tasks)
     all.push_back(std::make_unique<PosteriorTrajectories>(session, std::get<PredictTask>(task->what), stored.seed()));

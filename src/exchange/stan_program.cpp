@@ -45,13 +45,13 @@ class Export {
         task_(task),
         what_(std::get<FitTask>(task.what)),
         solver_(solver),
-        compiled_(carried(session, task)),
+        compiled_(carried()),
         model_(compiled_->model),
         space_(parameter_space(model_, what_.experiments)),
         data_(load_experiments(session, what_.experiments, session.file.models[static_cast<std::size_t>(what_.model)], what_.start,
                                what_.prediction)),
         graph_(model_.graph) {
-    for (char const* name : {"si", "absolute_value", "sign_of", "derivative", "rk4", "initial", "next_state", "log_prior",
+    for (char const* name : {"si", "p", "absolute_value", "sign_of", "derivative", "rk4", "initial", "next_state", "log_prior",
                              "log_likelihood", "substeps"})
       taken_.push_back(name);
     for (std::size_t c = 0; c < model_.channels.size(); ++c) taken_.push_back(fmt::format("log_density_{}", c + 1));
@@ -79,8 +79,8 @@ class Export {
   }
 
   // What the task would be compiled to, or a refusal.
-  std::shared_ptr<CompiledModel const> carried(Session& session, Task const& task) const {
-    Model const& model = session.file.models[static_cast<std::size_t>(what_.model)];
+  std::shared_ptr<CompiledModel const> carried() const {
+    Model const& model = session_.file.models[static_cast<std::size_t>(what_.model)];
     if (!model.processes.empty())
       throw refused(fmt::format("`{}` is a Gaussian process over its rows", model.processes.front().name),
                     "its covariance is not written out");
@@ -91,10 +91,9 @@ class Export {
     if (model.integrated() && solver_.method != "rk4")
       throw refused(fmt::format("it is integrated by {}", solver_.method),
                     "state `solver = rk4`, with as many substeps as it needs");
-    auto compiled = session.compiled(what_.model, false, solver_.method, what_.prediction);
+    auto compiled = session_.compiled(what_.model, false, solver_.method, what_.prediction);
     if (!compiled->model.memories.empty())
       throw refused("it remembers values from row to row", "write it without `since_last` and its like");
-    (void)task;
     return compiled;
   }
 
@@ -187,7 +186,6 @@ class Export {
   // Densities of the declared units, over all sampled parameters; p: their SI values and those that are fixed.
   std::string prior() {
     std::vector<NodeId> roots;
-    std::vector<std::pair<NodeId, int>> row_of_leaf;
     Graph graph = model_.graph;
     for (int const r : space_->sampled()) {
       FittedParameter const& row = space_->rows()[static_cast<std::size_t>(r)];

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "app/check_file.hpp"
 #include "app/compare.hpp"
@@ -9,6 +10,7 @@
 #include "repl/workbench.hpp"
 #include "report/check_page.hpp"
 #include "syntax/entry.hpp"
+#include "syntax/parse.hpp"
 
 namespace sysid::repl {
 
@@ -89,14 +91,26 @@ bool Workbench::refit(Arguments arguments) {
     statement += fmt::format("{}{}{}", i == 0 ? " to " : ", ", now(ItemKind::data, task.data[i].data.text),
                              task.data[i].part ? "." + task.data[i].part->text : "");
   std::string options = stripped(with);
-  bool const backend = !options.empty();
+  // What the new options state, by the rules of the language; a mistake in them is told when the fit is entered.
+  std::set<std::string> stated;
+  bool backend = false;
+  Diagnostics ignored;
+  if (auto const given = parse(Source("", fmt::format("fit m to d with {}\n", options)), ignored);
+      given && given->items.size() == 1)
+    if (auto const* as_task = std::get_if<ast::Task>(&given->items.front()))
+      for (ast::Option const& option : as_task->options) {
+        if (option.key) stated.insert(option.key->text);
+        backend = backend || (!option.key && !option.input);
+      }
+  std::string kept;
   for (ast::Option const& option : task.options) {
-    // Of new options the rest stays: where the simulation starts, how it is solved, the seed.
+    // Of new options the rest stays: the back end, where the simulation starts, how it is solved, the seed.
     bool const is_backend = !option.key && !option.input;
-    bool const stated = option.key && !options.empty() && options.find(option.key->text + " =") != std::string::npos;
-    if ((option.key && option.key->text == "search") || (is_backend && backend) || stated) continue;
-    options += (options.empty() ? "" : ", ") + written(option.span);
+    if ((option.key && (option.key->text == "search" || stated.contains(option.key->text))) || (is_backend && backend)) continue;
+    kept += (kept.empty() ? "" : ", ") + written(option.span);
   }
+  // Without a back end of their own, new options follow the old one.
+  options = backend ? options + (kept.empty() ? "" : ", ") + kept : kept + (kept.empty() || options.empty() ? "" : ", ") + options;
   statement += fmt::format(" with {}, search = near({})", options, from);
   say(statement);
   return enter_parts(statement);

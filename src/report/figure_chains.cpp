@@ -69,14 +69,21 @@ Figure rank_figure(Draws const& draws) {
     std::vector<double> const values = pooled(draws, i);
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
+    // Of equal values all chains get their share of the ranks, the first draws of each before the second.
+    std::vector<std::size_t> place;
+    for (auto const& chain : draws.chains)
+      for (std::size_t d = 0; d < chain.values.size(); ++d) place.push_back(d);
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return values[a] < values[b] || (std::isnan(values[b]) && !std::isnan(values[a]));
+      if (values[a] < values[b] || values[b] < values[a]) return values[a] < values[b];
+      if (std::isnan(values[a]) != std::isnan(values[b])) return std::isnan(values[b]);
+      return place[a] < place[b];
     });
     std::vector<int> bin_of(values.size());
     for (std::size_t r = 0; r < order.size(); ++r) bin_of[order[r]] = static_cast<int>(r * bins / order.size());
     double const expected = total / static_cast<double>(draws.chains.size()) / bins;
-    // Counts of independent draws are binomial; chains are correlated, so the band is a guide, not a test.
-    double const spread = 1.96 * std::sqrt(expected * (1 - 1.0 / bins));
+    // Of independent draws the ranks of one chain in a bin are hypergeometric; chains are correlated, so the band is a guide.
+    double const others = (total - total / static_cast<double>(draws.chains.size())) / std::max(1.0, total - 1);
+    double const spread = 1.96 * std::sqrt(expected * (1 - 1.0 / bins) * others);
     double largest = expected + 1.5 * spread;
     std::string plots;
     std::size_t draw = 0;

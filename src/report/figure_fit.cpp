@@ -1,4 +1,4 @@
-// Figures along the record: fit or prediction with bands and residuals, and the residuals' autocorrelation.
+// Figures along the record: fit or prediction with bands and residuals.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -130,9 +130,12 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   else
     out.caption =
         fmt::format("The model's account of {}, which is not measured{}.", quantity.name, has_band ? ", with its 95 % band" : "");
-  if (!w.whole)
-    out.caption += fmt::format(" Shown are the first {} of {} scored samples.", w.count,
+  if (!w.whole) {
+    auto const begin = prediction.scored.begin() + static_cast<std::ptrdiff_t>(w.first);
+    out.caption += fmt::format(" Shown are the first {} of {} scored samples.",
+                               std::count(begin, begin + static_cast<std::ptrdiff_t>(w.count), 1),
                                std::count(prediction.scored.begin(), prediction.scored.end(), 1));
+  }
   return out;
 }
 

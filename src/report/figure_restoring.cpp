@@ -42,7 +42,6 @@ std::pair<std::size_t, std::size_t> window(RestoringForce::Path const& path) {
 
 std::string where_data_come_from(RestoringForce const& force) {
   if (!force.why_no_data.empty()) return fmt::format(" The data are not shown: {}.", force.why_no_data);
-  if (force.half_width == 0) return " Points: from the measured acceleration.";
   return fmt::format(
       " Points: from the measured samples, differentiated twice by parabolas through {} of them each, and from the input under the "
       "same smoothing.",

@@ -152,12 +152,13 @@ class Task {
                               pretty_number(significant(*prior->q95, 3)));
       if (auto const ratio = known ? narrowing(*prior, s) : std::nullopt) {
         auto const [low, high] = interval_90(s);
-        row[2] = range_chart(*prior->q5, *prior->q95, low, high, s.mean,
-                             fmt::format("{} from {} to {}, prior from {} to {}", s.name, significant(low, 3), significant(high, 3),
-                                         significant(*prior->q5, 3), significant(*prior->q95, 3))) +
-                 fmt::format("<br/><span class=\"unit\">{}</span>",
-                             *ratio < 1.1 ? "hardly narrower"
-                                          : pretty_number(significant(*ratio, *ratio < 10 ? 2 : 3)) + " times narrower");
+        row[2] =
+            range_chart(*prior->q5, *prior->q95, low, high, s.mean,
+                        fmt::format("{} from {} to {}, prior from {} to {}", s.name, significant(low, 3), significant(high, 3),
+                                    significant(*prior->q5, 3), significant(*prior->q95, 3))) +
+            fmt::format("<br/><span class=\"unit\">{}</span>",
+                        *ratio < hardly_narrower ? "hardly narrower"
+                                                 : pretty_number(significant(*ratio, *ratio < 10 ? 2 : 3)) + " times narrower");
       }
       for (std::string const& cell :
            optimum ? std::vector<std::string>{t.mean, t.sd} : std::vector<std::string>{t.mean, t.sd, t.q5, t.median, t.q95})

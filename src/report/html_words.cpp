@@ -226,7 +226,7 @@ std::string learning_words(Report const& report) {
       auto const ratio = narrowing(prior, summary);
       if (!ratio) continue;
       ++known;
-      if (*ratio >= 1.5) continue;
+      if (*ratio >= hardly_narrower) continue;
       if (++more <= 6) idle += (idle.empty() ? "" : ", ") + summary.name;
     }
   }

@@ -9,7 +9,8 @@ namespace sysid {
 ///
 ///   f = x - a / (da/dx)                     Masri and Caughey 1979: m q'' + f(q, q') = x,
 ///
-/// in the unit of x; where no input enters the acceleration, f = -a, the force of one unit of mass. Declared units.
+/// in the unit of x. Where x pushes the other way (da/dx < 0), as the acceleration of a ground does, its sign is turned: f pulls
+/// back. Where no input enters the acceleration, f = -a, the force of one unit of mass. Declared units.
 struct RestoringForce {
   std::string experiment;
   std::string displacement, displacement_unit, velocity, velocity_unit, force_unit;
@@ -21,7 +22,7 @@ struct RestoringForce {
   };
   Path model;               // along the trajectory of the draw that moves nearest to the mean of all
   Path data;                // of the measured samples, smoothed and differentiated; empty: the noise leaves nothing to see
-  int half_width = 0;       // of the cubics through the samples by which that was done
+  int half_width = 0;       // of what is fitted to the samples by which that was done
   std::string why_no_data;  // a clause; empty when there are data
 
   /// f over a grid of displacements and velocities at the same draw: rows of displacement, [rows x columns]. Empty where f depends

@@ -51,6 +51,12 @@ std::vector<fs::path> files_of_result(fs::path const& folder) {
   return out;
 }
 
+/// The summary first: where it stands, the result is whole.
+void remove_files(fs::path const& folder) {
+  if (std::error_code ignored; fs::exists(folder / "summary.json", ignored)) remove_file(folder / "summary.json");
+  for (fs::path const& file : files_of_result(folder)) remove_file(file);
+}
+
 }  // namespace
 
 bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty(); }
@@ -63,14 +69,14 @@ void prepare_result(fs::path const& folder, bool force) {
                      std::nullopt,
                      {},
                      "add --force to replace them, or -o DIR to write elsewhere"});
-  for (fs::path const& file : files_of_result(folder)) remove_file(file);
+  remove_files(folder);
   make_folder(folder);
 }
 
 void write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
   make_folder(folder);
   // What an interrupted run left may have more files than its end: chains of models that died later.
-  for (fs::path const& file : files_of_result(folder)) remove_file(file);
+  remove_files(folder);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
     write_file(folder / draws_file(c), draws_csv(report, static_cast<int>(c)));
   if (report.selection)

@@ -14,7 +14,8 @@ namespace sysid {
 bool holds_result(std::filesystem::path const& folder);
 
 /// Makes the folder ready before the work begins. Throws UserError when it holds a result and `force` is not given; with `force`
-/// the files of that result are removed (draws of more chains than the new run has would otherwise stay), nothing else.
+/// the files of that result are removed (draws of more chains than the new run has would otherwise stay), with the pictures, texts
+/// and scripts that lie in its figures/.
 void prepare_result(std::filesystem::path const& folder, bool force);
 
 /// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, report.cbor, resolved.sysid,

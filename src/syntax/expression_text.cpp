@@ -11,18 +11,6 @@
 namespace sysid {
 namespace {
 
-/// The shortest digits that read back as the same number; 1e-4 rather than 1e-04.
-std::string number_text(double value) {
-  std::array<char, 32> buffer{};
-  auto const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  std::string text(buffer.data(), end);
-  std::size_t const e = text.find('e');
-  if (e == std::string::npos) return text;
-  std::string const sign = text[e + 1] == '-' ? "-" : "";
-  std::size_t const digits = text.find_first_not_of("+-0", e + 1);
-  return text.substr(0, e + 1) + sign + text.substr(digits);
-}
-
 /// `leading`: nothing stands before the expression in its statement, and no statement begins with a sign.
 class Printer {
  public:
@@ -86,6 +74,17 @@ std::string text_of(ast::UnitFactor const& factor) {
 }
 
 }  // namespace
+
+std::string number_text(double value) {
+  std::array<char, 32> buffer{};
+  auto const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  std::string text(buffer.data(), end);
+  std::size_t const e = text.find('e');
+  if (e == std::string::npos) return text;
+  std::string const sign = text[e + 1] == '-' ? "-" : "";
+  std::size_t const digits = text.find_first_not_of("+-0", e + 1);
+  return text.substr(0, e + 1) + sign + text.substr(digits);
+}
 
 std::string quoted(std::string_view text) {
   std::string out = "\"";

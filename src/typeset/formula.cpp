@@ -5,28 +5,22 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "syntax/binding.hpp"
+#include "syntax/expression_text.hpp"
 #include "typeset/symbol.hpp"
 
 namespace sysid {
 
 namespace {
 
-/// 0.001, 10000, 5e+09: as few characters as read back to the same number.
-std::string shortest(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
-
 /// Functions whose printed name is another one.
 struct FunctionName {
   std::string_view name, printed;
 };
-constexpr std::array<FunctionName, 6> function_names{
-    {{"log", "ln"}, {"sign", "sgn"}, {"asin", "arcsin"}, {"acos", "arccos"}, {"atan", "arctan"}, {"lgamma", "ln Γ"}}};
+constexpr std::array<FunctionName, 5> function_names{
+    {{"log", "ln"}, {"sign", "sgn"}, {"asin", "arcsin"}, {"acos", "arccos"}, {"atan", "arctan"}}};
 
 std::string_view printed_function(std::string_view name) {
   auto const* const row =
@@ -73,6 +67,9 @@ ast::Expression const* only_argument(ast::Call const& call) {
   return call.arguments.size() == 1 && !call.arguments.front().name ? &call.arguments.front().value : nullptr;
 }
 
+/// Written behind a brace that nothing closes.
+bool is_cases(ast::Call const& call) { return call.function.text == "piecewise" && call.arguments.size() >= 3; }
+
 ast::Expression const* named(ast::Call const& call, std::string_view name) {
   for (ast::Argument const& argument : call.arguments)
     if (argument.name && argument.name->text == name) return &argument.value;
@@ -116,7 +113,10 @@ class Formula::Visitor {
   std::string operator()(ast::Reference const& reference) const { return formula_(reference); }
   std::string operator()(ast::Box<ast::Unary> const& unary) const {
     if (unary->symbol == "not") return to_.row({to_.sign(Sign::negation), (*this)(*unary->operand, Binding::negation)});
-    return to_.row({to_.sign(Sign::negative), (*this)(*unary->operand, Binding::sign)});
+    ast::Expression const& operand = *unary->operand;
+    bool const fence = begins_with_sign(operand) && sysid::binding(operand) >= Binding::sign;
+    return to_.row({to_.sign(Sign::negative), fence ? to_.fenced(Fence::parentheses, (*this)(operand, Binding::conditional))
+                                                    : (*this)(operand, Binding::sign)});
   }
   std::string operator()(ast::Box<ast::Binary> const& binary) const {
     ast::Expression const &left = *binary->left, &right = *binary->right;
@@ -161,17 +161,15 @@ class Formula::Visitor {
     if (fraction) return place >= Binding::power;
     auto const* number = std::get_if<ast::Number>(&expression.node);
     if (number != nullptr && place >= Binding::power)
-      return number->unit.has_value() || std::signbit(number->value) || shortest(number->value).find('e') != std::string::npos;
+      return number->unit.has_value() || std::signbit(number->value) || number_text(number->value).find('e') != std::string::npos;
     auto const* reference = std::get_if<ast::Reference>(&expression.node);
     if (reference != nullptr && place >= Binding::power) return reference->primes > 3;
-    if (std::holds_alternative<ast::Box<ast::Call>>(expression.node)) return place >= Binding::power && !holds_itself(expression);
+    if (auto const* call = std::get_if<ast::Box<ast::Call>>(&expression.node))
+      return place >= Binding::power ? !is_absolute(**call) : is_cases(**call);
     return sysid::binding(expression) < place;
   }
-  /// Roots and bars have their own ends; f(x) squared would read as f of x squared.
-  static bool holds_itself(ast::Expression const& expression) {
-    ast::Call const& call = *std::get<ast::Box<ast::Call>>(expression.node);
-    return call.function.text == "abs" && only_argument(call) != nullptr;
-  }
+  /// Bars have their own ends; f(x) squared would read as f of x squared, and a root's line would seem to cover the power.
+  static bool is_absolute(ast::Call const& call) { return call.function.text == "abs" && only_argument(call) != nullptr; }
 
   Formula const& formula_;
   Notation const& to_;
@@ -210,9 +208,12 @@ std::string Formula::call(ast::Call const& call) const {
   ast::Expression const* inside = only_argument(call);
   if (function == "sqrt" && inside != nullptr) return to_.root((*this)(*inside));
   if (function == "abs" && inside != nullptr) return to_.fenced(Fence::bars, (*this)(*inside));
+  if (function == "lgamma" && inside != nullptr)
+    return to_.row({to_.word("ln"),
+                    to_.fenced(Fence::bars, to_.row({to_.letter("Gamma"), to_.fenced(Fence::parentheses, (*this)(*inside))}))});
   if (function == "log10" && inside != nullptr)
     return to_.row({to_.lowered(to_.word("log"), to_.digits("10")), to_.fenced(Fence::parentheses, (*this)(*inside))});
-  if (function == "piecewise" && call.arguments.size() >= 3) {
+  if (is_cases(call)) {
     std::vector<std::pair<std::string, std::string>> branches;
     std::size_t i = 0;
     for (; i + 1 < call.arguments.size(); i += 2)
@@ -267,7 +268,7 @@ std::string Formula::joined(std::string const& left, Sign sign, std::string cons
 }
 
 std::string Formula::number(double value) const {
-  std::string const text = shortest(std::fabs(value));
+  std::string const text = number_text(std::fabs(value));
   std::vector<std::string> pieces;
   if (std::signbit(value)) pieces.push_back(to_.sign(Sign::negative));
   if (std::size_t const e = text.find('e'); e != std::string::npos) {

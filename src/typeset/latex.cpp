@@ -36,7 +36,8 @@ class Latex final : public Notation {
   std::string word(std::string_view text) const override {
     for (std::string_view const command : commands)
       if (command == text) return fmt::format("\\{}", command);
-    return fmt::format("\\mathrm{{{}}}", escaped(text));
+    // In mathematics blanks vanish.
+    return fmt::format("\\{}{{{}}}", text.find(' ') == std::string_view::npos ? "mathrm" : "text", escaped(text));
   }
   std::string calligraphic(std::string_view text) const override { return fmt::format("\\mathcal{{{}}}", text); }
   std::string digits(std::string_view text) const override { return std::string(text); }

@@ -80,6 +80,25 @@ TEST_CASE("the restoring force of a spring is the one it was made with, by the m
   CHECK(test::broken_promises(run.folder.path() / "results") == "");
 }
 
+TEST_CASE("a spring on a moving ground pulls back, too: the sign of its input is turned") {
+  std::string text = with(oscillator, "NOISE", "1");
+  for (std::size_t at = 0; (at = text.find("= x\n", at)) != std::string::npos; at += 5) text.replace(at, 4, "= -x\n");
+  REQUIRE(text.find("= -x\n") != std::string::npos);
+  CaseRun const run(text, {});
+  std::string const script = run.file("best/figures/loop_bench_y.gnuplot");
+  for (char const* rows : {"displacement_model", "displacement_data"}) {
+    double together = 0, square = 0, size = 0;
+    for (auto const& row : block(script, rows)) {
+      double const y = 1e-3 * row[0], spring = 1e4 * y + 5e9 * y * y * y;
+      together += row[1] * y;
+      square += (row[1] - spring) * (row[1] - spring);
+      size += spring * spring;
+    }
+    CHECK(together > 0);
+    CHECK(std::sqrt(square / size) < 0.5);  // the damper's part, smoothing and noise
+  }
+}
+
 TEST_CASE("figures are drawn anew from the folder of their results") {
   if (!can_draw(FigureFormat::pdf)) return;
   CaseRun const run(with(oscillator, "NOISE", "1"), {});

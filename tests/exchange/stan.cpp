@@ -71,11 +71,17 @@ std::string refusal(std::string const& name, std::string const& text, std::strin
   return "nothing was refused";
 }
 
+/// A program without the comments that begin it, which name the version of this program.
+std::string_view without_head(std::string_view program) {
+  while (program.starts_with("//")) program.remove_prefix(program.find('\n') + 1);
+  return program;
+}
+
 }  // namespace
 
 TEST_CASE("Stan gives exported programs the log density that we do") {
   json const record = json::parse(read_file(scripts / "fixtures/stan.json"));
-  CHECK(record.size() >= 6);
+  CHECK(record.size() == 7);
   for (auto const& [name, recorded] : record.items()) {
     CAPTURE(name);
     Opened opened(models / name / (name + ".sysid"), text_of(name));
@@ -83,7 +89,7 @@ TEST_CASE("Stan gives exported programs the log density that we do") {
     FitTask const& fit = std::get<FitTask>(task.what);
     StanProgram const program = stan_program(opened.session(), task, fit.solver);
     // What was recorded is of these programs: after a change of them fixtures/make_stan.py asks Stan again.
-    CHECK(sha256(program.program) == recorded.at("program_sha256"));
+    CHECK(sha256(without_head(program.program)) == recorded.at("program_sha256"));
     CHECK(sha256(program.data) == recorded.at("data_sha256"));
     auto const compiled = opened.session().compiled(fit.model, false, fit.solver.method, fit.prediction);
     auto const space = parameter_space(compiled->model, fit.experiments);

@@ -62,6 +62,16 @@ TEST_CASE("fits of a session are compared by their evidence, and what has not be
   CHECK(has(d.messages(), "did you mean `first`"));
 }
 
+TEST_CASE("a refit with new options keeps the others, the back end among them") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("first = fit oscillator to bench.train with map, substeps = 2, seed = 3"));
+  REQUIRE_MESSAGE(d.enter("refit with seed=5"), d.messages());
+  CHECK(has(d.messages(), "first2 = fit oscillator to bench.train with map, substeps = 2, seed=5, search = near(first)"));
+  REQUIRE_MESSAGE(d.enter("refit first as third with ml"), d.messages());
+  CHECK(has(d.messages(), "third = fit oscillator to bench.train with ml, substeps = 2, seed = 3, search = near(first)"));
+}
+
 TEST_CASE("a saved session is a file that gives the same numbers, to the last digit") {
   Dialogue d;
   d.begin();

@@ -52,6 +52,7 @@ TEST_CASE("parentheses stand where a reader needs them and nowhere else") {
   CHECK(right("sin(b)^2") == "{\\left(\\sin\\left(b\\right)\\right)}^{2}");
   CHECK(right("sqrt(b)^2") == "{\\left(\\sqrt{b}\\right)}^{2}");
   CHECK(right("b^(1/2)") == "{b}^{1\\text{/}2}");
+  CHECK(right("-(-b)") == "-\\left(-b\\right)");
   CHECK(right("b - c*d/(2*b)") == "b - \\frac{c \\, d}{2 \\, b}");
 }
 
@@ -66,7 +67,7 @@ TEST_CASE("numbers keep apart from factors, large ones become powers of ten") {
 
 TEST_CASE("names become symbols with indices") {
   CHECK(right("k12 + omega_n + x_max_2 + Cd + beta2 + H2O") ==
-        "k_{12} + \\omega_{n} + x_{\\mathrm{max 2}} + \\mathit{Cd} + \\beta_{2} + \\mathit{H2O}");
+        "k_{12} + \\omega_{n} + x_{\\text{max 2}} + \\mathit{Cd} + \\beta_{2} + \\mathit{H2O}");
 }
 
 TEST_CASE("elements, parts and derivatives of both") {
@@ -88,6 +89,17 @@ TEST_CASE("distributions are named as in print, the normal one by its variance")
 TEST_CASE("conditions stand behind a brace") {
   CHECK(right("if b < c then d else if b >= 2*c then e else 0") ==
         "\\begin{cases} d & \\text{if } b < c \\\\ e & \\text{if } b \\ge 2 \\, c \\\\ 0 & \\text{otherwise} \\end{cases}");
+}
+
+TEST_CASE("nothing that follows a brace of conditions can be taken for one of them") {
+  CHECK(right("piecewise(b < c, d, e)") == "\\begin{cases} d & \\text{if } b < c \\\\ e & \\text{otherwise} \\end{cases}");
+  CHECK(right("piecewise(b < c, d, e)*f").starts_with("\\left(\\begin{cases}"));
+  CHECK(right("f + piecewise(b < c, d, e)").ends_with("\\end{cases}\\right)"));
+  CHECK(right("(if b < c then d else e)*f").starts_with("\\left(\\begin{cases}"));
+}
+
+TEST_CASE("the logarithm of the gamma function has its bars") {
+  CHECK(right("lgamma(b)") == "\\ln\\left|\\Gamma\\left(b\\right)\\right|");
 }
 
 TEST_CASE("a model is one align environment; declarations without a formula are left out") {
