@@ -104,12 +104,15 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention
   bool const decimal_comma =
       std::count(text.begin(), text.end(), ',') == 1 && text.find_first_not_of("0123456789+-eE,") == std::string_view::npos;
   return error("E4010", mention, fmt::format("{}: `{}` is not a number", place(cell), shown(text)),
-               decimal_comma ? "write a decimal point instead of the comma" : "a missing sample is an empty cell or NA");
+               decimal_comma
+                   ? "write a decimal point instead of the comma"
+                   : "a missing sample of a measured column is an empty cell or NA; an input needs a number in every row");
 }
 
 Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention) {
   return error("E4011", mention, fmt::format("{} holds `{}`", place(cell), shown(text)),
-               "if the sample is missing, leave the cell empty or write NA; otherwise find out what produced it");
+               "find out what produced it; a missing sample of a measured column is an empty cell or NA, and an input needs a "
+               "number in every row");
 }
 
 Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention) {

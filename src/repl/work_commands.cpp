@@ -41,7 +41,7 @@ bool Workbench::list(Arguments topic) {
     bool const current =
         (item.kind == ItemKind::model && item.name == model_) || (item.kind == ItemKind::data && item.name == data_);
     rows.push_back({std::string(word_of(item.kind)), item.name,
-                    current     ? "changed by statements typed now"
+                    current     ? "where statements typed now go"
                     : item.kept ? "as it was when a task ran"
                                 : ""});
   }

@@ -80,8 +80,8 @@ std::string html(HtmlTable const& table) {
   };
   // A region that scrolls can be reached by the keyboard, and says what it is.
   std::string out =
-      fmt::format("<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{0}\"><table>\n<caption>{0}</caption>\n",
-                  escape(table.caption));
+      fmt::format("<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{0}\"><table{1}>\n<caption>{0}</caption>\n",
+                  escape(table.caption), table.last_is_words ? " class=\"said\"" : "");
   if (!table.header.empty()) out += "<thead>" + row_html(table.header, true) + "</thead>\n";
   out += "<tbody>\n";
   for (auto const& row : table.rows) out += row_html(row, false);

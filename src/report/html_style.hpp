@@ -89,6 +89,8 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   dl { display: block; } dd { margin: 0 0 0.5rem; }
   .equations { padding-left: 0; }
   figure { overflow-x: auto; } figure > svg { min-width: 30rem; }
+  tbody th { white-space: normal; }
+  .said td:last-child { min-width: 17rem; }
 }
 @media print {
   @page { margin: 17mm 15mm; }

@@ -47,11 +47,12 @@ std::string coverage_words(Worst const& coverage, double expected) {
                                    : "the bands are as wide as they say");
 }
 
-/// The check knows how much of it is chance.
-std::string size_words(Worst const& size, bool found) {
+/// The check knows how much of it is chance. fitted: the noise is a parameter, which takes the size that the residuals leave.
+std::string size_words(Worst const& size, bool found, bool fitted) {
   return fmt::format("Residuals are {} times as large as the noise of the model{}, as mean squares: {}.", number(size.value),
                      size.where,
-                     !found           ? "noise accounts for them"
+                     !found && fitted ? "the size of the noise was fitted to them, so that this says nothing of the model"
+                     : !found         ? "noise accounts for them"
                      : size.value > 1 ? "the noise is larger than the model says, or the model misses something"
                                       : "the noise is smaller than the model says");
 }
@@ -121,8 +122,10 @@ std::string score_words(Report const& report, std::vector<FitLine> const& lines,
   if (score == "chi_squared_per_sample")
     return say([](double value) { return std::fabs(std::log(std::max(value, 1e-300))); },
                [&](Worst const& each) {
-                 return size_words(each, std::any_of(report.findings.begin(), report.findings.end(),
-                                                     [](Finding const& finding) { return finding.code == "noise_size"; }));
+                 return size_words(each,
+                                   std::any_of(report.findings.begin(), report.findings.end(),
+                                               [](Finding const& finding) { return finding.code == "noise_size"; }),
+                                   !report.noise.empty());
                });
   if (score == "whiteness_p")
     return say(low, [](Worst const& p) {

@@ -162,6 +162,8 @@ TEST_CASE("sentences follow the values and never contradict the checks") {
   CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals uncorrelated with heat, p"));
   CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals follow the input"));
   CHECK(says({{"chi_squared_per_sample", 0.6}}, "noise accounts for them"));
+  report.noise = {"sigma"};
+  CHECK(says({{"chi_squared_per_sample", 0.6}}, "was fitted to them, so that this says nothing of the model"));
   report.findings = {{Severity::error, "noise_size", "m", ""}};
   CHECK(says({{"chi_squared_per_sample", 0.6}}, "smaller than the model says"));
   CHECK(says({{"chi_squared_per_sample", 3}}, "larger than the model says"));
