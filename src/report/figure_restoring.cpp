@@ -158,7 +158,9 @@ Figure surface_figure(RestoringForce const& force) {
       x.low, x.high, y.low, y.high, z.low, z.high, z.low);
   out.script += ticks('x', x, "0,-0.2") + ticks('y', y, "0,-0.2") + ticks('z', z, "0.4,0");
   out.script += label('x', axis_label(force.displacement, force.displacement_unit, x), "rotate parallel offset 0,-0.6");
-  out.script += label('y', axis_label(force.velocity, force.velocity_unit, y), "rotate parallel offset 0,-0.6");
+  // gnuplot leaves this axis without its label in the view above; there is room below its numbers.
+  out.script += fmt::format("set label 301 {} at screen 0.98,0.1 right textcolor rgb '{}'\n",
+                            quote(axis_label(force.velocity, force.velocity_unit, y)), ink);
   out.script += label('z', axis_label(force_name(force), force.force_unit, z), "rotate by 90 offset 1,0");
   out.script += fmt::format(
       "splot $mesh using 1:2:3 with lines lw 0.8 lc rgb '{}'{}\nunset multiplot\n", model,
