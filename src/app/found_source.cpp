@@ -16,7 +16,7 @@ namespace sysid {
 namespace {
 
 /// Rows from which the state of a record that was not fitted is estimated.
-constexpr int start_rows = 50;
+constexpr int rows_of_start = 50;
 
 /// A data block with what the models read, its file as seen from `folder`.
 std::string data_text(ast::Data data, DataBlock const& block, Session const& session, std::filesystem::path const& folder,
@@ -66,7 +66,7 @@ std::string FoundSource::text(std::vector<FoundStructure> const& structures) con
       if (auto const* data = std::get_if<ast::Data>(&item); data != nullptr && data->name.text == block.name)
         out += data_text(*data, block, session, session.result_folder(task), inputs, channels) + "\n";
   }
-  for (ExperimentUse const& use : unused_parts(file, what, 4 * start_rows + 1))
+  for (ExperimentUse const& use : unused_parts(file, what, 4 * rows_of_start + 1))
     unseen += (unseen.empty() ? "" : ", ") + data_name(file.data[static_cast<std::size_t>(use.data)], use.part);
   std::string const start = later ? ", start = rest" : "";
   if (structures.size() > 1) {
@@ -77,7 +77,7 @@ std::string FoundSource::text(std::vector<FoundStructure> const& structures) con
   out += fmt::format("fitted = predict posterior on {} with draws(200){}, seed = {}\n", uses, start, seed);
   if (!unseen.empty())
     out += fmt::format("forecast = predict posterior on {} with draws(200), start = estimated(rows = {}), seed = {}\n", unseen,
-                       start_rows, seed);
+                       rows_of_start, seed);
   Diagnostics diagnostics;
   auto laid_out = formatted(Source("found.sysid", out), diagnostics);
   if (!laid_out) throw InternalError("the source of a discovery does not parse: " + diagnostics.all().front().message);

@@ -10,7 +10,7 @@
 namespace sysid {
 namespace {
 
-constexpr double accuracy = 1e-4;                                          // of a range that is compared within orders of magnitude
+constexpr double comparable = 1e-4;                                        // of a range that is compared within orders of magnitude
 constexpr std::size_t explicit_steps = 200'000, implicit_steps = 200'000;  // in all: a lane each, all lanes together
 constexpr std::size_t many_states = 64;
 constexpr std::size_t fewest_steps = 20;  // between two samples: less is no attempt
@@ -46,7 +46,7 @@ class Settling {
     if (lanes.empty() || steps < fewest_steps) return;
     auto const compiled = session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, method, what_.prediction);
     SolverSettings const solver{
-        .method = method, .relative = accuracy, .steps = static_cast<int>(std::min<std::size_t>(steps, 10'000))};
+        .method = method, .relative = comparable, .steps = static_cast<int>(std::min<std::size_t>(steps, 10'000))};
     LaneArray const theta = gathered(theta_, lanes);
     LaneArray points = gathered(points_, lanes);
     std::vector<double> density(lanes.size());

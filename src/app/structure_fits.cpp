@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "app/tolerance.hpp"
 #include "likelihood/segment_starts.hpp"
 #include "simulate/thread_pool.hpp"
 
@@ -16,8 +17,6 @@ namespace {
 constexpr double tolerable_growth = 1.5;
 /// Segments on the way up need not be fitted closer than this, in log likelihood.
 constexpr double enough_on_the_way = 1e-2;
-/// A finer solver is taken where it moves a coefficient by more than this many of its sds.
-constexpr double tolerable_move = 0.1;
 constexpr int most_refinements = 4;
 /// What solvers that take one simulation after the other may simulate, all structures together: 15 to 60 µs a row.
 constexpr double most_rows_one_by_one = 400'000;

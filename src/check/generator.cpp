@@ -13,20 +13,20 @@
 namespace sysid {
 namespace {
 
-struct GeneratorArgument {
+struct SignalArgument {
   std::string_view name;
   std::string_view unit;  // of its own; "input": that of the input
   double fallback;        // NaN: needed
 };
-struct GeneratorRow {
+struct SignalRow {
   std::string_view name;
   InputGenerator::Kind kind;
-  std::vector<GeneratorArgument> arguments;
+  std::vector<SignalArgument> arguments;
   InputRule rule;
 };
-std::vector<GeneratorRow> const& generators() {
+std::vector<SignalRow> const& signals() {
   double const needed = std::nan("");
-  static std::vector<GeneratorRow> const rows = {
+  static std::vector<SignalRow> const rows = {
       {"gaussian", InputGenerator::Kind::gaussian, {{"mean", "input", 0}, {"sd", "input", needed}}, InputRule::zero_order},
       {"sine",
        InputGenerator::Kind::sine,
@@ -41,9 +41,9 @@ std::vector<GeneratorRow> const& generators() {
   return rows;
 }
 
-std::vector<std::string> arguments_of(GeneratorRow const& row) {
+std::vector<std::string> arguments_of(SignalRow const& row) {
   std::vector<std::string> names;
-  for (GeneratorArgument const& argument : row.arguments) names.emplace_back(argument.name);
+  for (SignalArgument const& argument : row.arguments) names.emplace_back(argument.name);
   names.emplace_back("hold");
   return names;
 }
@@ -52,12 +52,12 @@ std::vector<std::string> arguments_of(GeneratorRow const& row) {
 
 std::vector<std::string> signal_names() {
   std::vector<std::string> names;
-  for (GeneratorRow const& row : generators()) names.emplace_back(row.name);
+  for (SignalRow const& row : signals()) names.emplace_back(row.name);
   return names;
 }
 
 std::vector<std::string> signal_arguments(std::string_view signal) {
-  GeneratorRow const* row = row_named(generators(), signal);
+  SignalRow const* row = row_named(signals(), signal);
   return row == nullptr ? std::vector<std::string>() : arguments_of(*row);
 }
 
@@ -70,8 +70,8 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
     return std::nullopt;
   }
   auto const row =
-      std::find_if(generators().begin(), generators().end(), [&](auto const& each) { return each.name == call->function.text; });
-  if (row == generators().end()) {
+      std::find_if(signals().begin(), signals().end(), [&](auto const& each) { return each.name == call->function.text; });
+  if (row == signals().end()) {
     diagnostics.add(errors::option_choice(call->function.span, "input " + input.name, call->function.text, names));
     return std::nullopt;
   }
@@ -103,7 +103,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
       if (auto const value = reader.number(argument.value, name, unit, least, 1e300)) result.arguments[name] = *value;
     }
   }
-  for (GeneratorArgument const& argument : row->arguments) {
+  for (SignalArgument const& argument : row->arguments) {
     if (given.contains(std::string(argument.name))) continue;
     if (std::isnan(argument.fallback))
       diagnostics.add(errors::argument_missing(*call, {std::string(argument.name)}));

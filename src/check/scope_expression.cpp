@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_expressions = 2'000'000;
 // Each takes up to 3 kB of a stack of 8 MB.
-constexpr std::size_t most_depth = 1000;
+constexpr std::size_t deepest_tree = 1000;
 // Of one file; twenty are shown.
 constexpr std::size_t most_messages = 100;
 
@@ -256,7 +256,7 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
 
 bool Scope::affordable(Span span) {
   if (diagnostics_.all().size() >= most_messages && diagnostics_.has_errors()) return false;
-  if (!too_large_ && ++looked_at_ <= most_expressions && depth_ <= most_depth) return true;
+  if (!too_large_ && ++looked_at_ <= most_expressions && depth_ <= deepest_tree) return true;
   if (!too_large_) diagnostics_.add(errors::model_too_large(span));
   too_large_ = true;
   return false;

@@ -6,17 +6,13 @@
 
 #include "check/elaborate/tree.hpp"
 #include "check/errors.hpp"
+#include "check/option_reader.hpp"
 #include "check/walk.hpp"
 #include "function/table.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
 namespace {
-
-ast::Call const* as_call(ast::Expression const& tree) {
-  auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node);
-  return call == nullptr ? nullptr : &**call;
-}
 
 bool is_reference(ast::Expression const& tree, std::string const& name) {
   auto const* reference = std::get_if<ast::Reference>(&tree.node);

@@ -1,15 +1,15 @@
 // Interval arithmetic from the leaves up, without care for rounding: what is asked for is a sign.
 #include "check/value_range.hpp"
 
+#include "core/not_finite.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <limits>
 
 namespace sysid {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr ValueRange anything{-infinity, infinity};
 constexpr ValueRange nothing{infinity, -infinity, true};
 

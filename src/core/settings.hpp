@@ -41,6 +41,9 @@ SettingRow const* find_setting(std::span<SettingRow const> rows, std::string_vie
 /// Why `value` cannot be given to the row's setting ("it must be a whole number of at least 1"); empty when it can.
 std::string refuse(SettingRow const& row, SettingValue const& value);
 
+/// Of rows whose settings go with each other in any combination.
+inline std::string no_refusal(class Settings const&) { return {}; }
+
 /// Values by name; every row of the table has one, given or default.
 class Settings {
  public:

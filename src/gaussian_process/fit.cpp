@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/elementary.hpp"
+#include "core/not_finite.hpp"
 #include "gaussian_process/maximise.hpp"
 
 namespace sysid::gaussian_process {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Optima closer than this in log density are one.
 constexpr double same_optimum = 0.01;

@@ -15,8 +15,8 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr double worst_floor = 1e-2;
-constexpr double same_direction = 1e-2;  // rms angle between draws, in radians
-constexpr double negligible = 1e-3;      // of the largest coefficient
+constexpr double same_direction = 1e-2;   // rms angle between draws, in radians
+constexpr double negligible_part = 1e-3;  // of the largest coefficient
 
 /// The null space at one draw: columns are moves in units of scale.
 struct LocalNull {
@@ -112,7 +112,7 @@ std::vector<Vector> sparse_basis(Matrix space) {
 Vector simple(Vector direction) {
   double const largest = direction.cwiseAbs().maxCoeff();
   for (double& c : direction)
-    if (std::abs(c) < negligible * largest) c = 0;
+    if (std::abs(c) < negligible_part * largest) c = 0;
   auto const fits = [&](double unit, double grain) {
     for (double const c : direction) {
       double const x = c / unit / grain;
@@ -136,7 +136,7 @@ NullDirection named(NullDirection::Kind kind, Vector const& direction, Vector co
   NullDirection result{kind, {}};
   double const largest = direction.cwiseAbs().maxCoeff();
   for (Eigen::Index p = 0; p < direction.size(); ++p)
-    if (std::abs(direction(p)) > negligible * largest) result.parts.push_back({static_cast<int>(p), direction(p), natural(p)});
+    if (std::abs(direction(p)) > negligible_part * largest) result.parts.push_back({static_cast<int>(p), direction(p), natural(p)});
   return result;
 }
 

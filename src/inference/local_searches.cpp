@@ -12,8 +12,8 @@
 namespace sysid {
 namespace {
 
-constexpr double near = 0.05;      // prior widths
-constexpr double negligible = 30;  // nats below the best optimum
+constexpr double near = 0.05;    // prior widths
+constexpr double hopeless = 30;  // nats below the best optimum
 constexpr std::size_t most_modes = 12;
 constexpr double same_mode = 0.5;  // of the two modes' widths
 
@@ -50,7 +50,7 @@ std::vector<Climber> within_reach(std::vector<Climber> climbers, std::vector<dou
   for (Climber const& each : climbers) best = std::max(best, each.log_density);
   std::vector<Climber> left;
   for (std::size_t k = 0; k < climbers.size(); ++k)
-    if (reach[k] >= best - negligible) left.push_back(std::move(climbers[k]));
+    if (reach[k] >= best - hopeless) left.push_back(std::move(climbers[k]));
   return left;
 }
 
@@ -88,7 +88,7 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
   std::vector<Mode> modes;
   for (Climber const& climber : distinct(objective, std::move(climbers))) {
     if ((stop && stop()) || modes.size() >= most_modes || !std::isfinite(climber.log_density)) break;
-    if (!modes.empty() && climber.log_density < modes.front().log_density - negligible) break;
+    if (!modes.empty() && climber.log_density < modes.front().log_density - hopeless) break;
     Eigen::MatrixXd const guess =
         climber.curvature.size() > 0 ? climber.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
     Mode mode = laplace_mode(objective, climber.theta, guess, ledger);

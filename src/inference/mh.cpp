@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <limits>
 
+#include "core/not_finite.hpp"
 #include "inference/adaptation.hpp"
 #include "inference/chain_checks.hpp"
 #include "inference/chain_record.hpp"
@@ -18,8 +18,6 @@
 
 namespace sysid::mh {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr SettingRow rows[] = {
     {"samples", SettingKind::integer, "25000", 1, 1e9, "", "iterations of each chain, burn-in included"},

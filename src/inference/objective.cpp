@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/not_finite.hpp"
 #include "inference/convergence.hpp"
 
 namespace sysid {
@@ -28,7 +29,6 @@ std::vector<double> Objective::log_density(ConstLanes theta, Ledger& ledger) con
 
 Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws) {
   int const dimension = target.dimension();
-  double const infinity = std::numeric_limits<double>::infinity();
   Objective objective{target, aim, Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Constant(dimension, -infinity),
                       Eigen::VectorXd::Constant(dimension, infinity)};
   for (int p = 0; p < dimension; ++p) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/not_finite.hpp"
 #include "inference/descent.hpp"
 #include "inference/laplace.hpp"
 
@@ -51,7 +52,6 @@ std::vector<Mode> refit(Target const& target, Aim aim, std::vector<Mode> const& 
 }
 
 Move largest_move(Mode const& before, Mode const& after) {
-  double const infinity = std::numeric_limits<double>::infinity();
   if (!std::isfinite(before.log_density) || !std::isfinite(after.log_density)) return {0, infinity, infinity};
   Move most;
   for (std::size_t p = 0; p < before.declared.size(); ++p) {

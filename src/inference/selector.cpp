@@ -12,16 +12,16 @@
 namespace sysid {
 namespace {
 
-SelectorRow const rows[] = {
+SelectorRow const selector_rows[] = {
     {"abc_smc", "approximate Bayesian computation by populations of particles, over models and parameters", abc::settings(),
      &abc::refuse, &abc::run},
 };
 
 }  // namespace
 
-std::span<SelectorRow const> selectors() { return rows; }
+std::span<SelectorRow const> selectors() { return selector_rows; }
 
-SelectorRow const* find_selector(std::string_view name) { return row_named(rows, name); }
+SelectorRow const* find_selector(std::string_view name) { return row_named(selector_rows, name); }
 
 double PopulationRecord::share(int model) const {
   return accepted == 0 ? 0 : static_cast<double>(models[static_cast<std::size_t>(model)].particles) / accepted;

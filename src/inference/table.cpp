@@ -7,9 +7,7 @@
 namespace sysid {
 namespace {
 
-std::string no_refusal(Settings const&) { return {}; }
-
-BackendRow const rows[] = {
+BackendRow const backend_rows[] = {
     {"mh",
      "Metropolis-Hastings chains, adaptive or spherical Gaussian proposal",
      {.proper_prior = true},
@@ -35,9 +33,9 @@ BackendRow const rows[] = {
 
 }  // namespace
 
-std::span<BackendRow const> backends() { return rows; }
+std::span<BackendRow const> backends() { return backend_rows; }
 
-BackendRow const* find_backend(std::string_view name) { return row_named(rows, name); }
+BackendRow const* find_backend(std::string_view name) { return row_named(backend_rows, name); }
 
 std::vector<Summary> summarise(FitResult const& result) {
   if (!result.summaries.empty()) return result.summaries;

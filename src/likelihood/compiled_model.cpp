@@ -86,8 +86,6 @@ class Difference {
   std::vector<std::pair<NodeId, int>> terms_;
 };
 
-double scale_of(Quantity const& quantity) { return quantity.unit ? quantity.unit->scale : 1.0; }
-
 // log density of a channel's sample in the declared unit; the largest any location gives it; and where the noise is centred.
 struct ChannelDensity {
   NodeId sample, saturated, centre;
@@ -98,7 +96,7 @@ ChannelDensity channel_density(Folded& folded, Channel const& channel, int index
   NodeId const measured = graph.leaf(LeafKind::measured, index);
   NodeId const centre = use.row->centre(graph, use.arguments);
   // A count has a probability, not a density per unit.
-  NodeId const unit = graph.constant(use.row->discrete ? 0.0 : elementary::log(scale_of(channel)));
+  NodeId const unit = graph.constant(use.row->discrete ? 0.0 : elementary::log(channel.to_si(1)));
   return {graph.add(log_density(graph, use, measured), unit), graph.add(use.row->saturated(graph, measured, use.arguments), unit),
           centre};
 }
@@ -162,7 +160,7 @@ void compile_kernels(CompiledModel& compiled) {
   for (std::size_t i = 0; i < model.derived.size(); ++i) {
     if (model.derived[i].per_sample) continue;
     compiled.derived_index.push_back(static_cast<int>(i));
-    quantities.push_back(graph.divide(folded(model.derived[i].value), graph.constant(scale_of(model.derived[i]))));
+    quantities.push_back(graph.divide(folded(model.derived[i].value), graph.constant(model.derived[i].to_si(1))));
   }
   // Where a start is estimated, measured samples play no part in the first guess.
   for (State const& state : model.states)

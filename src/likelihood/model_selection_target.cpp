@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "core/not_finite.hpp"
 #include "likelihood/start_state.hpp"
 #include "simulate/thread_pool.hpp"
 #include "simulate/wavefront.hpp"
 
 namespace sysid {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The lanes of a batch that are still in, and what they have gathered.
 struct Running {

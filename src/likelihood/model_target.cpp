@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/diagnostic.hpp"
+#include "core/not_finite.hpp"
 #include "likelihood/failures.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Keeps the radicand of the scale row positive for any sensible noise level; its value does not matter, only that it is fixed.
 double scale_offset(int count) { return 100.0 * count + 1000.0; }
 

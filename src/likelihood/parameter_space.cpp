@@ -6,16 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/diagnostic.hpp"
+#include "core/not_finite.hpp"
 
 namespace sysid {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double scale_of(Quantity const& quantity) { return quantity.unit ? quantity.unit->scale : 1.0; }
 
 bool is_parameter(Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter; }
 
@@ -106,7 +102,7 @@ void ParameterSpace::compile() {
     Coordinate const moved = sysid::constrain(graph, support(graph, use), coordinates[k]);
     value[static_cast<std::size_t>(r)] = moved.value;
     // The declared density is per declared unit; d(declared)/du = d(SI)/du / scale.
-    NodeId const scale = graph.constant(elementary::log(scale_of(row)));
+    NodeId const scale = graph.constant(elementary::log(row.to_si(1)));
     NodeId const density = graph.add(log_density(graph, use, moved.value), scale);
     without = graph.add(without, density);
     with_jacobian = graph.add(with_jacobian, graph.add(density, graph.subtract(moved.log_jacobian, scale)));

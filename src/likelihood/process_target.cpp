@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/diagnostic.hpp"
 #include "core/elementary.hpp"
+#include "core/not_finite.hpp"
 #include "gaussian_process/regression.hpp"
 #include "likelihood/failures.hpp"
 #include "simulate/thread_pool.hpp"
@@ -16,7 +16,6 @@ namespace {
 
 using gaussian_process::Marginal;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Coordinates are of order one: the white part of a step this long loses a third of its digits, no more. Of a solver that chooses
 /// its steps a value is known to some parts of `roughness`, and the step is as much longer.
 double step_of(double roughness) { return std::clamp(0.1 * std::sqrt(roughness), 1e-5, 1e-3); }

@@ -16,7 +16,7 @@ namespace {
 // is within a factor of it serves to begin with.
 constexpr double relative_effect = 1e-4;
 constexpr double near_enough = 100;
-constexpr int most_probes = 12;
+constexpr int most_start_probes = 12;
 constexpr int least_moves = 6, most_rounds = 40;
 
 // What a move does to the outputs, in units of their misfit, which is the move in standard deviations of the start. Below the first
@@ -122,7 +122,7 @@ void StartState::find_steps(ConstLanes parameters, std::span<Search> searches) c
   std::vector<Slopes> slopes;
   std::vector<Eigen::Array<bool, Eigen::Dynamic, 1>> good(searches.size());
   for (auto& each : good) each.setConstant(states, false);
-  for (int probe = 0; probe < most_probes; ++probe) {
+  for (int probe = 0; probe < most_start_probes; ++probe) {
     std::vector<Search*> open;
     for (std::size_t k = 0; k < searches.size(); ++k)
       if (!searches[k].done && !good[k].all()) open.push_back(&searches[k]);

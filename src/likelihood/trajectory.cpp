@@ -1,15 +1,15 @@
 // Records of the trajectory program, in declared units, a few dozen parameter vectors at a time so that long records fit in memory.
 #include "likelihood/trajectory.hpp"
 
+#include "core/not_finite.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sysid {
 namespace {
 
 constexpr int vectors_at_once = 64;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using RecordKind = CompiledModel::Record::Kind;
 

@@ -7,9 +7,7 @@
 namespace sysid::regression {
 namespace {
 
-std::string no_refusal(Settings const&) { return {}; }
-
-Form const rows[] = {
+Form const form_rows[] = {
     {"weak", "integrals against test functions, derivatives moved onto them, noise covariance known", weak::settings(),
      &weak::refuse, &weak::project},
     {"savitzky_golay", "local polynomials, inputs filtered alike", savitzky_golay::settings(), &savitzky_golay::refuse,
@@ -22,8 +20,8 @@ Form const rows[] = {
 
 }  // namespace
 
-std::span<Form const> forms() { return rows; }
+std::span<Form const> forms() { return form_rows; }
 
-Form const* find_form(std::string_view name) { return row_named(rows, name); }
+Form const* find_form(std::string_view name) { return row_named(form_rows, name); }
 
 }  // namespace sysid::regression

@@ -13,9 +13,7 @@
 namespace sysid::regression {
 namespace {
 
-std::string no_refusal(Settings const&) { return {}; }
-
-SelectorRow const rows[] = {
+SelectorRow const selector_rows[] = {
     {"spike_slab", "posterior probabilities of supports and terms", "inclusion probability", spike_slab::settings(), &no_refusal,
      &spike_slab::choose},
     {"ard", "one prior precision per coefficient, evidence maximised", "contribution", ard::settings(), &no_refusal, &ard::choose},
@@ -25,9 +23,9 @@ SelectorRow const rows[] = {
 
 }  // namespace
 
-std::span<SelectorRow const> selectors() { return rows; }
+std::span<SelectorRow const> selectors() { return selector_rows; }
 
-SelectorRow const* find_selector(std::string_view name) { return row_named(rows, name); }
+SelectorRow const* find_selector(std::string_view name) { return row_named(selector_rows, name); }
 
 Support least_squares(LinearProblem const& problem, std::vector<int> terms) {
   return support_of(reduce(problem), std::move(terms));

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "core/not_finite.hpp"
 #include "report/cells.hpp"
 #include "report/figures.hpp"
 #include "report/marginal.hpp"
@@ -15,8 +15,6 @@ namespace sysid {
 namespace {
 
 using namespace plot;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The finite ones, sorted.
 std::vector<double> pooled(Draws const& draws, std::size_t parameter) {

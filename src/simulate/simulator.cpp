@@ -6,13 +6,12 @@
 #include <limits>
 #include <thread>
 
+#include "core/not_finite.hpp"
 #include "simulate/block.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Dead lanes are looked for after every so many samples.
 constexpr int burial_interval = 64;

@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 
+#include "core/not_finite.hpp"
 #include "simulate/block.hpp"
 
 namespace sysid {
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Samples between two looks at the lanes. Short enough that a hopeless lane costs little, long enough that moving lanes costs
 /// nothing.

@@ -20,27 +20,16 @@ bool spreads(Array const& array, bool any_number) {
   return is_single(array.shape) && (any_number || tree::is_plain_number(array.items.front()));
 }
 
-ast::Expression plus(ast::Expression a, ast::Expression b, Span span) {
-  if (tree::is_number(a, 0)) return b;
-  if (tree::is_number(b, 0)) return a;
-  return tree::binary("+", std::move(a), std::move(b), span);
-}
 // From left to right; the halves of a long sum each for itself, so that the tree is not as deep as the sum is long.
 ast::Expression sum_of(std::span<ast::Expression const> terms, Span span) {
   constexpr std::size_t longest = 200;
   if (terms.size() > longest) {
     std::size_t const half = terms.size() / 2;
-    return plus(sum_of(terms.first(half), span), sum_of(terms.subspan(half), span), span);
+    return tree::sum(sum_of(terms.first(half), span), sum_of(terms.subspan(half), span), span);
   }
   ast::Expression total = tree::number(0, span);
-  for (ast::Expression const& term : terms) total = plus(std::move(total), term, span);
+  for (ast::Expression const& term : terms) total = tree::sum(std::move(total), term, span);
   return total;
-}
-ast::Expression times(ast::Expression const& a, ast::Expression const& b, Span span) {
-  if (tree::is_number(a, 0) || tree::is_number(b, 0)) return tree::number(0, span);
-  if (tree::is_number(a, 1)) return b;
-  if (tree::is_number(b, 1)) return a;
-  return tree::binary("*", a, b, span);
 }
 
 }  // namespace
@@ -147,9 +136,9 @@ std::optional<Array> ArrayAlgebra::binary(std::string const& symbol, Array left,
   Array result{shape, {}};
   for (std::size_t i = 0; i < shape.count(); ++i) {
     if (symbol == "+")
-      result.items.push_back(plus(a->items[i], b->items[i], span));
+      result.items.push_back(tree::sum(a->items[i], b->items[i], span));
     else if (symbol == "*")
-      result.items.push_back(times(a->items[i], b->items[i], span));
+      result.items.push_back(tree::product(a->items[i], b->items[i], span));
     else if (symbol == "-" && tree::is_number(b->items[i], 0))
       result.items.push_back(a->items[i]);
     else if (symbol == "-" && tree::is_number(a->items[i], 0))
@@ -174,7 +163,7 @@ std::optional<Array> ArrayAlgebra::product(Array const& left, Array const& right
     for (int j = 0; j < columns; ++j) {
       std::vector<ast::Expression> terms;
       for (int k = 0; k < inner; ++k) {
-        terms.push_back(times(left.at(i, k), right.at(k, j), span));
+        terms.push_back(tree::product(left.at(i, k), right.at(k, j), span));
         if (!spend(tree::size(terms.back(), left_ + 1), span)) return std::nullopt;
       }
       result.items.push_back(sum_of(terms, span));
@@ -201,7 +190,7 @@ std::optional<Array> ArrayAlgebra::dot(Array const& left, Array const& right, Sp
     return std::nullopt;
   }
   Array terms{left.shape, {}};
-  for (std::size_t i = 0; i < left.items.size(); ++i) terms.items.push_back(times(left.items[i], right.items[i], span));
+  for (std::size_t i = 0; i < left.items.size(); ++i) terms.items.push_back(tree::product(left.items[i], right.items[i], span));
   return sum(terms, span);
 }
 

@@ -10,20 +10,8 @@ namespace {
 
 using Expression = ast::Expression;
 
-Expression plus(Expression a, Expression b, std::string const& symbol, Span span) {
-  if (tree::is_number(b, 0)) return a;
-  if (tree::is_number(a, 0)) return symbol == "+" ? b : tree::unary("-", std::move(b), span);
-  return tree::binary(symbol, std::move(a), std::move(b), span);
-}
-Expression times(Expression a, Expression b, Span span) {
-  if (tree::is_number(a, 0) || tree::is_number(b, 0)) return tree::number(0, span);
-  if (tree::is_number(a, 1)) return b;
-  if (tree::is_number(b, 1)) return a;
-  return tree::binary("*", std::move(a), std::move(b), span);
-}
-
 // Definitions inside of definitions and operators inside of operators; below 1 kB of stack each.
-constexpr int most_depth = 4500;
+constexpr int deepest_rate = 4500;
 
 class Rate {
  public:
@@ -31,7 +19,7 @@ class Rate {
       : motion_of_(motion_of), left_(left) {}
 
   std::optional<Expression> of(Expression const& expression) {
-    if (left_ == 0 || depth_ == most_depth) {
+    if (left_ == 0 || depth_ == deepest_rate) {
       left_ = 0;
       return std::nullopt;
     }
@@ -79,22 +67,23 @@ std::optional<Expression> Rate::derivative(Expression const& expression) {
   Expression const &left = *(*binary)->left, &right = *(*binary)->right;
   auto a = of(left), b = of(right);
   if (!a || !b) return std::nullopt;
-  if (symbol == "+" || symbol == "-") return plus(std::move(*a), std::move(*b), symbol, span);
+  if (symbol == "+") return tree::sum(std::move(*a), std::move(*b), span);
+  if (symbol == "-") return tree::difference(std::move(*a), std::move(*b), span);
   // The rules below copy both sides.
   left_ -= std::min(left_, tree::size(left, left_) + tree::size(right, left_));
   if (left_ == 0) return std::nullopt;
-  if (symbol == "*") return plus(times(std::move(*a), right, span), times(left, std::move(*b), span), "+", span);
+  if (symbol == "*") return tree::sum(tree::product(std::move(*a), right, span), tree::product(left, std::move(*b), span), span);
   if (symbol == "/") {
     Expression first = tree::is_number(*a, 0) ? tree::number(0, span) : tree::binary("/", std::move(*a), right, span);
     Expression second = tree::is_number(*b, 0) ? tree::number(0, span)
-                                               : tree::binary("/", times(left, std::move(*b), span),
+                                               : tree::binary("/", tree::product(left, std::move(*b), span),
                                                               tree::binary("^", right, tree::number(2, span), span), span);
-    return plus(std::move(first), std::move(second), "-", span);
+    return tree::difference(std::move(first), std::move(second), span);
   }
   if (symbol == "^" && tree::is_number(*b, 0)) {
     if (tree::is_number(*a, 0)) return a;
     Expression power = tree::binary("^", left, tree::binary("-", right, tree::number(1, span), span), span);
-    return times(tree::binary("*", right, std::move(power), span), std::move(*a), span);
+    return tree::product(tree::binary("*", right, std::move(power), span), std::move(*a), span);
   }
   return std::nullopt;
 }

@@ -16,12 +16,12 @@ namespace sysid {
 namespace {
 
 // Operators and definitions, one inside the other: more than a statement may hold. Each takes up to 1 kB of a stack of 8 MB.
-constexpr int most_depth = 4500;
+constexpr int deepest_expression = 4500;
 
 }  // namespace
 
 std::optional<Array> Evaluator::evaluate(ast::Expression const& expression, Frame& frame) {
-  if (depth_ == most_depth) algebra_.refuse(expression.span);
+  if (depth_ == deepest_expression) algebra_.refuse(expression.span);
   if (algebra_.exhausted()) return std::nullopt;
   ++depth_;
   auto value = evaluate_node(expression, frame);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr long most_elements = 10000;
 constexpr std::size_t most_frames = 1000;
-constexpr std::size_t most_depth = 50;
+constexpr std::size_t deepest_call = 50;
 
 }  // namespace
 
@@ -162,7 +162,7 @@ void FrameBuilder::add_part(Frame& frame, ast::Part const& part) {
     return;
   }
   if (too_large_) return;
-  if (++frames_ > most_frames || depth > most_depth) {
+  if (++frames_ > most_frames || depth > deepest_call) {
     too_large_ = true;
     diagnostics_.add(errors::model_too_large(part.name.span));
     return;

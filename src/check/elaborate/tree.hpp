@@ -39,6 +39,24 @@ inline bool is_number(ast::Expression const& expression, double value) {
   return number != nullptr && !number->unit && number->value == value;
 }
 
+/// a + b, a - b and a * b, less the terms that are 0 and the factors that are 1.
+inline ast::Expression sum(ast::Expression a, ast::Expression b, Span span) {
+  if (is_number(a, 0)) return b;
+  if (is_number(b, 0)) return a;
+  return binary("+", std::move(a), std::move(b), span);
+}
+inline ast::Expression difference(ast::Expression a, ast::Expression b, Span span) {
+  if (is_number(b, 0)) return a;
+  if (is_number(a, 0)) return unary("-", std::move(b), span);
+  return binary("-", std::move(a), std::move(b), span);
+}
+inline ast::Expression product(ast::Expression a, ast::Expression b, Span span) {
+  if (is_number(a, 0) || is_number(b, 0)) return number(0, span);
+  if (is_number(a, 1)) return b;
+  if (is_number(b, 1)) return a;
+  return binary("*", std::move(a), std::move(b), span);
+}
+
 /// Calls visit(expression) for the expression and all below it, those of indices included, units excluded.
 void each(ast::Expression const& expression, std::function<void(ast::Expression const&)> const& visit);
 /// For every expression of a statement, at the top of it.

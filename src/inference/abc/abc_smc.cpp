@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/elementary.hpp"
+#include "core/not_finite.hpp"
 #include "inference/abc/findings.hpp"
 #include "inference/abc/proposals.hpp"
 #include "inference/abc/state.hpp"
@@ -21,7 +22,6 @@ namespace {
 using json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Proposals of one batch: enough to fill lanes and threads, few enough that the last batch of a population wastes little.

@@ -1,14 +1,12 @@
 // The table of settings, and values that do not go together.
 #include "inference/abc/settings.hpp"
 
-#include <fmt/format.h>
+#include "core/not_finite.hpp"
 
-#include <limits>
+#include <fmt/format.h>
 
 namespace sysid::abc {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr SettingRow rows[] = {
     {"particles", SettingKind::integer, "1000", 10, 1e7, "", "of each population, over all models"},

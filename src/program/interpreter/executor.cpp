@@ -27,7 +27,7 @@ std::vector<Step> link_for(Code const& code, int uniforms, Executor executor) {
   std::vector<Step> steps;
   steps.reserve(code.size() + 1);
   for (Instruction const& i : code) {
-    Shape const shape{i.opcode, i.store, i.a.place, i.b.place, i.c.place};
+    InstructionShape const shape{i.opcode, i.store, i.a.place, i.b.place, i.c.place};
     Handler const handler = wide ? avx512::handler(shape, executor.width) : avx2::handler(shape, executor.width);
     if (handler == nullptr) throw InternalError(fmt::format("no executor has the instruction `{}`", capability(i.opcode).name));
     Step step{handler, rows + i.target * row, offset(i.a), {{offset(i.b), offset(i.c)}}};

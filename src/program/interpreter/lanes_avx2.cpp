@@ -54,7 +54,7 @@ inline Vec select_of(Vec a, Vec b, Vec c) { return with_nan_of(_mm256_blendv_pd(
 
 namespace sysid::avx2 {
 
-Handler handler(Shape shape, int width) {
+Handler handler(InstructionShape shape, int width) {
   return ask<Handler>(width, [&]<class M>(M) { return M::handler(shape); });
 }
 

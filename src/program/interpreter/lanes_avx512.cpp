@@ -61,7 +61,7 @@ inline Vec select_of(Vec a, Vec b, Vec c) {
 
 namespace sysid::avx512 {
 
-Handler handler(Shape shape, int width) {
+Handler handler(InstructionShape shape, int width) {
   return ask<Handler>(width, [&]<class M>(M) { return M::handler(shape); });
 }
 

@@ -5,7 +5,7 @@
 // position a jump). The accumulator, one vector per parameter of the handler, stays in machine registers on the way: most
 // intermediate results are used by the next instruction alone and never touch memory.
 //
-// No include guard and no includes: the including file provides Step, Shape, OperandPlace, Opcode and
+// No include guard and no includes: the including file provides Step, InstructionShape, OperandPlace, Opcode and
 //   Vec, vector_lanes, load, store, broadcast, zero, one, negate_of, add_of, ... (see below for their uses).
 
 // Where an operand is read; a uniform is broadcast once for all vectors of the block.
@@ -147,20 +147,20 @@ struct Machine {
   }
 
   template <class Operation>
-  static Handler unary(Shape const& shape) {
+  static Handler unary(InstructionShape const& shape) {
     if (shape.a == OperandPlace::lane) return stored<Operation, Lane, None, None>(shape.store);
     if (shape.a == OperandPlace::accumulator) return stored<Operation, Accumulator, None, None>(shape.store);
     return nullptr;
   }
 
   template <class Operation>
-  static Handler move(Shape const& shape) {
+  static Handler move(InstructionShape const& shape) {
     if (shape.a == OperandPlace::uniform) return stored<Operation, Uniform, None, None>(shape.store);
     return unary<Operation>(shape);
   }
 
   template <class Operation, class C>
-  static Handler commutative_with(Shape const& shape) {
+  static Handler commutative_with(InstructionShape const& shape) {
     if (shape.a == OperandPlace::lane) {
       if (shape.b == OperandPlace::lane) return stored<Operation, Lane, Lane, C>(shape.store);
       if (shape.b == OperandPlace::uniform) return stored<Operation, Lane, Uniform, C>(shape.store);
@@ -174,12 +174,12 @@ struct Machine {
   }
 
   template <class Operation>
-  static Handler commutative(Shape const& shape) {
+  static Handler commutative(InstructionShape const& shape) {
     return commutative_with<Operation, None>(shape);
   }
 
   template <class Operation>
-  static Handler multiply_add(Shape const& shape) {
+  static Handler multiply_add(InstructionShape const& shape) {
     if (shape.c == OperandPlace::lane) return commutative_with<Operation, Lane>(shape);
     if (shape.c == OperandPlace::uniform) return commutative_with<Operation, Uniform>(shape);
     if (shape.c == OperandPlace::accumulator) return commutative_with<Operation, Accumulator>(shape);
@@ -187,7 +187,7 @@ struct Machine {
   }
 
   template <class Operation>
-  static Handler ordered(Shape const& shape) {
+  static Handler ordered(InstructionShape const& shape) {
     if (shape.a == OperandPlace::uniform) {
       if (shape.b == OperandPlace::lane) return stored<Operation, Uniform, Lane, None>(shape.store);
       if (shape.b == OperandPlace::accumulator) return stored<Operation, Uniform, Accumulator, None>(shape.store);
@@ -198,7 +198,7 @@ struct Machine {
   }
 
   template <class Operation>
-  static Handler rare(Shape const& shape) {
+  static Handler rare(InstructionShape const& shape) {
     if (shape.a == OperandPlace::lane) {
       if (shape.b == OperandPlace::lane) return Handler(&arithmetic<Operation, true, Lane, Lane, None>);
       if (shape.b == OperandPlace::uniform) return Handler(&arithmetic<Operation, true, Lane, Uniform, None>);
@@ -209,11 +209,11 @@ struct Machine {
   }
 
   template <class Operation>
-  static Handler rare_unary(Shape const& shape) {
+  static Handler rare_unary(InstructionShape const& shape) {
     return shape.a == OperandPlace::lane ? Handler(&arithmetic<Operation, true, Lane, None, None>) : nullptr;
   }
 
-  static Handler select(Shape const& shape) {
+  static Handler select(InstructionShape const& shape) {
     if (shape.a != OperandPlace::lane) return nullptr;
     if (shape.b == OperandPlace::lane && shape.c == OperandPlace::lane) return Handler(&arithmetic<Select, true, Lane, Lane, Lane>);
     if (shape.b == OperandPlace::lane && shape.c == OperandPlace::uniform)
@@ -225,7 +225,7 @@ struct Machine {
     return nullptr;
   }
 
-  static Handler handler(Shape const& shape) {
+  static Handler handler(InstructionShape const& shape) {
     switch (shape.opcode) {
       case Opcode::move:
         return move<Move>(shape);

@@ -21,19 +21,19 @@ struct Step {
 };
 
 /// What the handlers of an instruction are chosen by.
-struct Shape {
+struct InstructionShape {
   Opcode opcode;
   bool store;
   OperandPlace a, b, c;
 };
 
-namespace avx2 {                          // widths 4, 8, 16, 32
-Handler handler(Shape shape, int width);  // nullptr: there is none
-Handler end(int width);                   // what the last step of every code does: return
+namespace avx2 {                                     // widths 4, 8, 16, 32
+Handler handler(InstructionShape shape, int width);  // nullptr: there is none
+Handler end(int width);                              // what the last step of every code does: return
 void run(Step const* steps, char* file, int width);
 }  // namespace avx2
 namespace avx512 {  // widths 8, 16, 32, 64
-Handler handler(Shape shape, int width);
+Handler handler(InstructionShape shape, int width);
 Handler end(int width);
 void run(Step const* steps, char* file, int width);
 }  // namespace avx512
