@@ -5,9 +5,9 @@
 
 #include <set>
 
+#include "core/xml.hpp"
 #include "report/html_sections.hpp"
 #include "report/html_style.hpp"
-#include "report/typeset.hpp"
 
 namespace sysid {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/xml.hpp"
 #include "report/gnuplot.hpp"
-#include "report/typeset.hpp"
 
 namespace sysid {
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/xml.hpp"
 #include "report/html_words.hpp"
 #include "report/number.hpp"
 #include "report/typeset.hpp"
@@ -114,7 +115,7 @@ class Task {
     std::string out;
     if (!report_.equations.empty()) {
       out += "<div class=\"equations\" role=\"group\" tabindex=\"0\" aria-label=\"Equations\">\n";
-      for (std::string const& equation : report_.equations) out += fmt::format("<p>{}</p>\n", typeset(equation));
+      for (std::string const& equation : typeset(report_.equations)) out += fmt::format("<p>{}</p>\n", equation);
       out += "</div>\n";
     }
     HtmlTable priors{"Priors", {"parameter", "prior"}, {}, 2};

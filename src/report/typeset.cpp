@@ -1,36 +1,28 @@
-// Escaping alone is ours; formulas are src/typeset's.
+// Formulas are src/typeset's.
 #include "report/typeset.hpp"
 
 #include <fmt/format.h>
 
+#include "core/xml.hpp"
 #include "typeset/typeset.hpp"
 
 namespace sysid {
 
-std::string escape(std::string_view text) {
-  std::string out;
-  for (char const c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
+std::vector<std::string> typeset(std::vector<std::string> const& statements) {
+  std::vector<std::string> out;
+  std::vector<ast::ModelStatement> trees;
+  std::vector<std::size_t> places;
+  for (std::string const& statement : statements) {
+    if (auto tree = model_statement(statement)) {
+      trees.push_back(std::move(*tree));
+      places.push_back(out.size());
     }
+    out.push_back(fmt::format("<code>{}</code>", escape(statement)));
+  }
+  std::vector<std::optional<std::string>> const formulas = mathml(trees);
+  for (std::size_t i = 0; i < formulas.size(); ++i)
+    if (formulas[i]) out[places[i]] = *formulas[i];
   return out;
-}
-
-std::string typeset(std::string_view statement) {
-  if (std::optional<std::string> const formula = mathml(statement)) return *formula;
-  return fmt::format("<code>{}</code>", escape(statement));
 }
 
 }  // namespace sysid

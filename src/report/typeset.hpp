@@ -1,14 +1,11 @@
-// Text of the user as HTML: escaped, and statements of models as formulas.
+// Statements of the user's models as HTML: formulas.
 #pragma once
 #include <string>
-#include <string_view>
+#include <vector>
 
 namespace sysid {
 
-/// `<`, `>`, `&` and `"` as entities.
-std::string escape(std::string_view text);
-
-/// A statement of a model, an equation above all, as displayed MathML; what is none stays the text it is, in `<code>`.
-std::string typeset(std::string_view statement);
+/// Statements of a model, equations above all, as displayed MathML; what is none stays the text it is, in `<code>`.
+std::vector<std::string> typeset(std::vector<std::string> const& statements);
 
 }  // namespace sysid

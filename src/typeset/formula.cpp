@@ -9,7 +9,6 @@
 
 #include "syntax/binding.hpp"
 #include "syntax/expression_text.hpp"
-#include "typeset/symbol.hpp"
 
 namespace sysid {
 
@@ -181,7 +180,7 @@ std::string Formula::operator()(ast::Expression const& expression) const {
 }
 
 std::string Formula::operator()(ast::Reference const& reference) const {
-  Symbol const printed = symbol(reference.name.text);
+  Symbol const printed = symbols_(reference.name.text);
   std::string out = to_.letter(printed.base);
   if (reference.primes > 0 && reference.primes <= 3) out = to_.dotted(out, reference.primes);
   std::vector<std::string> indices;

@@ -5,6 +5,7 @@
 
 #include "syntax/ast.hpp"
 #include "typeset/notation.hpp"
+#include "typeset/symbol.hpp"
 
 namespace sysid {
 
@@ -12,7 +13,8 @@ namespace sysid {
 /// that a reader of the page needs.
 class Formula {
  public:
-  explicit Formula(Notation const& notation) : to_(notation) {}
+  /// symbols: of the model that the expressions are of.
+  Formula(Notation const& notation, Symbols& symbols) : to_(notation), symbols_(symbols) {}
 
   std::string operator()(ast::Expression const& expression) const;
   std::string operator()(ast::Reference const& reference) const;
@@ -33,6 +35,7 @@ class Formula {
   std::string list(std::vector<std::string> const& pieces) const;
 
   Notation const& to_;
+  Symbols& symbols_;
 };
 
 }  // namespace sysid

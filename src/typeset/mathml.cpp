@@ -1,29 +1,13 @@
 // MathML Core, and well-formed as XML: characters in place of named entities.
 #include <fmt/format.h>
 
+#include "core/xml.hpp"
 #include "typeset/notation.hpp"
 #include "typeset/symbol.hpp"
 
 namespace sysid {
 
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (char const c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 std::string_view character(Sign sign) {
   switch (sign) {
@@ -69,10 +53,10 @@ class MathMl final : public Notation {
  public:
   std::string letter(std::string_view text) const override {
     GreekLetter const* greek = greek_letter(text);
-    return fmt::format("<mi>{}</mi>", greek != nullptr ? std::string(greek->letter) : escaped(text));
+    return fmt::format("<mi>{}</mi>", greek != nullptr ? std::string(greek->letter) : escape(text));
   }
   std::string word(std::string_view text) const override {
-    return fmt::format("<mi{}>{}</mi>", letters(text) == 1 ? " mathvariant=\"normal\"" : "", escaped(text));
+    return fmt::format("<mi{}>{}</mi>", letters(text) == 1 ? " mathvariant=\"normal\"" : "", escape(text));
   }
   std::string calligraphic(std::string_view text) const override {
     std::string out;
@@ -80,7 +64,7 @@ class MathMl final : public Notation {
     return fmt::format("<mi>{}</mi>", out);
   }
   std::string digits(std::string_view text) const override { return fmt::format("<mn>{}</mn>", text); }
-  std::string quoted(std::string_view text) const override { return fmt::format("<mtext>{}</mtext>", escaped(text)); }
+  std::string quoted(std::string_view text) const override { return fmt::format("<mtext>{}</mtext>", escape(text)); }
   std::string sign(Sign sign) const override {
     switch (sign) {
       case Sign::negative:

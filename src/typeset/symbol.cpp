@@ -65,4 +65,11 @@ Symbol symbol(std::string_view name) {
   return out;
 }
 
+Symbol Symbols::operator()(std::string const& name) {
+  Symbol const printed = symbol(name);
+  auto const [known, first] = names_.emplace(printed, name);
+  if (!first && known->second != name) alike_.insert({known->second, name});
+  return alike_.contains(name) ? Symbol{name, {}} : printed;
+}
+
 }  // namespace sysid

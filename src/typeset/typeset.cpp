@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/source.hpp"
+#include "core/xml.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/parse.hpp"
 #include "typeset/formula.hpp"
@@ -23,10 +24,17 @@ struct Relation {
 /// What a statement says, one relation each; none: it is no formula.
 class Relations {
  public:
-  explicit Relations(Notation const& notation) : to_(notation), formula_(notation) {}
+  explicit Relations(Notation const& notation) : to_(notation), formula_(notation, symbols_) {}
 
   std::vector<Relation> operator()(ast::ModelStatement const& statement) const {
     return std::visit([&](auto const& each) { return (*this)(each); }, statement);
+  }
+  /// Of statements of one model, in their order: names that would be printed alike are told apart.
+  std::vector<std::vector<Relation>> operator()(std::vector<ast::ModelStatement> const& statements) const {
+    std::vector<std::vector<Relation>> out;
+    for (ast::ModelStatement const& statement : statements) (*this)(statement);  // makes all names known
+    for (ast::ModelStatement const& statement : statements) out.push_back((*this)(statement));
+    return out;
   }
 
  private:
@@ -50,7 +58,7 @@ class Relations {
     return {};
   }
   std::vector<Relation> operator()(ast::Definition const& definition) const {
-    return {{formula_.name(definition.name.name.text), Sign::equal, formula_(definition.value)}};
+    return {{formula_.name(definition.name.name.text), Sign::equal, with_unit(formula_(definition.value), definition.name.unit)}};
   }
   std::vector<Relation> operator()(ast::FunctionDefinition const& function) const {
     return {{applied(function.name, function.parameters), Sign::equal, formula_(function.value)}};
@@ -82,19 +90,9 @@ class Relations {
   }
 
   Notation const& to_;
+  Symbols symbols_;
   Formula formula_;
 };
-
-/// The statement that a text alone is, by the rules for those inside a model.
-std::optional<ast::ModelStatement> parsed(std::string_view text) {
-  Diagnostics ignored;
-  Source const source("", fmt::format("model m {{\n{}\n}}\n", text));
-  std::optional<ast::File> const file = parse(source, ignored);
-  if (!file || file->items.size() != 1) return std::nullopt;
-  auto const* model = std::get_if<ast::Model>(&file->items.front());
-  if (model == nullptr || model->statements.size() != 1) return std::nullopt;
-  return model->statements.front();
-}
 
 /// A list of values, `initial y = 0, y' = 0`, stands in one line.
 std::string in_line(std::vector<Relation> const& relations, Notation const& to) {
@@ -106,48 +104,56 @@ std::string in_line(std::vector<Relation> const& relations, Notation const& to) 
   return to.row(pieces);
 }
 
-/// Text as the value of an attribute.
-std::string attribute(std::string_view text) {
-  std::string out;
-  for (char const c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return out;
-}
-
 }  // namespace
 
 bool has_formula(ast::ModelStatement const& statement) { return !Relations(latex_notation())(statement).empty(); }
 
-std::optional<std::string> mathml(ast::ModelStatement const& statement) {
+std::vector<std::optional<std::string>> mathml(std::vector<ast::ModelStatement> const& statements) {
   Notation const& to = mathml_notation();
-  std::vector<Relation> const relations = Relations(to)(statement);
-  if (relations.empty()) return std::nullopt;
-  return fmt::format("<math display=\"block\" alttext=\"{}\">{}</math>", attribute(unparse(statement)), in_line(relations, to));
+  std::vector<std::optional<std::string>> out;
+  auto const all = Relations(to)(statements);
+  for (std::size_t i = 0; i < statements.size(); ++i) {
+    out.emplace_back();
+    if (!all[i].empty())
+      out.back() =
+          fmt::format("<math display=\"block\" alttext=\"{}\">{}</math>", escape(unparse(statements[i])), in_line(all[i], to));
+  }
+  return out;
 }
 
-std::optional<std::string> mathml(std::string_view statement) {
-  std::optional<ast::ModelStatement> const tree = parsed(statement);
-  return tree ? mathml(*tree) : std::nullopt;
+std::optional<ast::ModelStatement> model_statement(std::string_view text) {
+  Diagnostics ignored;
+  Source const source("", fmt::format("model m {{\n{}\n}}\n", text));
+  std::optional<ast::File> const file = parse(source, ignored);
+  if (!file || file->items.size() != 1) return std::nullopt;
+  auto const* model = std::get_if<ast::Model>(&file->items.front());
+  if (model == nullptr || model->statements.size() != 1) return std::nullopt;
+  return model->statements.front();
 }
 
 std::string mathml(ast::Expression const& expression) {
-  return fmt::format("<math alttext=\"{}\">{}</math>", attribute(unparse(expression)), Formula(mathml_notation())(expression));
-}
-
-std::optional<std::string> latex(ast::ModelStatement const& statement) {
-  Notation const& to = latex_notation();
-  std::vector<Relation> relations = Relations(to)(statement);
-  if (relations.empty()) return std::nullopt;
-  relations.front().left += " &";
-  return in_line(relations, to);
+  Symbols symbols;
+  Formula const formula(mathml_notation(), symbols);
+  (void)formula(expression);  // makes all names known
+  return fmt::format("<math alttext=\"{}\">{}</math>", escape(unparse(expression)), formula(expression));
 }
 
 std::string latex(ast::Model const& model) {
+  Notation const& to = latex_notation();
   std::string lines;
-  for (ast::ModelStatement const& statement : model.statements)
-    if (std::optional<std::string> const line = latex(statement))
-      lines += fmt::format("{}  {}", lines.empty() ? "" : " \\\\\n", *line);
+  for (std::vector<Relation> relations : Relations(to)(model.statements)) {
+    if (relations.empty()) continue;
+    relations.front().left += " &";
+    lines += fmt::format("{}  {}", lines.empty() ? "" : " \\\\\n", in_line(relations, to));
+  }
   return lines.empty() ? std::string() : fmt::format("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines);
+}
+
+std::string latex(ast::File const& file) {
+  std::string text;
+  for (ast::Item const& item : file.items)
+    if (auto const* model = std::get_if<ast::Model>(&item)) text += fmt::format("% {}\n{}\n", model->name.text, latex(*model));
+  return text;
 }
 
 }  // namespace sysid

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "syntax/ast.hpp"
 
@@ -12,23 +13,21 @@ namespace sysid {
 /// value.
 bool has_formula(ast::ModelStatement const& statement);
 
-/// A statement as MathML, `<math display="block" alttext="...">`, its text in the language for readers of alternatives; nothing
-/// where there is no formula.
-std::optional<std::string> mathml(ast::ModelStatement const& statement);
+/// Statements of one model as MathML, `<math display="block" alttext="...">`, their text in the language for readers of
+/// alternatives; nothing where there is no formula.
+std::vector<std::optional<std::string>> mathml(std::vector<ast::ModelStatement> const& statements);
 
-/// Of a text: "m*y'' + k*y = x", "observe force ~ normal(y, sd = s)". Nothing when it is no statement of a model, or shows no
-/// formula.
-std::optional<std::string> mathml(std::string_view statement);
+/// The statement that a text is: "m*y'' + k*y = x", "observe force ~ normal(y, sd = s)". Nothing when it is none of a model.
+std::optional<ast::ModelStatement> model_statement(std::string_view text);
 
 /// An expression inside a line of a page.
 std::string mathml(ast::Expression const& expression);
 
-/// A statement as LaTeX, for amsmath, without an environment around it: `m \, \ddot{y} + k \, y &= x`, where `&` is what lines are
-/// aligned at.
-std::optional<std::string> latex(ast::ModelStatement const& statement);
-
-/// All that a model states, as one `align*` with a line for each statement, in its order: equations, initial values, definitions,
-/// observations, priors with their units.
+/// All that a model states, for amsmath: one `align*` with a line for each statement, in its order, as `m \, \ddot{y} + k \, y &=
+/// x`, where `&` is what lines are aligned at. Equations, initial values, definitions and priors with their units, observations.
 std::string latex(ast::Model const& model);
+
+/// The models of a text, each behind a comment that names it.
+std::string latex(ast::File const& file);
 
 }  // namespace sysid

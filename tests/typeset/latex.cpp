@@ -18,7 +18,13 @@ sysid::ast::Model model_of(std::string_view statements) {
   return std::get<sysid::ast::Model>(file->items.front());
 }
 
-std::string latex_of(std::string_view statement) { return *sysid::latex(model_of(statement).statements.front()); }
+/// The only line of a model.
+std::string latex_of(std::string_view statement) {
+  std::string const all = sysid::latex(model_of(statement)), begin = "\\begin{align*}\n  ", end = "\n\\end{align*}\n";
+  REQUIRE(all.starts_with(begin));
+  REQUIRE(all.ends_with(end));
+  return all.substr(begin.size(), all.size() - begin.size() - end.size());
+}
 
 /// Of the right side alone.
 std::string right(std::string_view expression) {
@@ -105,4 +111,25 @@ TEST_CASE("the logarithm of the gamma function has its bars") {
 TEST_CASE("a model is one align environment; declarations without a formula are left out") {
   CHECK(sysid::latex(model_of("input x [N]\nstate y [m]\ninitial y = 0, y' = 1\nk*y = x")) ==
         "\\begin{align*}\n  y\\left(0\\right) & = 0, \\dot{y}\\left(0\\right) = 1 \\\\\n  k \\, y & = x\n\\end{align*}\n");
+}
+
+TEST_CASE("definitions are printed with the units that they declare") {
+  CHECK(latex_of("derive fn [Hz] = w/(2*pi)") == "\\mathit{fn} & = \\frac{w}{2 \\, \\pi}\\,\\left[\\mathrm{Hz}\\right]");
+  CHECK(latex_of("constant g [m/s^2] = 9.81").ends_with("9.81\\,\\left[\\mathrm{m}\\text{/}{\\mathrm{s}}^{2}\\right]"));
+  CHECK(latex_of("let w = sqrt(k/m)") == "w & = \\sqrt{\\frac{k}{m}}");
+}
+
+TEST_CASE("names that would be printed alike are printed as they are typed, in the whole model") {
+  CHECK(sysid::latex(model_of("a = k1 + k2\nb = k_1 + c1")) ==
+        "\\begin{align*}\n  a & = \\mathit{k1} + k_{2} \\\\\n  b & = \\mathit{k\\_1} + c_{1}\n\\end{align*}\n");
+}
+
+TEST_CASE("the models of a text are LaTeX in its order, each behind its name") {
+  sysid::Diagnostics diagnostics;
+  auto const tree = sysid::parse(
+      sysid::Source("case.sysid", "model one {\n  state y\n  m*y'' + k*y = 0\n}\nmodel two {\n  a = 1\n}\n"), diagnostics);
+  REQUIRE(tree);
+  std::string const text = sysid::latex(*tree);
+  CHECK(text.starts_with("% one\n\\begin{align*}\n"));
+  CHECK(text.find("% two\n") > text.find("\\ddot{y}"));
 }
