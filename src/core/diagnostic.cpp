@@ -224,7 +224,8 @@ bool Diagnostics::has_errors(std::size_t from) const {
 
 std::string render(Diagnostic const& diagnostic, Source const& source, bool colour) {
   Paint const paint{colour};
-  std::string where = source.name();
+  // A message that has neither a place nor a code is about files and options, not about the text.
+  std::string where = diagnostic.primary || !diagnostic.code.empty() ? source.name() : "sysid";
   if (diagnostic.primary) {
     Place const place = source.place(diagnostic.primary->span.begin);
     where = source.name(place.file);

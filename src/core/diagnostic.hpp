@@ -41,7 +41,8 @@ class Diagnostics {
 };
 
 /// `file:line:col: error[E2103]: message`, the lines with carets, `help:` and `more:` lines. Sorted by place, those without one
-/// last; the first 20 errors, then how many more there are. colour: ANSI colours.
+/// last; of one that has no code either, `sysid` stands for the file. The first 20 errors, then how many more there are. colour:
+/// ANSI colours.
 std::string render(Diagnostics const& diagnostics, Source const& source, bool colour = false);
 std::string render(Diagnostic const& diagnostic, Source const& source, bool colour = false);
 

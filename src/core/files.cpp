@@ -34,10 +34,24 @@ std::string reason(int error) {
   return text;
 }
 
+std::string help_to_read(std::filesystem::path const& path) {
+  std::string const guess = did_you_mean(path.string(), files_beside(path));
+  return guess.empty() ? "check the path and the permissions" : guess;
+}
+
+std::string help_to_write(std::filesystem::path const& path, int error) {
+  std::error_code ignored;
+  std::filesystem::path const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (error == ENOENT && !std::filesystem::exists(folder, ignored))
+    return fmt::format("there is no folder `{}`: make it, or name another one", folder.string());
+  if (error == EISDIR) return fmt::format("`{}` is a folder: name a file in it", path.string());
+  if (error == ENOTDIR || error == EEXIST) return "a file stands where a folder should be: name another one";
+  if (error == EACCES || error == EPERM || error == EROFS) return "check the permissions, or name another folder";
+  return "check that the folder takes files and the disk has room";
+}
+
 [[noreturn]] void fail(std::string_view what, std::filesystem::path const& path, int error) {
-  std::string help = what == "read" ? did_you_mean(path.string(), files_beside(path)) : std::string();
-  if (help.empty())
-    help = what == "read" ? "check the path and the permissions" : "check that the folder takes files and the disk has room";
+  std::string const help = what == "read" ? help_to_read(path) : help_to_write(path, error);
   throw IoError(fmt::format("cannot {} `{}`: {}", what, path.string(), reason(error)), help);
 }
 

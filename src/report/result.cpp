@@ -20,10 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that `write_result` gives, and those of exports, which belong to the result that they were made of: TASK.nc,
-/// TASK_MODEL.nc.
+/// Of exports, which belong to the result that they were made of: TASK.nc, TASK_MODEL.nc, TASK.stan, TASK.data.json.
+bool is_exported_file(std::string const& name, std::string const& task) {
+  return name == task + ".nc" || (name.starts_with(task + "_") && name.ends_with(".nc")) || name == task + ".stan" ||
+         name == task + ".data.json";
+}
+
+/// Names that `write_result` gives, and those of exports.
 bool is_result_file(std::string const& name, std::string const& task) {
-  if (name.ends_with(".nc") && (name == task + ".nc" || name.starts_with(task + "_"))) return true;
+  if (is_exported_file(name, task)) return true;
   auto const between = [&](std::string_view begin, std::string_view end) {
     return name.size() >= begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
   };

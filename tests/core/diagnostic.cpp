@@ -107,6 +107,12 @@ TEST_CASE("a message without a place names the file alone") {
         "a.csv: error[E4001]: no rows\nmore: sysid explain E4001\n");
 }
 
+TEST_CASE("a message with neither a place nor a code is the program's, not the file's") {
+  Source const source("a.sysid", "");
+  CHECK(render(Diagnostic{Severity::error, "", "`results` holds results already", {}, {}, "add --force"}, source) ==
+        "sysid: error: `results` holds results already\nhelp: add --force\n");
+}
+
 TEST_CASE("diagnostics are sorted by place, those without one last") {
   Source const source("a", "abcdef");
   Diagnostics all;
