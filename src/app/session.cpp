@@ -13,6 +13,18 @@
 
 namespace sysid {
 
+std::filesystem::path Session::result_folder(Task const& task) const {
+  auto const found = found_in_.find(task.name);
+  return found == found_in_.end() ? options.output / task.name : found->second;
+}
+
+void Session::find_results_in(std::filesystem::path folder, Task const& task) {
+  found_in_[task.name] = std::move(folder);
+  int const index = static_cast<int>(&task - file.tasks.data());
+  fitted.erase(index);
+  selected.erase(index);
+}
+
 std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start, std::string const& method,
                                                        PredictionRule prediction) {
   auto& place = compiled_[{model, free_start, method, prediction}];

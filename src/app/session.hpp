@@ -46,7 +46,10 @@ class Session {
 
   /// The folder of the .sysid file, from which data paths are relative.
   std::filesystem::path folder() const { return std::filesystem::path(source.name()).parent_path(); }
-  std::filesystem::path result_folder(Task const& task) const { return options.output / task.name; }
+  /// Where the results of a task are: in a folder of its name, unless they were found elsewhere.
+  std::filesystem::path result_folder(Task const& task) const;
+  /// The results of a task were found in `folder`, whatever its name. What was read of others before is forgotten.
+  void find_results_in(std::filesystem::path folder, Task const& task);
   /// Compiled on first use.
   std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method, PredictionRule prediction);
   /// The record of a data block as a model of the file reads it, read on first use. Throws as `load_record`.
@@ -65,6 +68,7 @@ class Session {
  private:
   std::map<std::tuple<int, bool, std::string, PredictionRule>, std::shared_ptr<CompiledModel const>> compiled_;
   std::map<std::pair<int, Model const*>, Record> records_;
+  std::map<std::string, std::filesystem::path> found_in_;  // by name of the task
   std::optional<std::uint64_t> drawn_seed_;
   std::uint64_t polls_ = 0;
 };

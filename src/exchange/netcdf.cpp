@@ -77,6 +77,10 @@ void put_group(int file, NetcdfGroup const& group) {
 
 }  // namespace
 
+bool NetcdfGroup::has_dimension(std::string const& name) const {
+  return std::any_of(dimensions_.begin(), dimensions_.end(), [&](auto const& each) { return each.first == name; });
+}
+
 void NetcdfGroup::add_dimension(NetcdfVariable coordinates) {
   for (auto const& [name, size] : dimensions_)
     if (name == coordinates.name) {

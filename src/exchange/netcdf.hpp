@@ -31,6 +31,8 @@ class NetcdfGroup {
   void add_attribute(std::string name, std::string value) { attributes_.emplace_back(std::move(name), std::move(value)); }
 
   std::string const& name() const { return name_; }
+  bool has_dimension(std::string const& name) const;
+  /// Whether there is nothing beside dimensions.
   bool empty() const { return variables_.size() == dimensions_.size(); }
   std::vector<std::pair<std::string, std::size_t>> const& dimensions() const { return dimensions_; }
   std::vector<NetcdfVariable> const& variables() const { return variables_; }

@@ -59,6 +59,15 @@ void add_inputs(NetcdfGroup& group, Model const& model, Experiment const& experi
   }
 }
 
+void add_constants(NetcdfGroup& group, Model const& model, ExperimentUse const& use, std::string const& label) {
+  for (std::size_t p = 0; p < use.constants.size(); ++p)
+    if (use.constants[p])
+      group.add({labelled(model.parameters[p].name, label),
+                 {},
+                 std::vector<double>{model.parameters[p].from_si(*use.constants[p])},
+                 unit_attribute(model.parameters[p].unit_text())});
+}
+
 void add_measured(NetcdfGroup& group, Model const& model, Experiment const& experiment, RowsOfExperiment const& rows,
                   std::string const& suffix, std::string const& label) {
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
@@ -80,8 +89,8 @@ void add_trajectories(NetcdfGroup& group, Model const& model, std::span<Trajecto
     TrajectoryQuantity const& quantity = quantities[q];
     Attributes const attributes = row_attributes(quantity.unit, rows);
     if (quantity.channel >= 0) {
-      group.add({labelled(quantity.name, label), dimensions, flat(result.noisy[static_cast<std::size_t>(quantity.channel)], rows),
-                 attributes});
+      auto const& noisy = result.noisy[static_cast<std::size_t>(quantity.channel)];
+      if (!noisy.empty()) group.add({labelled(quantity.name, label), dimensions, flat(noisy, rows), attributes});
       group.add({labelled(quantity.name + "_response", label), dimensions, flat(result.values[q], rows), attributes});
       continue;
     }

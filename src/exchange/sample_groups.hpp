@@ -2,6 +2,7 @@
 #pragma once
 #include <span>
 
+#include "app/session.hpp"
 #include "exchange/netcdf.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -30,14 +31,17 @@ Attributes row_attributes(std::string const& unit, RowsOfExperiment const& rows)
 void add_inputs(NetcdfGroup& group, Model const& model, Experiment const& experiment, RowsOfExperiment const& rows,
                 std::string const& label);
 
+/// Constants that the data block of an experiment gives to parameters of the model, declared units.
+void add_constants(NetcdfGroup& group, Model const& model, ExperimentUse const& use, std::string const& label);
+
 /// Samples of the channels that the experiment measures, declared units, NaN where one is missing. suffix: after the channel's
 /// name.
 void add_measured(NetcdfGroup& group, Model const& model, Experiment const& experiment, RowsOfExperiment const& rows,
                   std::string const& suffix, std::string const& label);
 
-/// Of each channel its samples to come, noise included, under its name, and without noise as NAME_response; states and quantities
-/// derived at each sample under their names. Declared units; NaN throughout where a solve failed. Dimensions chain and draw are
-/// there, with as many places as `result` has trajectories, in their order.
+/// Of each channel its samples to come, noise included, under its name where the noise is known, and without as NAME_response;
+/// states and quantities derived at each sample under their names. Declared units; NaN throughout where a solve failed. Dimensions
+/// chain and draw are there, with as many places as `result` has trajectories, in their order.
 void add_trajectories(NetcdfGroup& group, Model const& model, std::span<TrajectoryQuantity const> quantities,
                       Trajectory::Result const& result, RowsOfExperiment const& rows, std::string const& label);
 

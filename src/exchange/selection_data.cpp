@@ -59,7 +59,7 @@ std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
   for (std::string const& name : living_candidates(stored)) {
     nlohmann::ordered_json const& model = stored.summary["models"][name];
     std::string const file = model_file_name(name);
-    CandidateData candidate{name, {provenance(stored), {}, {}}};
+    CandidateData candidate{name, 0, {provenance(stored), {}, {}}};
     for (auto& [key, value] : candidate.data.attributes)
       if (key == "model") value = name;
     candidate.data.attributes.emplace_back("model_probability", shortest(model.value("probability", 0.0)));
@@ -79,7 +79,8 @@ std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
       add_draws(group, polished);
       candidate.data.add(std::move(group));
     }
-    candidate.data.left_out.push_back("posterior_predictive, log_likelihood: a selection by distance says nothing about the noise");
+    candidate.data.left_out.push_back(
+        "posterior_predictive, log_likelihood, prior, prior_predictive: a selection by distance says nothing about the noise");
     candidates.push_back(std::move(candidate));
   }
   return candidates;
@@ -91,7 +92,10 @@ void add_candidate_data(Session& session, int select, std::vector<CandidateData>
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
   for (std::size_t k = 0; k < set.models.size(); ++k)
     for (CandidateData& candidate : candidates)
-      if (candidate.name == set.models[k].name) add_data(session, what.fits[k], candidate.data);
+      if (candidate.name == set.models[k].name) {
+        candidate.place = k;
+        add_data(session, what.fits[k], candidate.data);
+      }
 }
 
 }  // namespace sysid

@@ -5,7 +5,8 @@
 namespace sysid {
 
 struct CandidateData {
-  std::string name;  // of the model: "bouc_wen(n = 2)"
+  std::string name;       // of the model: "bouc_wen(n = 2)"
+  std::size_t place = 0;  // among the candidates of the set, once its model is known
   InferenceData data;
 };
 
@@ -16,8 +17,8 @@ std::vector<std::string> living_candidates(StoredResult const& stored);
 /// particles themselves with weight, distance and population; polished_posterior, where chains on its likelihood were run.
 std::vector<CandidateData> stored_candidates(StoredResult const& stored);
 
-/// observed_data and constant_data of each. The session's results are those that the candidates were read from: UserError where its
-/// model or data do not belong to them.
+/// observed_data and constant_data of each, and its place in the set. The session's results are those that the candidates were read
+/// from: UserError where its model or data do not belong to them.
 void add_candidate_data(Session& session, int select, std::vector<CandidateData>& candidates);
 
 }  // namespace sysid

@@ -1,6 +1,5 @@
 // A fit as a Stan program with its data: the same density of the same parameters, integrated by the same steps.
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "app/session.hpp"

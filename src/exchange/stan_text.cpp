@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/diagnostic.hpp"
 #include "expression/function.hpp"
 #include "report/number.hpp"
 
@@ -18,123 +17,9 @@ constexpr std::array same_name = {"exp",   "expm1", "log",  "log1p",  "log10",  
                                   "tan",   "asin",  "acos", "atan",   "sinh",    "cosh",    "tanh",
                                   "atan2", "erf",   "erfc", "lgamma", "digamma", "gamma_p", "gamma_q"};
 
-constexpr std::array reserved = {"for",
-                                 "in",
-                                 "while",
-                                 "repeat",
-                                 "until",
-                                 "if",
-                                 "then",
-                                 "else",
-                                 "true",
-                                 "false",
-                                 "int",
-                                 "real",
-                                 "vector",
-                                 "matrix",
-                                 "ordered",
-                                 "simplex",
-                                 "array",
-                                 "complex",
-                                 "tuple",
-                                 "void",
-                                 "functions",
-                                 "model",
-                                 "data",
-                                 "parameters",
-                                 "quantities",
-                                 "transformed",
-                                 "generated",
-                                 "lower",
-                                 "upper",
-                                 "offset",
-                                 "multiplier",
-                                 "target",
-                                 "return",
-                                 "print",
-                                 "reject",
-                                 "profile",
-                                 "break",
-                                 "continue",
-                                 "var",
-                                 "fvar",
-                                 "asm",
-                                 "auto",
-                                 "bool",
-                                 "case",
-                                 "catch",
-                                 "char",
-                                 "class",
-                                 "const",
-                                 "default",
-                                 "delete",
-                                 "do",
-                                 "double",
-                                 "enum",
-                                 "explicit",
-                                 "export",
-                                 "extern",
-                                 "float",
-                                 "friend",
-                                 "goto",
-                                 "inline",
-                                 "long",
-                                 "mutable",
-                                 "namespace",
-                                 "new",
-                                 "operator",
-                                 "private",
-                                 "protected",
-                                 "public",
-                                 "register",
-                                 "short",
-                                 "signed",
-                                 "sizeof",
-                                 "static",
-                                 "struct",
-                                 "switch",
-                                 "template",
-                                 "this",
-                                 "throw",
-                                 "try",
-                                 "typedef",
-                                 "typeid",
-                                 "typename",
-                                 "union",
-                                 "unsigned",
-                                 "using",
-                                 "virtual",
-                                 "volatile",
-                                 "and",
-                                 "or",
-                                 "not",
-                                 "xor",
-                                 "pi",
-                                 "e",
-                                 "mean",
-                                 "sd",
-                                 "variance",
-                                 "rows",
-                                 "cols",
-                                 "sum",
-                                 "min",
-                                 "max",
-                                 "dims",
-                                 "size",
-                                 "step",
-                                 "rank",
-                                 "inv",
-                                 "trace",
-                                 "segment",
-                                 "head",
-                                 "tail",
-                                 "col",
-                                 "row",
-                                 "positive_infinity"};
-
 class Writer {
  public:
-  Writer(Graph const& graph, std::span<NodeId const> roots, std::function<std::string(NodeId)> const& leaf_text)
+  Writer(Graph const& graph, std::span<NodeId const> roots, StanLeaves const& leaf_text)
       : graph_(graph), roots_(roots), leaf_text_(leaf_text), uses_(graph.size(), 0), names_(graph.size()) {}
 
   StanExpressions operator()() {
@@ -220,19 +105,12 @@ class Writer {
       case Operation::call:
         break;
     }
-    if (std::find(same_name.begin(), same_name.end(), node.function->name) == same_name.end())
-      throw UserError({Severity::error,
-                       "",
-                       fmt::format("`{}` has no counterpart in Stan's language", node.function->name),
-                       std::nullopt,
-                       {},
-                       "a distribution that is cut off by bounds may call it"});
     return called(node.function->name);
   }
 
   Graph const& graph_;
   std::span<NodeId const> roots_;
-  std::function<std::string(NodeId)> const& leaf_text_;
+  StanLeaves const& leaf_text_;
   std::vector<int> uses_;
   std::vector<std::string> names_;
   int locals_ = 0;
@@ -248,31 +126,21 @@ std::string stan_real(double value) {
   return value < 0 ? "(" + text + ")" : text;
 }
 
-std::string stan_identifier(std::string const& name, std::vector<std::string>& taken) {
-  std::string identifier;
-  for (char const c : name) {
-    bool const letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (letter || (!identifier.empty() && identifier.back() != '_')) identifier += letter ? c : '_';
+std::optional<std::string> lacking_in_stan(Graph const& graph, std::span<NodeId const> roots) {
+  for (NodeId const id : graph.reachable(roots)) {
+    Node const& node = graph[id];
+    bool const here =
+        node.operation != Operation::call || std::find(same_name.begin(), same_name.end(), node.function->name) != same_name.end();
+    if (!here) return std::string(node.function->name);
   }
-  while (identifier.ends_with('_')) identifier.pop_back();
-  if (identifier.empty() || (identifier.front() >= '0' && identifier.front() <= '9')) identifier = "parameter_" + identifier;
-  auto const known = [&](std::string const& word) {
-    return std::find(reserved.begin(), reserved.end(), word) != reserved.end() ||
-           std::find(same_name.begin(), same_name.end(), word) != same_name.end() ||
-           std::find(taken.begin(), taken.end(), word) != taken.end();
-  };
-  std::string free = identifier;
-  for (int k = 1; known(free); ++k) free = identifier + std::string("_") + std::to_string(k);
-  taken.push_back(free);
-  return free;
+  return std::nullopt;
 }
 
-StanExpressions stan_expressions(Graph const& graph, std::span<NodeId const> roots,
-                                 std::function<std::string(NodeId)> const& leaf_text) {
+StanExpressions stan_expressions(Graph const& graph, std::span<NodeId const> roots, StanLeaves const& leaf_text) {
   return Writer(graph, roots, leaf_text)();
 }
 
-std::string_view stan_functions() {
+std::string_view stan_own_functions() {
   return R"(  real absolute_value(real x) {
     if (x < 0) return -x;
     return x;

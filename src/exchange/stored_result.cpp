@@ -4,18 +4,10 @@
 #include <fmt/format.h>
 
 #include "app/stored_draws.hpp"
-#include "core/diagnostic.hpp"
 #include "core/files.hpp"
+#include "exchange/refused.hpp"
 
 namespace sysid {
-namespace {
-
-UserError refused(std::string message, std::string help) {
-  return UserError({Severity::error, "", std::move(message), std::nullopt, {}, std::move(help)});
-}
-
-}  // namespace
-
 StoredResult read_stored_result(std::filesystem::path const& folder) {
   StoredResult stored{folder, nlohmann::ordered_json::parse(read_file(folder / "summary.json"), nullptr, false)};
   auto const text = [&](char const* key) { return stored.summary.contains(key) && stored.summary[key].is_string(); };

@@ -98,11 +98,12 @@ void check_snippet(Page const& page, Fence const& block) {
                                                                                      << said);
 }
 
-// Verbs and options as src/cli/main.cpp defines them.
+// Verbs and options as src/cli/ defines them.
 struct KnownCommands {
   std::set<std::string> verbs, flags, options;
   KnownCommands() {
-    std::string const text = read_file(root / "src/cli/main.cpp");
+    std::string text;
+    for (auto const& entry : fs::directory_iterator(root / "src/cli")) text += read_file(entry.path());
     auto const each = [&](char const* pattern, auto const& take) {
       std::regex const expression(pattern);
       for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) take((*i)[1].str());
@@ -111,9 +112,9 @@ struct KnownCommands {
       std::istringstream stream(names);
       for (std::string name; std::getline(stream, name, ',');) into.insert(name);
     };
-    each("(?:runs|add_subcommand)\\(\"(\\w+)\"", [&](std::string const& name) { verbs.insert(name); });
-    each("add_flag\\(\"!?(-[^\"]*)\"", [&](std::string const& names) { insert_names(flags, names); });
-    each("add_option\\(\"(-[^\"]*)\"", [&](std::string const& names) { insert_names(options, names); });
+    each("\\{\"(\\w+)\", (?:tasks|files|results|looking_up),", [&](std::string const& name) { verbs.insert(name); });
+    each("(?:add|set_help)_flag\\(\"!?(-[^\"]*)\"", [&](std::string const& names) { insert_names(flags, names); });
+    each("add_option(?:_function<[^(]*>)?\\(\\s*\"(-[^\"]*)\"", [&](std::string const& names) { insert_names(options, names); });
   }
 };
 

@@ -40,6 +40,7 @@ std::map<std::string, Folders> const allowed = {
     {"lsp", {"lsp", "assist", "syntax", "core"}},
     {"typeset", {"typeset", "syntax", "core"}},
     {"report", {"report", "typeset", "inference", "likelihood", "core"}},
+    {"cli", {"cli", "exchange", "repl", "lsp", "app", "report", "typeset", "syntax", "core"}},
     {"exchange", {"exchange", "app", "report", "typeset", "inference", "likelihood", "simulate", "expression", "syntax", "core"}},
 };
 

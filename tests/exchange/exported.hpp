@@ -1,13 +1,8 @@
 // Results of a text, exported as the command line would, and what other programs say of them.
 #pragma once
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
-#include <stdexcept>
-
 #include "app/running.hpp"
-#include "exchange/export.hpp"
+#include "exchange/export_netcdf.hpp"
+#include "said_by.hpp"
 
 namespace sysid::testing {
 
@@ -27,10 +22,10 @@ class ExportedRun {
     return nlohmann::json::parse(read_file(options_.output / task / "summary.json"));
   }
 
-  /// What the verb prints. draws 0: without the text.
-  std::string export_all(int draws = 200) const {
+  /// What the verb prints, of one folder in the results where it is named. draws 0: without the text.
+  std::string export_all(int draws = 200, std::string const& folder = "") const {
     std::ostringstream out;
-    ExportedResults const found = find_results(options_.output);
+    ResultsFolder const found = find_results(options_.output / folder);
     require_exportable(found, true);
     Source source(name_.string(), text_);
     Diagnostics diagnostics;
@@ -49,23 +44,6 @@ class ExportedRun {
   std::string text_;
   RunOptions options_;
 };
-
-struct Said {
-  int exit = 0;
-  std::string text;  // standard output and standard error
-};
-
-/// A shell's command and what it says.
-inline Said said_by(std::string const& command) {
-  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) throw std::runtime_error("cannot start " + command);
-  Said said;
-  std::array<char, 4096> buffer;
-  while (std::size_t const count = std::fread(buffer.data(), 1, buffer.size(), pipe)) said.text.append(buffer.data(), count);
-  int const status = pclose(pipe);
-  said.exit = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-  return said;
-}
 
 /// Debian's own, which has the packages that tests/run installs; another one of the PATH need not.
 inline std::string const python = "/usr/bin/python3";

@@ -49,6 +49,8 @@ data bench {
 posterior = fit bending to bench.train with mh(samples = 400, burn_in = 100, thin = 1, chains = 3), seed = 3
 best      = fit bending to bench.train with map, seed = 3
 forecast  = predict posterior on bench.test with draws(90), seed = 3
+short     = predict posterior on bench.test with draws(30), seed = 4
+again     = predict posterior on bench.test with draws(90), seed = 5
 )";
 
 std::string bench() {
@@ -89,12 +91,17 @@ TEST_CASE(
   CHECK(run.export_all(60).find("left out") == std::string::npos);
   if (skipped()) return;
   compare(run.results() / "best/best.nc", "");
-  Said const said = said_by(python + " -c \"import xarray as x; f = '" + (run.results() / "posterior/posterior.nc").string() +
-                            "'\nd = x.open_dataset(f, group='posterior')\n"
-                            "print(d.gain.dims, d.gain_dim_0.values, d.days.dtype, d.days.units, d['chain_'].attrs['long_name'])\n"
-                            "l = x.open_dataset(f, group='log_likelihood')\nprint(l.left.shape, l.right.shape, l.draw.values[:2])\n"
-                            "print(x.open_dataset(f, group='predictions').right.shape)\"");
-  CHECK(said.text == "('chain', 'draw', 'gain_dim_0') [1 2] float64 day chain\n(3, 20, 27) (3, 20, 30) [ 7 22]\n(1, 90, 10)\n");
+  Said const said =
+      said_by(python + " -c \"import xarray as x; f = '" + (run.results() / "posterior/posterior.nc").string() +
+              "'\nd = x.open_dataset(f, group='posterior')\n"
+              "print(d.gain.dims, d.gain_dim_0.values, d.days.dtype, d.days.units, d['chain_'].attrs['long_name'])\n"
+              "l = x.open_dataset(f, group='log_likelihood')\nprint(l.left.shape, l.right.shape, l.draw.values[:2])\n"
+              "p = x.open_dataset(f, group='predictions')\nprint(sorted(p.data_vars))\nprint(p['right[again]'].shape)\n"
+              "print(x.open_dataset(f, group='predictions_short')['right[short]'].shape)\"");
+  CHECK(said.text ==
+        "('chain', 'draw', 'gain_dim_0') [1 2] float64 day chain\n(3, 20, 27) (3, 20, 30) [ 7 22]\n"
+        "['left[again]', 'left[forecast]', 'left_response[again]', 'left_response[forecast]', 'right[again]', 'right[forecast]', "
+        "'right_response[again]', 'right_response[forecast]']\n(1, 90, 10)\n(1, 30, 10)\n");
 }
 
 TEST_CASE("without the model's text a file holds what the results hold themselves") {
@@ -111,7 +118,8 @@ TEST_CASE("each living candidate of a selection has a file with its particles, w
   ExportedRun const run(model, text);
   std::string const said = run.export_all();
   auto const file = run.results() / "selection/selection_bouc_wen(n=2).nc";
-  CHECK(said.find("posterior, weighted_posterior, weighted_sample_stats, observed_data, constant_data") != std::string::npos);
+  CHECK(said.find("posterior, weighted_posterior, weighted_sample_stats, observed_data, constant_data, predictions, "
+                  "predictions_constant_data") != std::string::npos);
   REQUIRE(std::filesystem::exists(file));
   if (skipped()) return;
   Said const read =
@@ -130,13 +138,50 @@ TEST_CASE("each living candidate of a selection has a file with its particles, w
               "  assert set(p[k].values[0]) <= set(w[k].values[0]), k\nprint(len(j), p.sizes['draw'] == len(c), "
               "abs(float(s.weight.sum()) - 1) < 1e-12)\"");
   CHECK(read.text == "5 True True\n");
+  // The trajectories of all candidates are those of the bands.
+  Said const predicted = said_by(
+      python + " -c \"import xarray as x, netCDF4, numpy as n, csv, glob\nr = '" + run.results().string() +
+      "'\na = [x.open_dataset(f, group='predictions').displacement_response.values[0] for f in glob.glob(r + '/selection/*.nc') "
+      "if 'predictions' in netCDF4.Dataset(f).groups]\n"
+      "c = list(csv.DictReader(l for l in open(r + '/forecast/predict.csv') if l[0] != '#'))\n"
+      "m = n.array([float(l['displacement_mean']) for l in c if l['scored'] == '1'])\n"
+      "print(len(a) > 1, n.allclose(n.concatenate(a).mean(0), m, rtol=1e-11, atol=0))\"");
+  CHECK(predicted.text == "True True\n");
 }
 
-TEST_CASE("what an unknown function over the rows does not give is left out with the reason") {
+TEST_CASE("of an unknown function over the rows there are trajectories; what has no group is left out with the reason") {
   auto const model = models / "bridge/bridge.sysid";
   ExportedRun const run(model, read_file(model));
   std::string const said = run.export_all();
-  CHECK(said.find("line_curved.nc: posterior, sample_stats, observed_data, constant_data") != std::string::npos);
-  CHECK(said.find("left out: log_likelihood, posterior_predictive, prior, prior_predictive: ") != std::string::npos);
-  CHECK(said.find("left out: predictions of `line_curved_winter`: ") != std::string::npos);
+  CHECK(said.find("line_curved.nc: posterior, sample_stats, observed_data, constant_data, posterior_predictive, predictions, "
+                  "predictions_constant_data") != std::string::npos);
+  CHECK(said.find("left out: log_likelihood, prior, prior_predictive: ") != std::string::npos);
+  if (skipped()) return;
+  compare(run.results() / "line_curved/line_curved.nc", quoted("", run.results() / "line_curved_winter/predict.csv"));
+}
+
+TEST_CASE("constants of data blocks stand beside the inputs, with their units") {
+  std::string const text = read_file(models / "two_experiments/two_experiments.sysid");
+  ExportedRun const run(models / "two_experiments/two_experiments.sysid",
+                        with(text, "samples = 20000, burn_in = 5000, thin = 10", "samples = 200, burn_in = 100, thin = 1"));
+  run.export_all(10);
+  if (skipped()) return;
+  Said const said = said_by(python +
+                            " -c \"import xarray as x\nfor g in 'constant_data', 'predictions_constant_data':\n"
+                            "  d = x.open_dataset('" +
+                            (run.results() / "together/together.nc").string() +
+                            "', group=g)\n"
+                            "  print(sorted((n, float(v), v.units) for n, v in d.data_vars.items() if v.ndim == 0))\"");
+  CHECK(said.text == "[('added[loaded.train]', 0.5, 'kg')]\n[('added[loaded.test]', 0.5, 'kg')]\n");
+}
+
+TEST_CASE("predictions of a folder that was renamed are left out with the reason") {
+  TemporaryFolder folder;
+  write_file(folder.path() / "bench.csv", bench());
+  ExportedRun const run(folder.path() / "bending.sysid", vector_case);
+  std::filesystem::copy(run.results() / "posterior", run.results() / "kept", std::filesystem::copy_options::recursive);
+  std::string const said = run.export_all(30, "kept");
+  CHECK(said.find("kept/posterior.nc: posterior, sample_stats, observed_data, constant_data, log_likelihood, posterior_predictive, "
+                  "prior, prior_predictive\n") != std::string::npos);
+  CHECK(said.find("left out: predictions: those beside `kept` are of the folder `posterior`\n") != std::string::npos);
 }

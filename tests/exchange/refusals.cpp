@@ -3,7 +3,6 @@
 
 #include "exchange/exported.hpp"
 #include "exchange/netcdf.hpp"
-#include "syntax/parse.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -54,7 +53,7 @@ TEST_CASE("an export refuses folders without draws, files that are there and res
   std::filesystem::rename(results / "posterior", results / "renamed");
   CHECK(refusal<UserError>([&] {
           export_netcdf(find_results(results / "renamed"), &session, 200, out);
-        }).ends_with("renamed` holds results of the task `posterior`"));
+        }).ends_with("are of another text of model `deck`"));
   write_file(results / "renamed/summary.json", "{\"task\": 1}");
   CHECK(refusal<UserError>([&] { find_results(results / "renamed"); }).ends_with("summary.json` is no result of a task"));
 }
@@ -69,17 +68,4 @@ TEST_CASE("the same groups are the same bytes, and two variables of one name get
   std::string const bytes = netcdf_bytes({{"model", "a"}}, {group});
   CHECK(bytes.substr(1, 3) == "HDF");
   CHECK(netcdf_bytes({{"model", "a"}}, {group}) == bytes);
-}
-
-TEST_CASE("the models of a text are LaTeX in its order, each behind its name") {
-  Source const source("case.sysid",
-                      "model one {\n  state y\n  m*y'' + k*y = 0\n  parameter m = 1\n  parameter k ~ normal(0, sd = 1)\n}\n"
-                      "model two {\n  parameter a = 1\n}\n");
-  Diagnostics diagnostics;
-  auto const tree = parse(source, diagnostics);
-  REQUIRE(tree);
-  std::string const text = equations_latex(*tree);
-  CHECK(text.starts_with("% one\n\\begin{align*}\n"));
-  CHECK(text.find("\\ddot{y}") != std::string::npos);
-  CHECK(text.find("% two\n") > text.find("\\ddot{y}"));
 }

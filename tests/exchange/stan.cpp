@@ -7,6 +7,7 @@
 #include "app/fit_target.hpp"
 #include "data/digest.hpp"
 #include "exchange/exported.hpp"
+#include "exchange/stan_names.hpp"
 #include "exchange/stan_program.hpp"
 #include "exchange/stan_text.hpp"
 #include "report/csv.hpp"
@@ -127,6 +128,61 @@ TEST_CASE("names become identifiers of Stan, each its own") {
   CHECK(stan_identifier("real", taken) == "real_1");
   CHECK(stan_identifier("y'", taken) == "y");
   CHECK(stan_identifier("__", taken) == "parameter_");
+}
+
+TEST_CASE("no name is a word of Stan or C++, a function of Stan's library or an ending of its distributions") {
+  // The reference manual's types, blocks and statements; words of C++; functions that a model may well have as a parameter.
+  for (char const* word : {"row_vector",
+                           "unit_vector",
+                           "cov_matrix",
+                           "corr_matrix",
+                           "cholesky_factor_corr",
+                           "cholesky_factor_cov",
+                           "simplex",
+                           "ordered",
+                           "positive_ordered",
+                           "array",
+                           "complex",
+                           "complex_row_vector",
+                           "tuple",
+                           "jacobian",
+                           "target",
+                           "sum_to_zero_vector",
+                           "column_stochastic_matrix",
+                           "offset",
+                           "multiplier",
+                           "profile",
+                           "lower",
+                           "generated",
+                           "int",
+                           "while",
+                           "fatal_error",
+                           "STAN_MAJOR",
+                           "constexpr",
+                           "wchar_t",
+                           "union",
+                           "e",
+                           "pi",
+                           "mean",
+                           "sd",
+                           "step",
+                           "rank",
+                           "inv",
+                           "segment",
+                           "square",
+                           "Phi",
+                           "hypot",
+                           "distance",
+                           "choose",
+                           "beta_lpdf",
+                           "drag_log",
+                           "noise_rng"}) {
+    std::vector<std::string> taken;
+    CHECK(stan_identifier(word, taken) == std::string(word) + "_1");
+  }
+  std::vector<std::string> taken;
+  for (char const* name : {"k", "beta", "normal", "gain", "rate", "steps", "means", "Omega"})
+    CHECK(stan_identifier(name, taken) == name);
 }
 
 TEST_CASE("numbers are reals of Stan") {

@@ -1,0 +1,56 @@
+// list, explain, document, version: what the program knows of itself.
+#include <fmt/format.h>
+
+#include "app/explain.hpp"
+#include "app/lists.hpp"
+#include "app/module_page.hpp"
+#include "cli/command.hpp"
+#include "core/instruction_set.hpp"
+
+namespace sysid::cli {
+namespace {
+
+ExitCode print(std::string const& page) {
+  std::cout << page;
+  return ExitCode::success;
+}
+
+/// what: "message E9999"; verb: the one that lists all there are.
+ExitCode unknown(Messages const& messages, std::string const& what, char const* verb) {
+  messages.complain(fmt::format("there is no {}", what), fmt::format("`sysid {}` lists all", verb));
+  return ExitCode::usage;
+}
+
+}  // namespace
+
+Work declare_list(CLI::App& verb) {
+  auto const table = std::make_shared<std::string>();
+  verb.add_option("TABLE", *table, "functions, distributions, kernels, backends, discovery, solvers or modules")
+      ->required()
+      ->check(CLI::IsMember({"functions", "distributions", "kernels", "backends", "discovery", "solvers", "modules"}));
+  return [table](Messages const&) { return print(list(*table)); };
+}
+
+Work declare_explain(CLI::App& verb) {
+  auto const code = std::make_shared<std::string>();
+  verb.add_option("CODE", *code, "of a message or a finding, such as E2001 or chains_disagree; none: list all");
+  return [code](Messages const& messages) {
+    std::optional<std::string> const page = code->empty() ? list_codes() : explain(*code);
+    return page ? print(*page) : unknown(messages, "message " + *code, "explain");
+  };
+}
+
+Work declare_document(CLI::App& verb) {
+  auto const module = std::make_shared<std::string>();
+  verb.add_option("MODULE", *module, "one of `sysid list modules`")->required();
+  return [module](Messages const& messages) {
+    auto const page = module_page(*module);
+    return page ? print(*page) : unknown(messages, "module " + *module, "list modules");
+  };
+}
+
+Work declare_version(CLI::App&) {
+  return [](Messages const&) { return print(fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set()))); };
+}
+
+}  // namespace sysid::cli

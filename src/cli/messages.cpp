@@ -1,0 +1,79 @@
+// The one place that turns what is thrown into messages and exit codes.
+#include "cli/messages.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <new>
+#include <string_view>
+
+#include "app/experiments.hpp"
+#include "core/files.hpp"
+#include "syntax/parse.hpp"
+
+namespace sysid::cli {
+namespace {
+
+bool colour() {
+  auto const variable = [](char const* name) {
+    char const* value = std::getenv(name);
+    return std::string_view(value == nullptr ? "" : value);
+  };
+  return variable("NO_COLOR").empty() && variable("TERM") != "dumb" && isatty(STDERR_FILENO) != 0;
+}
+
+}  // namespace
+
+void Messages::show(Diagnostics const& diagnostics, Source const& source) const {
+  *out << (json ? render_json(diagnostics, source) : render(diagnostics, source, colour()));
+}
+
+void Messages::complain(std::string message, std::string help) const {
+  Diagnostics diagnostics;
+  diagnostics.add({Severity::error, {}, std::move(message), std::nullopt, {}, std::move(help)});
+  show(diagnostics, Source("sysid", ""));
+}
+
+ExitCode guarded(Messages const& messages, Source const& source, std::function<ExitCode()> const& work) {
+  try {
+    return work();
+  } catch (UnusableData const& error) {
+    messages.show(error.diagnostics(), source);
+    return ExitCode::user_error;
+  } catch (UserError const& error) {
+    Diagnostics diagnostics;
+    diagnostics.add(error.diagnostic());
+    messages.show(diagnostics, source);
+    return ExitCode::user_error;
+  } catch (UnreadableData const& error) {
+    messages.show(error.diagnostics(), source);
+    return ExitCode::io;
+  } catch (IoError const& error) {
+    messages.complain(error.what(), error.help());
+    return ExitCode::io;
+  } catch (std::bad_alloc const&) {
+    messages.complain("out of memory");
+    return ExitCode::internal;
+  } catch (std::exception const& error) {
+    messages.complain(fmt::format("this is our fault, not yours: {}", error.what()), "please send the file that shows it");
+    return ExitCode::internal;
+  }
+}
+
+Source read_source(std::string const& path) { return Source(path, read_file(path, most_text_bytes + 1)); }
+
+ExitCode with_checked_file(Messages const& messages, std::string const& path,
+                           std::function<ExitCode(Source const&, CheckedFile const&, Diagnostics const& said)> const& work) {
+  return guarded(messages, Source(path, ""), [&] {
+    Source source = read_source(path);
+    return guarded(messages, source, [&] {
+      Diagnostics diagnostics;
+      auto const file = load(source, diagnostics);
+      messages.show(diagnostics, source);
+      return file ? work(source, *file, diagnostics) : ExitCode::user_error;
+    });
+  });
+}
+
+}  // namespace sysid::cli

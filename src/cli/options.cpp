@@ -1,0 +1,59 @@
+// Each option once, in the same words wherever it stands.
+#include "cli/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/figure_format.hpp"
+
+namespace sysid::cli {
+namespace {
+
+/// Why figures cannot be drawn as this, before hours of sampling and not after; empty when they can.
+std::string refuse_figure_format(std::string const& name) {
+  auto const format = find_figure_format(name);
+  if (!format) return fmt::format("`{}` is no format of figures; there are svg, png, pdf and text", name);
+  // Without gnuplot there are scripts, which the page says: nobody has asked for more.
+  if (*format != FigureFormat::svg && !can_draw(*format))
+    return fmt::format("gnuplot cannot draw {} here; the Debian package gnuplot-nox can", name);
+  return "";
+}
+
+/// Each once, in the order asked for.
+std::vector<FigureFormat> figure_formats(std::vector<std::string> const& names) {
+  std::vector<FigureFormat> formats;
+  for (std::string const& name : names) {
+    FigureFormat const format = *find_figure_format(name);
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  }
+  return formats;
+}
+
+}  // namespace
+
+void add_file(CLI::App& verb, std::string& file) { verb.add_option("FILE", file, "the .sysid file")->required(); }
+
+void add_output(CLI::App& verb, std::filesystem::path& folder) {
+  verb.add_option("-o,--output", folder, "the folder for results")->type_name("FOLDER")->default_str(folder.string());
+}
+
+void add_threads(CLI::App& verb, int& threads) {
+  verb.add_option("--threads", threads, "0: one per processor; results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+void add_figures(CLI::App& verb, RunOptions& run, char const* without) {
+  verb.add_flag("!--no-figures", run.figures, without);
+  verb.add_option_function<std::vector<std::string>>(
+          "--figures", [&run](std::vector<std::string> const& names) { run.figure_formats = figure_formats(names); },
+          "how they are drawn: svg, png, pdf, text, or several with commas between")
+      ->delimiter(',')
+      ->type_name("FORMATS")
+      ->check(refuse_figure_format)
+      ->default_str(run.figure_formats.empty() ? "" : "svg");
+}
+
+}  // namespace sysid::cli

@@ -1,0 +1,15 @@
+// Options that several verbs have.
+#pragma once
+#include <CLI/CLI.hpp>
+
+#include "app/options.hpp"
+
+namespace sysid::cli {
+
+void add_file(CLI::App& verb, std::string& file);
+void add_output(CLI::App& verb, std::filesystem::path& folder);
+void add_threads(CLI::App& verb, int& threads);
+/// --figures and --no-figures; without: that there are none.
+void add_figures(CLI::App& verb, RunOptions& run, char const* without);
+
+}  // namespace sysid::cli

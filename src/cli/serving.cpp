@@ -1,0 +1,33 @@
+// repl, lsp: the verbs that stay until one leaves them.
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "lsp/server.hpp"
+#include "repl/prompt.hpp"
+
+namespace sysid::cli {
+
+Work declare_repl(CLI::App& verb) {
+  struct Options {
+    std::string file;
+    RunOptions run;
+  };
+  auto const options = std::make_shared<Options>();
+  verb.add_option("FILE", options->file, "a .sysid file to begin with");
+  add_output(verb, options->run.output);
+  verb.add_flag("--force", options->run.force, "replace results that are there");
+  verb.add_option("--seed", options->run.seed, "of tasks that state none (default: drawn, and written into them)")->type_name("N");
+  options->run.execution.threads = 0;
+  add_threads(verb, options->run.execution.threads);
+  return [options](Messages const&) { return static_cast<ExitCode>(repl::run_prompt(options->run, options->file)); };
+}
+
+Work declare_lsp(CLI::App& verb) {
+  auto const stdio = std::make_shared<bool>(true);
+  verb.add_flag("--stdio", *stdio, "standard input and output; there is no other way");
+  return [stdio](Messages const&) {
+    std::ios::sync_with_stdio(false);  // so that what has come already can be told
+    return static_cast<ExitCode>(lsp::serve(std::cin, std::cout));
+  };
+}
+
+}  // namespace sysid::cli

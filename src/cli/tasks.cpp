@@ -1,0 +1,93 @@
+// run, simulate, fit, select, discover, predict: the tasks of a file, or a stage of the compiler instead.
+#include <fmt/format.h>
+
+#include "app/pipeline.hpp"
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "core/instruction_set.hpp"
+#include "core/interrupt.hpp"
+#include "core/progress_terminal.hpp"
+
+namespace sysid::cli {
+namespace {
+
+struct TaskOptions {
+  std::string file, dump, instruction_set;
+  bool quiet = false;
+  RunOptions run;
+};
+
+/// Empty where the processor has it.
+std::string refuse_instruction_set(std::string const& name) {
+  if (name != "avx2" && name != "avx512") return fmt::format("`{}` is none; there are avx2 and avx512", name);
+  if (name == "avx512" && supported_instruction_set() != InstructionSet::avx512)
+    return "this processor has no AVX-512 instructions; results are the same bytes with avx2";
+  return "";
+}
+
+void add_run_options(CLI::App& verb, TaskOptions& options) {
+  add_file(verb, options.file);
+  add_output(verb, options.run.output);
+  verb.add_flag("--force", options.run.force, "replace results that are there");
+  verb.add_flag("--resume", options.run.resume, "go on after an interruption; keep tasks that are complete");
+  verb.add_option("--seed", options.run.seed, "of all random numbers, in place of those in the file")->type_name("N");
+  verb.add_flag("-q,--quiet", options.quiet, "no progress, no notices");
+  add_figures(verb, options.run, "leave figures as scripts");
+  options.run.execution.threads = 0;
+  add_threads(verb, options.run.execution.threads);
+  verb.add_option("--lanes", options.run.execution.lanes, "simulations side by side, 0: chosen; results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  verb.add_option("--instruction-set", options.instruction_set,
+                  "avx2 or avx512 (default: the best there is); results do not depend on it")
+      ->type_name("NAME")
+      ->check(refuse_instruction_set);
+  verb.add_option("--checkpoint-interval", options.run.checkpoint_interval, "from one checkpoint to the next")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber)
+      ->default_str("30");
+  verb.add_option("--interrupt-after", options.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
+  verb.add_option("--dump", options.dump, "print a stage of the compiler and run nothing: ast, flat, model or program")
+      ->type_name("STAGE")
+      ->check(CLI::IsMember({"ast", "flat", "model", "program"}));
+}
+
+ExitCode dump(Messages const& messages, TaskOptions const& options) {
+  Source source = read_source(options.file);
+  return guarded(messages, source, [&] {
+    Diagnostics diagnostics;
+    std::string const text = dump_stage(source, options.dump, diagnostics);
+    messages.show(diagnostics, source);
+    if (diagnostics.has_errors()) return ExitCode::user_error;
+    std::cout << text;
+    return ExitCode::success;
+  });
+}
+
+ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<std::string> const& kinds) {
+  return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
+    install_interrupt_handlers();
+    std::ostream nowhere(nullptr);
+    SilentProgress silent;
+    TerminalProgress terminal;
+    return run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal, std::cout,
+                     options.quiet ? nowhere : std::cerr);
+  });
+}
+
+}  // namespace
+
+Work declare_tasks(CLI::App& verb) {
+  auto const options = std::make_shared<TaskOptions>();
+  add_run_options(verb, *options);
+  std::vector<std::string> kinds;  // none: all
+  if (verb.get_name() != "run") kinds.push_back(verb.get_name());
+  return [options, kinds](Messages const& messages) {
+    if (!options->instruction_set.empty())
+      force_instruction_set(options->instruction_set == "avx2" ? InstructionSet::avx2 : InstructionSet::avx512);
+    return options->dump.empty() ? run(messages, *options, kinds) : dump(messages, *options);
+  };
+}
+
+}  // namespace sysid::cli

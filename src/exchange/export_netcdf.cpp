@@ -1,0 +1,127 @@
+// Folders to files.
+#include "exchange/export_netcdf.hpp"
+
+#include <fmt/format.h>
+
+#include "app/results.hpp"
+#include "core/files.hpp"
+#include "exchange/inference_data.hpp"
+#include "exchange/predictions_data.hpp"
+#include "exchange/refused.hpp"
+#include "exchange/selection_data.hpp"
+#include "exchange/simulated_data.hpp"
+#include "report/selection.hpp"
+
+namespace sysid {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file to write.
+struct Export {
+  fs::path path;
+  InferenceData data;
+};
+
+fs::path fit_path(StoredResult const& stored) { return stored.folder / (stored.task() + ".nc"); }
+
+fs::path candidate_path(StoredResult const& stored, std::string const& candidate) {
+  return stored.folder / fmt::format("{}_{}.nc", stored.task(), model_file_name(candidate));
+}
+
+/// The index of the task whose results these are. kind: "fit", "selection".
+template <class What>
+int task_of_kind(Session& session, StoredResult const& stored, char const* kind) {
+  int const index = find_task(session, stored);
+  if (!std::holds_alternative<What>(session.file.tasks[static_cast<std::size_t>(index)].what))
+    throw refused(fmt::format("`{}` is no {} in `{}`", stored.task(), kind, session.source.name()),
+                  "name the file that the results are of with --model FILE");
+  return index;
+}
+
+/// Predictions from the draws of a task that lie beside it, in the order of the file.
+std::vector<StoredPrediction> predictions_of(Session const& session, int source) {
+  std::vector<StoredPrediction> found;
+  for (Task const& task : session.file.tasks) {
+    auto const* what = std::get_if<PredictTask>(&task.what);
+    if (what == nullptr || what->fit != source || !complete(session.result_folder(task))) continue;
+    found.push_back({task, *what, read_stored_result(session.result_folder(task)).seed()});
+  }
+  return found;
+}
+
+/// Under another name they are a copy, and what lies beside it was predicted from the task's own folder.
+bool renamed(StoredResult const& stored, InferenceData& data) {
+  if (stored.folder.filename() == stored.task()) return false;
+  data.left_out.push_back(
+      fmt::format("predictions: those beside `{}` are of the folder `{}`", stored.folder.filename().string(), stored.task()));
+  return true;
+}
+
+Export fit_export(StoredResult const& stored, Session* session, int draws) {
+  Export file{fit_path(stored), stored_inference_data(stored)};
+  if (session == nullptr) return file;
+  int const task = task_of_kind<FitTask>(*session, stored, "fit");
+  add_simulated(*session, task, stored, draws, file.data);
+  std::vector<StoredPrediction> const predictions = predictions_of(*session, task);
+  if (!predictions.empty() && !renamed(stored, file.data)) add_predictions(*session, predictions, file.data);
+  return file;
+}
+
+std::vector<Export> selection_exports(StoredResult const& stored, Session* session) {
+  std::vector<CandidateData> candidates = stored_candidates(stored);
+  if (session != nullptr) {
+    int const task = task_of_kind<SelectTask>(*session, stored, "selection");
+    add_candidate_data(*session, task, candidates);
+    std::vector<StoredPrediction> const predictions = predictions_of(*session, task);
+    for (CandidateData& each : candidates)
+      if (!predictions.empty() && !renamed(stored, each.data)) add_predictions(*session, predictions, each.place, each.data);
+  }
+  std::vector<Export> files;
+  for (CandidateData& each : candidates) files.push_back({candidate_path(stored, each.name), std::move(each.data)});
+  return files;
+}
+
+std::string groups_text(InferenceData const& data) {
+  std::vector<std::string> names;
+  for (NetcdfGroup const& group : data.groups) names.push_back(group.name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void require_exportable(ResultsFolder const& results, bool force) {
+  bool any = false;
+  for (StoredResult const& stored : results.results) {
+    if (results.one_task && stored.is("predict"))
+      throw refused(fmt::format("`{}` is a prediction, which goes into the file of its fit", stored.folder.string()),
+                    "export the folder of the fit, or of the whole run");
+    std::vector<fs::path> paths;
+    if (stored.is("fit")) paths.push_back(fit_path(stored));
+    if (stored.is("select"))
+      for (std::string const& candidate : living_candidates(stored)) paths.push_back(candidate_path(stored, candidate));
+    for (fs::path const& path : paths)
+      if (!force && fs::exists(path))
+        throw refused(fmt::format("`{}` is there already", path.string()), "add --force to replace it");
+    any = any || !paths.empty();
+  }
+  if (!any)
+    throw refused(
+        fmt::format("`{}` holds no draws", results.one_task ? results.results.front().folder.string() : results.run.string()),
+        "draws are what a fit or a selection leaves");
+}
+
+void export_netcdf(ResultsFolder const& results, Session* session, int draws, std::ostream& out) {
+  for (StoredResult const& stored : results.results) {
+    std::vector<Export> files;
+    if (stored.is("fit")) files.push_back(fit_export(stored, session, draws));
+    if (stored.is("select")) files = selection_exports(stored, session);
+    for (Export const& file : files) {
+      write_file(file.path, file.data.bytes());
+      out << fmt::format("{}: {}\n", file.path.string(), groups_text(file.data));
+      for (std::string const& line : file.data.left_out) out << "  left out: " << line << '\n';
+    }
+  }
+}
+
+}  // namespace sysid

@@ -1,0 +1,51 @@
+// One style for what concerns no place in a text, with the exit codes that the documentation promises.
+#include <doctest/doctest.h>
+
+#include "cli/asked.hpp"
+
+using namespace sysid;
+using namespace sysid::testing;
+
+TEST_CASE("a command line that cannot be understood says what was meant") {
+  Desk const desk;
+  auto const refused = [&](std::string const& arguments, std::string const& message) {
+    Said const said = desk.ask(arguments);
+    CHECK(said.exit == 2);
+    CHECK(said.text == message);
+  };
+  refused("ftt x.sysid", "sysid: error: there is no verb `ftt`\nhelp: did you mean `fit` or `fmt`?\n");
+  refused("fit x.sysid --ouput y", "sysid: error: `sysid fit` has no option `--ouput`\nhelp: did you mean `--output`?\n");
+  refused("fit", "sysid: error: FILE is required\nhelp: `sysid fit --help` lists what it takes\n");
+  refused("fit x.sysid --threads", "sysid: error: `--threads` needs a value\nhelp: `sysid fit --help` lists what it takes\n");
+  refused("list modules more",
+          "sysid: error: `sysid list` does not know what to do with `more`\n"
+          "help: `sysid list --help` lists what it takes\n");
+  refused("explain E9999", "sysid: error: there is no message E9999\nhelp: `sysid explain` lists all\n");
+  refused("document springs", "sysid: error: there is no module springs\nhelp: `sysid list modules` lists all\n");
+  refused("export x.sysid -o y", "sysid: error: --output requires --stan\nhelp: `sysid export --help` lists what it takes\n");
+  CHECK(desk.ask("--error-format json fit").text.starts_with("{\"file\":\"sysid\",\"severity\":\"error\",\"code\":\"\""));
+}
+
+TEST_CASE("a file to write says that its folder is not there, and not that the disk is full") {
+  LineDesk const desk;
+  REQUIRE(desk.ask("fit line.sysid --quiet --no-figures").exit <= 1);
+  Said said = desk.ask("report results -o missing/folder/x.html");
+  CHECK(said.exit == 74);
+  CHECK(said.text ==
+        "sysid: error: cannot write `missing/folder/x.html`: no such file or directory\n"
+        "help: there is no folder `missing/folder`: make it, or name another one\n");
+  said = desk.ask("report results -o results");
+  CHECK(said.exit == 74);
+  CHECK(said.text.ends_with("help: `results` is a folder: name a file in it\n"));
+  said = desk.ask("fit line.sysid -o line.sysid/results");
+  CHECK(said.exit == 74);
+  CHECK(said.text.ends_with("help: a file stands where a folder should be: name another one\n"));
+}
+
+TEST_CASE("results that are there are an error of the program, not of the text") {
+  LineDesk const desk;
+  REQUIRE(desk.ask("fit line.sysid --quiet --no-figures").exit <= 1);
+  Said const said = desk.ask("fit line.sysid");
+  CHECK(said.exit == 65);
+  CHECK(said.text.starts_with("sysid: error: `results/posterior` holds results already\nhelp: add --force"));
+}
