@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/check_looked_at.hpp"
+#include "app/far_prior.hpp"
 #include "core/elementary.hpp"
 #include "inference/convergence.hpp"
 #include "report/number.hpp"
@@ -13,9 +14,6 @@
 namespace sysid {
 namespace {
 
-// Predicted and measured ranges further apart than this: a wrong unit or a wild prior. Medians of the shipped models lie within a
-// factor of 5.2, so that a unit a thousand times too large or small shows in each of them, by 190 and more.
-constexpr double wild = 100;
 constexpr double many_wild = 0.5;      // share of the draws
 constexpr double many_failures = 0.2;  // share of failed draws that deserves a warning
 constexpr double bare_mention = 3.2;   // a Bayes factor "not worth more than a bare mention" (Kass and Raftery 1995)
@@ -63,15 +61,13 @@ void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double a
   double const ratio = line.middle / line.measured;
   std::string size;
   if (ratio > wild || ratio < 1 / wild)
-    size = fmt::format("half of the prior draws predict a range of {} {} times {} than the one measured", line.name,
-                       significant(ratio > 1 ? ratio : 1 / ratio, 2), ratio > 1 ? "larger" : "smaller");
+    size = fmt::format("half of the prior draws predict a range of {} {} than the one measured", line.name, times_apart(ratio));
   else if (apart >= many_wild)
     size =
         fmt::format("{:.0f} % of the prior draws predict a range of {} more than {} times larger or smaller than the one measured",
                     100 * apart, line.name, wild);
-  if (!size.empty())
-    look.add(Severity::warning, "prior_far_from_data", size,
-             "look at the units of the data columns, and at priors that are wide or misplaced");
+  if (size.empty()) return;
+  look.page.findings.push_back(prior_far_from_data(size));
 }
 
 double range(auto const& value, int first, int end) {

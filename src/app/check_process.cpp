@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "app/far_prior.hpp"
 #include "app/fit_target.hpp"
 #include "app/process_fit.hpp"
 #include "gaussian_process/regression.hpp"
@@ -17,7 +18,6 @@ namespace sysid {
 namespace {
 
 constexpr int draws = 64;
-constexpr double wild = 100;            // an amplitude or noise so many times the data's sd
 constexpr double nearly_straight = 30;  // a length so many times the range of its input
 constexpr double most = 0.5;            // share of the draws
 constexpr double many_failures = 0.2;
@@ -194,10 +194,8 @@ class Look {
     double const ratio = quantile(drawn, 0.5) / measured;
     bool const is_noise = what.starts_with("the");
     if (ratio > wild || (!is_noise && ratio < 1 / wild))
-      add(Severity::warning, "prior_far_from_data",
-          fmt::format("half of the prior draws give {} a width {} times {} than the sd of {}", what,
-                      significant(ratio > 1 ? ratio : 1 / ratio, 2), ratio > 1 ? "larger" : "smaller", channel),
-          "look at the units of the data columns, and at priors that are wide or misplaced");
+      page_.findings.push_back(prior_far_from_data(
+          fmt::format("half of the prior draws give {} a width {} than the sd of {}", what, times_apart(ratio), channel)));
   }
 
   void add(Severity severity, std::string code, std::string message, std::string help) {
