@@ -30,6 +30,12 @@ bool misses(double coverage, int samples) {
 
 }  // namespace
 
+std::string prediction_verdict(Report const& report, bool missed) {
+  if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
+  if (report.ledger.failed() > 0) return "some trajectories do not stay finite";
+  return missed ? "all trajectories stay finite, but the data lie outside their bands" : "all trajectories stay finite";
+}
+
 bool add_coverage(Report& report, bool fed_back) {
   bool any = false;
   for (FitLine const& line : fit_lines(report))

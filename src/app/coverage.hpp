@@ -1,4 +1,4 @@
-// Whether data lie where a prediction says.
+// Whether data lie where a prediction says, and what its bands are good for.
 #pragma once
 #include "report/report.hpp"
 
@@ -7,5 +7,8 @@ namespace sysid {
 /// Whether some channel leaves its 95 % band far more often than it should: a warning for each. fed_back: the noise of a sample
 /// shows in later ones, which a free run leaves out.
 bool add_coverage(Report& report, bool fed_back);
+
+/// What a prediction's bands allow, from its findings and failures; missed: as `add_coverage` says.
+std::string prediction_verdict(Report const& report, bool missed);
 
 }  // namespace sysid

@@ -22,8 +22,6 @@
 #include "inference/verdict.hpp"
 #include "regression/discovery.hpp"
 #include "report/number.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
@@ -118,8 +116,7 @@ class Discover {
     report.timing.emplace_back("wall_seconds", wall.count());
     report.verdict = headline(discovery, report.equations, report.findings);
     report.discovery = std::move(discovery);
-    write_result(report, session_.result_folder(task_), session_.options.pictures());
-    session_.out << terminal_summary(report);
+    keep_result(session_, task_, report);
     if (!report.discovery->source.empty())
       session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,
                                       (session_.result_folder(task_) / "found.sysid").string());

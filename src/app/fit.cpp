@@ -177,6 +177,9 @@ class Fit {
   Findings look_at_functions(FitResult const& result, std::vector<double> const& best, Report& report) const {
     FunctionParameters const parameters = function_parameters(*space_, result);
     report.functions = unknown_functions(model_, parameters);
+    for (int e = 0; e < static_cast<int>(data_.size()); ++e)
+      add_visits(model_, data_[static_cast<std::size_t>(e)].experiment, preparation_.solver, start_rows(what_.start),
+                 parameters_at(best, e), session_.interruptible(), report.functions);
     Findings findings = check_expansions(model_, parameters.values);
     Findings const more = ranges_at(best);
     findings.insert(findings.end(), more.begin(), more.end());
@@ -186,15 +189,20 @@ class Fit {
   // Of unknown functions, along every experiment at one vector of the sampled parameters, declared.
   Findings ranges_at(std::vector<double> const& values) const {
     Findings findings;
-    LaneArray declared(static_cast<int>(values.size()), 1), one(static_cast<int>(model_.parameters.size()), 1);
-    for (std::size_t p = 0; p < values.size(); ++p) declared(static_cast<int>(p), 0) = values[p];
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
-      space_->select(space_->values_of_declared(declared), e, one);
       Findings const more = check_ranges(model_, data_[static_cast<std::size_t>(e)].experiment, preparation_.solver,
-                                         start_rows(what_.start), one, session_.interruptible());
+                                         start_rows(what_.start), parameters_at(values, e), session_.interruptible());
       findings.insert(findings.end(), more.begin(), more.end());
     }
     return findings;
+  }
+
+  // Those of the model in an experiment, SI, of the sampled ones, declared.
+  LaneArray parameters_at(std::vector<double> const& values, int e) const {
+    LaneArray declared(static_cast<int>(values.size()), 1), one(static_cast<int>(model_.parameters.size()), 1);
+    for (std::size_t p = 0; p < values.size(); ++p) declared(static_cast<int>(p), 0) = values[p];
+    space_->select(space_->values_of_declared(declared), e, one);
+    return one;
   }
 
   // Draws tell by their weights, an optimum by where it moves. A solver that was chosen has settled the modes before.
@@ -223,8 +231,7 @@ class Fit {
     Prediction prediction = bands_along(trajectory.quantities(), result, experiment, model_);
     for (Finding& finding : band_findings(prediction, result.failed(), result.failed(), data_.size() > 1))
       report.findings.push_back(std::move(finding));
-    for (RestoringForce& force : restoring_forces(model_, trajectory.quantities(), result, parameters, experiment))
-      report.forces.push_back(std::move(force));
+    add_restoring_forces(model_, trajectory.quantities(), result, parameters, experiment, report.forces);
     report.predictions.push_back(std::move(prediction));
   }
 

@@ -11,8 +11,6 @@
 #include "core/files.hpp"
 #include "inference/verdict.hpp"
 #include "likelihood/simulated_parameters.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 
 namespace sysid {
 
@@ -86,8 +84,7 @@ ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpo
   report.timing.emplace_back("wall_seconds", wall.count());
   report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
   report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
-  write_result(report, session.result_folder(task), session.options.pictures());
-  session.out << terminal_summary(report);
+  keep_result(session, task, report);
   if (interrupted) {
     session.notices << fmt::format("{}: interrupted; go on with --resume\n", task.name);
     return ExitCode::interrupted;

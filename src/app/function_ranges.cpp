@@ -9,6 +9,7 @@
 
 #include "likelihood/compiled_model.hpp"
 #include "report/number.hpp"
+#include "report/visits.hpp"
 
 namespace sysid {
 namespace {
@@ -61,12 +62,15 @@ LaneArray some(ConstLanes parameters, int count) {
   return chosen;
 }
 
-}  // namespace
-
-Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
-                      ConstLanes parameters, ExecutionOptions const& options) {
-  if (model.expansions.empty() || parameters.width() == 0) return {};
+/// What every argument of every application reads along runs.
+struct Along {
   std::vector<Argument> arguments;
+  std::vector<std::vector<std::vector<double>>> values;  // [arguments][runs][samples], SI
+};
+
+Along arguments_along(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
+                      ConstLanes parameters, ExecutionOptions const& options) {
+  Along along;
   Model shown = model;
   shown.derived.clear();
   for (Expansion const& expansion : model.expansions)
@@ -77,18 +81,42 @@ Findings check_ranges(Model const& model, Experiment const& experiment, SolverSe
         derived.value = application[d];
         derived.per_sample = true;
         shown.derived.push_back(std::move(derived));
-        arguments.push_back({expansion, expansion.inputs[d]});
+        along.arguments.push_back({expansion, expansion.inputs[d]});
       }
   Trajectory const trajectory(compile(std::move(shown), start_rows > 0, solver.method), experiment, solver, start_rows, options);
-  Trajectory::Result const result = trajectory.run(some(parameters, std::min(parameters.width(), most_looked_at)), {});
-  std::size_t const first = result.values.size() - arguments.size();
+  Trajectory::Result result = trajectory.run(some(parameters, std::min(parameters.width(), most_looked_at)), {});
+  for (std::size_t q = result.values.size() - along.arguments.size(); q < result.values.size(); ++q)
+    along.values.push_back(std::move(result.values[q]));
+  return along;
+}
+
+}  // namespace
+
+Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
+                      ConstLanes parameters, ExecutionOptions const& options) {
+  if (model.expansions.empty() || parameters.width() == 0) return {};
+  Along const along = arguments_along(model, experiment, solver, start_rows, parameters, options);
   Findings findings;
-  for (std::size_t k = 0; k < arguments.size(); ++k) {
+  for (std::size_t k = 0; k < along.arguments.size(); ++k) {
     Reading reading;
-    for (std::vector<double> const& values : result.values[first + k]) reading.add(arguments[k].input, values);
-    if (reading.beyond > 0) findings.push_back(outside(arguments[k], reading, experiment.name));
+    for (std::vector<double> const& values : along.values[k]) reading.add(along.arguments[k].input, values);
+    if (reading.beyond > 0) findings.push_back(outside(along.arguments[k], reading, experiment.name));
   }
   return findings;
+}
+
+void add_visits(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
+                ConstLanes parameters, ExecutionOptions const& options, std::vector<FunctionReport>& functions) {
+  if (model.expansions.empty() || parameters.width() == 0) return;
+  Along const along = arguments_along(model, experiment, solver, start_rows, parameters, options);
+  for (std::size_t k = 0; k < along.arguments.size(); ++k) {
+    auto const& [expansion, input] = along.arguments[k];
+    FunctionReport& function = functions[static_cast<std::size_t>(&expansion - model.expansions.data())];
+    std::vector<double>& visits = function.visits[static_cast<std::size_t>(&input - expansion.inputs.data())];
+    for (std::vector<double> const& values : along.values[k])
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (experiment.scored[i] != 0) count_visit(visits, (values[i] - input.low) / (input.high - input.low));
+  }
 }
 
 }  // namespace sysid

@@ -1,7 +1,8 @@
-// Whether the unknown functions of an equation are read where their finite sums stand for something.
+// Where the unknown functions of an equation are read, and whether their finite sums stand for something there.
 #pragma once
 #include "inference/finding.hpp"
 #include "likelihood/trajectory.hpp"
+#include "report/function.hpp"
 
 namespace sysid {
 
@@ -9,5 +10,9 @@ namespace sysid {
 /// that the simulation fails for says nothing. parameters: of the model, SI [parameters x W].
 Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
                       ConstLanes parameters, ExecutionOptions const& options);
+
+/// Adds the scored samples of an experiment to the visits of `functions`, which are those of the model's expansions in their order.
+void add_visits(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
+                ConstLanes parameters, ExecutionOptions const& options, std::vector<FunctionReport>& functions);
 
 }  // namespace sysid

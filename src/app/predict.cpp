@@ -15,8 +15,6 @@
 #include "app/resolved.hpp"
 #include "app/restoring_force.hpp"
 #include "app/solver_record.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 
 namespace sysid {
 namespace {
@@ -58,12 +56,8 @@ class Predict {
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
     bool const missed = add_coverage(report, model_.dynamics == Dynamics::discrete && !model_.states.empty());
-    report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
-                     : report.ledger.failed() > 0     ? "some trajectories do not stay finite"
-                     : missed                         ? "all trajectories stay finite, but the data lie outside their bands"
-                                                      : "all trajectories stay finite";
-    write_result(report, session_.result_folder(task_), session_.options.pictures());
-    session_.out << terminal_summary(report);
+    report.verdict = prediction_verdict(report, missed);
+    keep_result(session_, task_, report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   }
 
@@ -81,13 +75,11 @@ class Predict {
     LaneArray const draws = trajectories_.parameters(e);
     Trajectory::Result const result = trajectories_.run(e, trajectory, draws);
     report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model_));
-    for (Finding& finding :
-         check_ranges(model_, experiment, trajectories_.fitted().solver, trajectories_.start_rows(), draws, session_.options.execution))
+    for (Finding& finding : check_ranges(model_, experiment, trajectories_.fitted().solver, trajectories_.start_rows(), draws,
+                                         session_.options.execution))
       report.findings.push_back(std::move(finding));
     // Parameters that change from step to step have no force of their own.
-    if (!what_.redraw_each_step)
-      for (RestoringForce& force : restoring_forces(model_, trajectory.quantities(), result, draws, experiment))
-        report.forces.push_back(std::move(force));
+    if (!what_.redraw_each_step) add_restoring_forces(model_, trajectory.quantities(), result, draws, experiment, report.forces);
     for (Finding& finding : drift_findings(session_, model_, result, experiment.name))
       report.findings.push_back(std::move(finding));
     report.ledger.merge(result.ledger);

@@ -9,8 +9,6 @@
 #include "app/selection_trajectories.hpp"
 #include "app/solver_record.hpp"
 #include "core/diagnostic.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 
 namespace sysid {
 namespace {
@@ -43,11 +41,8 @@ class PredictSelection {
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
     if (session_.file.models[static_cast<std::size_t>(select_.fits[lead].model)].integrated())
       add_solver(select_.fits[lead].solver, report.settings);
-    report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
-                     : report.ledger.failed() > 0     ? "some trajectories do not stay finite"
-                                                      : "all trajectories stay finite";
-    write_result(report, session_.result_folder(task_), session_.options.pictures());
-    session_.out << terminal_summary(report);
+    report.verdict = prediction_verdict(report, false);
+    keep_result(session_, task_, report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   }
 
@@ -56,9 +51,8 @@ class PredictSelection {
   void predict(std::size_t e, std::size_t lead, Report& report) const {
     // The leading one first: its quantities are those of the bands, channels of the others are found by name.
     SelectionTrajectories::Along leading = trajectories_.along(lead, e);
-    for (RestoringForce& force : restoring_forces(leading.model(), leading.trajectory->quantities(), leading.result,
-                                                  leading.parameters, leading.data->experiment))
-      report.forces.push_back(std::move(force));
+    add_restoring_forces(leading.model(), leading.trajectory->quantities(), leading.result, leading.parameters,
+                         leading.data->experiment, report.forces);
     report.data.push_back(describe_data(session_.file, *leading.data, leading.model()));
     add_ranges(lead, leading, report);
     int const leading_failed = leading.result.failed();

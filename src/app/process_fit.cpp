@@ -16,6 +16,7 @@
 #include "app/fit_target.hpp"
 #include "app/preparation.hpp"
 #include "app/process_draws.hpp"
+#include "app/process_functions.hpp"
 #include "app/process_scores.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
@@ -137,6 +138,7 @@ class ProcessFit {
       ProcessScores scores = score_left_out(*target_, *all, parameters_of_best(report.draws), data_);
       report.fit = std::move(scores.lines);
       add(scores.findings);
+      report.functions = process_functions(*target_, *all, report.draws);
       for (int e = 0; e < static_cast<int>(data_.size()); ++e) report.predictions.push_back(fitted_rows(*all, report.draws, e));
     }
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);

@@ -8,8 +8,6 @@
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/solver_record.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 
 namespace sysid {
 namespace {
@@ -44,11 +42,8 @@ class ProcessPredict {
     if (model.integrated()) add_solver(trajectories_.fitted().solver, report.settings);
     if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));
     bool const missed = add_coverage(report, feeds_back(model));
-    report.verdict = grade(report) == Severity::error ? "do not use these bands: too many trajectories are left out"
-                     : missed                         ? "the data lie outside their bands more often than they should"
-                                                      : "all trajectories stay finite";
-    write_result(report, session_.result_folder(task_), session_.options.pictures());
-    session_.out << terminal_summary(report);
+    report.verdict = prediction_verdict(report, missed);
+    keep_result(session_, task_, report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   }
 

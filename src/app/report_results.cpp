@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <set>
 
+#include "app/compare.hpp"
 #include "app/prior_density.hpp"
+#include "app/results.hpp"
 #include "core/diagnostic.hpp"
 #include "core/files.hpp"
+#include "report/comparison.hpp"
 #include "report/html.hpp"
 #include "report/result.hpp"
 #include "report/stored.hpp"
@@ -34,51 +37,106 @@ Report whole_result(fs::path const& folder) {
   return report;
 }
 
-std::set<fs::path> task_folders(fs::path const& run) {
-  std::set<fs::path> tasks;
-  for (fs::directory_entry const& entry : fs::directory_iterator(run))
-    if (entry.is_directory() && is_result(entry.path())) tasks.insert(entry.path());
-  return tasks;
-}
+/// A task's result with where it lies.
+struct StoredTask {
+  fs::path folder;
+  Report report;
+};
 
-/// Of a run's tasks, in the order of its file.
-std::vector<Report> reports_in(fs::path const& folder) {
+struct StoredRun {
+  std::vector<StoredTask> tasks;        // in the order of their file
+  std::vector<std::string> unfinished;  // names of folders of which there is a checkpoint and no more
+};
+
+/// Of a task's folder, or of a whole run's.
+StoredRun stored_run(fs::path const& folder) {
   if (!fs::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
-  std::vector<Report> reports;
+  StoredRun run;
   if (is_result(folder)) {
-    reports.push_back(whole_result(folder));
-    return reports;
+    run.tasks.push_back({folder, whole_result(folder)});
+    return run;
   }
-  for (fs::path const& task : task_folders(folder)) reports.push_back(whole_result(task));
-  std::stable_sort(reports.begin(), reports.end(), [](Report const& a, Report const& b) { return a.place < b.place; });
-  if (reports.empty())
+  std::set<fs::path> found;
+  for (fs::directory_entry const& entry : fs::directory_iterator(folder))
+    if (entry.is_directory()) found.insert(entry.path());
+  for (fs::path const& task : found) {
+    if (is_result(task))
+      run.tasks.push_back({task, whole_result(task)});
+    else if (fs::exists(checkpoint_path(task)))
+      run.unfinished.push_back(task.filename().string());
+  }
+  std::stable_sort(run.tasks.begin(), run.tasks.end(),
+                   [](StoredTask const& a, StoredTask const& b) { return a.report.place < b.report.place; });
+  if (run.tasks.empty() && run.unfinished.empty())
     throw UserError({Severity::error,
                      "",
                      fmt::format("`{}` holds no results", folder.string()),
                      std::nullopt,
                      {},
                      "give the folder of a task, such as results/posterior, or of a whole run, such as results"});
-  return reports;
+  return run;
+}
+
+/// What a fit's evidence is a density of; empty where the result does not say.
+std::string samples_of(Report const& report) {
+  std::string all;
+  for (DataInfo const& data : report.data) {
+    if (data.samples_sha256.empty()) return "";
+    all += data.samples_sha256 + "\n";
+  }
+  return all;
+}
+
+/// Tables of fits that were fitted to the same samples and of predictions of the same ones, as `compare` makes them; and why not
+/// all fits stand in one.
+void add_comparisons(std::vector<StoredTask> const& tasks, RunReport& run) {
+  std::vector<std::pair<std::string, std::vector<fs::path>>> fits;  // by their samples
+  std::vector<fs::path> predictions;
+  for (StoredTask const& task : tasks) {
+    if (task.report.what.starts_with("predict ")) predictions.push_back(task.folder);
+    std::string const samples = samples_of(task.report);
+    if (!task.report.evidence || !task.report.evidence->log_evidence || samples.empty()) continue;
+    auto group = std::find_if(fits.begin(), fits.end(), [&](auto const& each) { return each.first == samples; });
+    if (group == fits.end()) group = fits.insert(group, {samples, {}});
+    group->second.push_back(task.folder);
+  }
+  auto const add = [&](std::vector<fs::path> const& folders) {
+    if (folders.size() < 2) return;
+    for (ReportTable& table : comparison_tables(compare(folders)))
+      if (table.rows.size() > 1) run.comparisons.push_back(std::move(table));
+  };
+  for (auto const& [samples, folders] : fits) add(folders);
+  add(predictions);
+  if (fits.size() > 1)
+    run.apart =
+        fmt::format("The fits are to {} different sets of samples, between which evidences cannot be compared. ", fits.size());
 }
 
 }  // namespace
 
 fs::path report_results(fs::path const& folder, std::optional<fs::path> const& output, bool pictures) {
-  std::vector<Report> const reports = reports_in(folder);
-  std::vector<ReportedTask> pages;
-  for (Report const& report : reports) pages.push_back({report, drawn_figures(report, pictures)});
+  StoredRun const stored = stored_run(folder);
+  RunReport run;
+  for (StoredTask const& task : stored.tasks) run.tasks.push_back({task.report, drawn_figures(task.report, pictures)});
   fs::path path = output ? *output : folder / "report.html";
-  std::string const page = is_result(folder) ? report_html(reports.front(), pages.front().figures) : run_html(pages);
-  write_file(path, page);
+  if (is_result(folder)) {
+    write_file(path, report_html(run.tasks.front().report, run.tasks.front().figures));
+    return path;
+  }
+  run.unfinished = stored.unfinished;
+  add_comparisons(stored.tasks, run);
+  write_file(path, run_html(run));
   return path;
 }
 
 void redraw_figures(fs::path const& folder, std::vector<FigureFormat> const& formats) {
-  (void)reports_in(folder);  // says what is wrong with any before the first is written
-  for (fs::path const& task : is_result(folder) ? std::set{folder} : task_folders(folder)) {
-    Report const report = whole_result(task);
-    write_figures(drawn_figures(report, true), task, formats);
-  }
+  // All are read before the first is written: what is wrong with any is said first.
+  std::string words;
+  for (StoredTask const& task : stored_run(folder).tasks)
+    if (auto const undrawn = write_figures(drawn_figures(task.report, false), task.folder, formats); !undrawn.empty())
+      words += fmt::format("{}`{}`: {}", words.empty() ? "" : "; ", task.folder.string(), undrawn_words(undrawn));
+  if (!words.empty())
+    throw UserError({Severity::error, "", words, std::nullopt, {}, "draw one by hand, as its first line says, to see why"});
 }
 
 }  // namespace sysid

@@ -14,7 +14,8 @@ namespace sysid {
 std::filesystem::path report_results(std::filesystem::path const& folder, std::optional<std::filesystem::path> const& output,
                                      bool pictures);
 
-/// Draws the figures of a task's folder, or of all of a run's, anew: into figures/ of each, beside the scripts. Errors as above.
+/// Draws the figures of a task's folder, or of all of a run's, anew: into figures/ of each, beside the scripts. Errors as above,
+/// and UserError where gnuplot did not draw one, after all others are drawn.
 void redraw_figures(std::filesystem::path const& folder, std::vector<FigureFormat> const& formats);
 
 }  // namespace sysid

@@ -11,6 +11,8 @@
 #include "app/prior_density.hpp"
 #include "core/files.hpp"
 #include "data/digest.hpp"
+#include "report/result.hpp"
+#include "report/terminal.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 #include "typeset/typeset.hpp"
@@ -162,9 +164,10 @@ std::vector<PriorInfo> declared_priors(Session const& session, int model_index) 
   return priors;
 }
 
-Severity failure_severity(std::uint64_t failed, std::uint64_t solves) {
-  double const share = solves == 0 ? 0 : static_cast<double>(failed) / static_cast<double>(solves);
-  return share < 0.01 ? Severity::note : share < 0.2 ? Severity::warning : Severity::error;
+void keep_result(Session& session, Task const& task, Report const& report) {
+  std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
+  session.out << terminal_summary(report);
+  if (!undrawn.empty()) session.notices << fmt::format("{}: {}\n", task.name, undrawn_words(undrawn));
 }
 
 std::string model_digest(Session const& session, std::string const& model) {

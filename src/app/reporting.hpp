@@ -18,8 +18,8 @@ void add_repetition(Session const& session, Task const& task, Report& report);
 /// The priors of a model as they stand in its text, in the order of its declarations.
 std::vector<PriorInfo> declared_priors(Session const& session, int model);
 
-/// What failed solves mean for a result: an error from 20 % on, a warning from 1 %, a note below.
-Severity failure_severity(std::uint64_t failed, std::uint64_t solves);
+/// Writes the folder of a task's results and prints their summary; a notice names pictures that could not be drawn.
+void keep_result(Session& session, Task const& task, Report const& report);
 
 /// SHA-256 of a model's text.
 std::string model_digest(Session const& session, std::string const& model);

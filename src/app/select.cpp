@@ -28,8 +28,6 @@
 #include "likelihood/simulated_parameters.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/number.hpp"
-#include "report/result.hpp"
-#include "report/terminal.hpp"
 
 namespace sysid {
 namespace {
@@ -113,9 +111,7 @@ class Select {
       if (candidate.space->dimension() != candidate.simulated->dimension())
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
       report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, candidate.compiled->model));
-      for (RestoringForce& force :
-           restoring_forces(candidate.compiled->model, trajectory.quantities(), result, parameters, experiment))
-        report.forces.push_back(std::move(force));
+      add_restoring_forces(candidate.compiled->model, trajectory.quantities(), result, parameters, experiment, report.forces);
       Findings left_out = leave_out_noise(candidate.compiled->model, report.predictions.back());
       if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
@@ -203,8 +199,7 @@ class Select {
     for (SelectedModel const& model : selection.result.models)
       kept.push_back({model.probability, model.died_in > 0 ? Draws{} : resampled_draws(model, seed_)});
     report.selection = std::move(selection);
-    write_result(report, session_.result_folder(task_), session_.options.pictures());
-    session_.out << terminal_summary(report);
+    keep_result(session_, task_, report);
     if (interrupted) {
       session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
       return ExitCode::interrupted;

@@ -10,6 +10,7 @@
 #include "likelihood/compiled_model.hpp"
 #include "likelihood/process_model.hpp"
 #include "program/kernel.hpp"
+#include "report/visits.hpp"
 
 namespace sysid {
 namespace {
@@ -165,8 +166,9 @@ std::vector<FunctionReport> unknown_functions(Model const& model, FunctionParame
   std::vector<FunctionReport> reports;
   for (Expansion const& expansion : model.expansions) {
     UnknownFunction const function(model, expansion);
-    FunctionReport report{expansion.name, expansion.unit_text(), {}, {}, {}};
+    FunctionReport report{expansion.name, expansion.unit_text(), {}, {}, {}, {}};
     std::size_t const inputs = expansion.inputs.size();
+    report.visits.assign(inputs, no_visits());
     for (Expansion::Input const& input : expansion.inputs) report.inputs.emplace_back(input.name, input.unit_text());
     for (std::vector<double> const& place : grid(expansion, inputs == 1 ? along_a_cut : inputs == 2 ? 21 : 7))
       report.grid.push_back(function.point(parameters, place));

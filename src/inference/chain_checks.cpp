@@ -11,10 +11,6 @@
 namespace sysid {
 namespace {
 
-constexpr double least_acceptance = 0.01;
-constexpr std::uint64_t least_distinct = 100;
-constexpr double rhat_bar = 1.01, rhat_loud = 1.05;
-constexpr double ess_bar = 400;
 constexpr std::size_t names_shown = 4;
 
 /// "a (1.20), b (1.10) and 3 more" of the parameters that fail, the worst first; empty when none does.
@@ -76,8 +72,9 @@ void check_agreement(ChainReport const& report, Findings& findings) {
   if (bad.empty()) return;
   bool const loud = !worst(report.summaries, rhat_of, show, rhat_loud).empty();
   findings.push_back({Severity::error, loud ? "chains_disagree" : "chains_not_quite_agreed",
-                      loud ? fmt::format("the chains disagree, each tells another story: R-hat of {} is far above 1.01", bad)
-                           : fmt::format("the chains have not quite agreed yet: R-hat of {} is above 1.01", bad),
+                      loud
+                          ? fmt::format("the chains disagree, each tells another story: R-hat of {} is far above {}", bad, rhat_bar)
+                          : fmt::format("the chains have not quite agreed yet: R-hat of {} is above {}", bad, rhat_bar),
                       loud ? "do not use the means and widths; run longer, and look for a second solution or parameters that the "
                              "data cannot tell apart"
                            : "run longer chains (samples)"});
@@ -94,7 +91,7 @@ void check_size(ChainReport const& report, Findings& findings) {
       if (shortfall(s) > most) most = shortfall(s);
     findings.push_back(
         {Severity::error, code,
-         fmt::format("too few independent draws for the {}: effective sample size of {}, below 400", what, bad),
+         fmt::format("too few independent draws for the {}: effective sample size of {}, below {}", what, bad, ess_bar),
          fmt::format("run chains about {:.2g} times as long (samples), or more of them (chains)", std::ceil(10 * most) / 10)});
   };
   check("ess_bulk_low", "means", [](Summary const& s) { return s.ess_bulk; });

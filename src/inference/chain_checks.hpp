@@ -9,6 +9,12 @@
 
 namespace sysid {
 
+// What chains are held to; Vehtari et al. 2021, sec. 4, for R-hat and the effective sample sizes, bulk and tail.
+inline constexpr double least_acceptance = 0.01;
+inline constexpr std::uint64_t least_distinct = 100;  // states a chain
+inline constexpr double rhat_bar = 1.01, rhat_loud = 1.05;
+inline constexpr double ess_bar = 400;
+
 struct ChainReport {
   std::vector<Summary> summaries;              // one per parameter
   std::vector<double> acceptance_rate;         // [chains]
@@ -16,8 +22,7 @@ struct ChainReport {
   bool adaptive = true;                        // the proposal fits itself; else the help says that it should
 };
 
-/// Bars: acceptance 1 %, 100 distinct states a chain, R-hat 1.01 (loud above 1.05), bulk and tail effective sample size 400.
-/// Vehtari et al. 2021, sec. 4, for the last two.
+/// By the bars above; where R-hat is above the loud one, in louder words.
 Findings check_chains(ChainReport const& report);
 
 }  // namespace sysid

@@ -212,16 +212,6 @@ double basic_ess(ChainValues const& chains, Fourier const& fourier) {
   return count / tau;
 }
 
-double sorted_quantile(std::vector<double> const& sorted, double probability) {
-  double const index = static_cast<double>(sorted.size() - 1) * probability;
-  double const low = std::floor(index);
-  double const a = sorted[static_cast<std::size_t>(low)];
-  double const b = sorted[static_cast<std::size_t>(std::ceil(index))];
-  if (a == b) return a;  // exactly, or draws tied with the quantile would fall on the wrong side of it
-  double const h = index - low;
-  return (1 - h) * a + h * b;
-}
-
 double ess_of_quantile(ChainValues const& draws, double bound, Fourier const& fourier) {
   ChainValues below = draws;
   for (auto& chain : below)
@@ -268,6 +258,16 @@ double ess_tail(ChainValues const& draws) {
 double ess_mean(ChainValues const& draws) { return basic_ess(split(draws), fourier_for(draws)); }
 
 double mcse_mean(ChainValues const& draws) { return std::sqrt(variance_of(pooled(draws)) / ess_mean(draws)); }
+
+double sorted_quantile(std::vector<double> const& sorted, double probability) {
+  double const index = static_cast<double>(sorted.size() - 1) * probability;
+  double const low = std::floor(index);
+  double const a = sorted[static_cast<std::size_t>(low)];
+  double const b = sorted[static_cast<std::size_t>(std::ceil(index))];
+  if (a == b) return a;  // exactly, or draws tied with the quantile would fall on the wrong side of it
+  double const h = index - low;
+  return (1 - h) * a + h * b;
+}
 
 double quantile(std::vector<double> draws, double probability) {
   if (draws.empty() || std::any_of(draws.begin(), draws.end(), [](double v) { return std::isnan(v); })) return nan;

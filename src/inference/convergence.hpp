@@ -26,5 +26,7 @@ Summary summarise(std::string name, std::string unit, ChainValues const& draws);
 
 /// Quantile of type 7 (R's default), draws need not be sorted.
 double quantile(std::vector<double> draws, double probability);
+/// The same of draws that rise and are not empty.
+double sorted_quantile(std::vector<double> const& sorted, double probability);
 
 }  // namespace sysid

@@ -5,6 +5,14 @@
 
 namespace sysid {
 
+std::vector<double> Draws::column(std::size_t name) const {
+  std::vector<double> out;
+  out.reserve(total());
+  for (Chain const& chain : chains)
+    for (std::vector<double> const& row : chain.values) out.push_back(row[name]);
+  return out;
+}
+
 LaneArray spread(Draws const& draws, int count) {
   std::vector<std::vector<double> const*> pooled;
   for (Chain const& chain : draws.chains)

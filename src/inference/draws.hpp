@@ -27,6 +27,8 @@ struct Draws {
     for (Chain const& chain : chains) n += chain.values.size();
     return n;
   }
+  /// Of one name, chain after chain.
+  std::vector<double> column(std::size_t name) const;
 };
 
 /// Up to `count` draws spread evenly over all chains, never random: parameters only, as columns [parameter_count x <= count].

@@ -6,6 +6,9 @@
 
 namespace sysid {
 
+/// A p value below this is no chance.
+inline constexpr double rare = 1e-3;
+
 /// Correlations lag by lag, and one answer over all of them.
 struct CorrelationTest {
   int first_lag = 0;
@@ -13,7 +16,7 @@ struct CorrelationTest {
   std::vector<double> bound;        // 99 % of noise has |correlation| below this, lag by lag
   int outside = 0;                  // lags beyond their bound; 1 % of them is expected
   double p_value = 1;               // of what is seen, or worse, were the residuals noise; 1 when there are too few samples
-  bool fires() const { return p_value < 1e-3; }
+  bool fires() const { return p_value < rare; }
 };
 
 /// Whether residuals are uncorrelated in time, lags 1 .. lags (at most a quarter of the samples). The mean is not removed: an

@@ -3,50 +3,75 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "report/number.hpp"
+#include "report/report.hpp"
 
 namespace sysid {
 namespace {
 
-std::string fits_text(Comparison const& comparison) {
-  std::vector<std::vector<std::string>> rows = {{"fit", "model", "noise", "parameters", "log evidence", "probability", "checks"}};
-  std::string notes;
+/// To a tenth, and never below zero by rounding alone.
+std::string difference_text(double difference) { return fmt::format("{:.1f}", std::fabs(difference) < 0.05 ? 0 : difference); }
+
+ReportTable fits_table(Comparison const& comparison) {
+  ReportTable table;
+  table.title = fmt::format("fitted to {}; probabilities of the models under equal odds before the data", comparison.data);
+  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "probability", "checks"};
+  double best = -std::numeric_limits<double>::infinity();
+  for (ComparedFit const& fit : comparison.fits) best = std::max(best, fit.log_evidence.value_or(best));
   for (ComparedFit const& fit : comparison.fits) {
-    rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
-                    fit.log_evidence ? fmt::format("{:.1f}", *fit.log_evidence) : "-",
-                    fit.probability ? fmt::format("{:.3f}", *fit.probability) : "-", fit.pass ? "pass" : "doubtful"});
-    if (!fit.log_evidence) notes += fmt::format("{} has no evidence: {}\n", fit.name, fit.without);
-    if (fit.rough) notes += fmt::format("{}: its evidence is rough, {:+.1f} along the axes of its mode\n", fit.name, *fit.rough);
+    table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
+                          fit.log_evidence ? fmt::format("{:.1f}", *fit.log_evidence) : "-",
+                          fit.log_evidence ? difference_text(*fit.log_evidence - best) : "-",
+                          fit.probability ? fmt::format("{:.3f}", *fit.probability) : "-", fit.pass ? "pass" : "doubtful"});
+    std::string note;
+    if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);
+    if (fit.rough) note = fmt::format("{}: its evidence is rough, {:+.1f} along the axes of its mode", fit.name, *fit.rough);
+    if (!note.empty()) table.caption += (table.caption.empty() ? "" : "\n") + note;
   }
-  return fmt::format("fitted to {}; probabilities of the models under equal odds before the data\n\n{}{}{}", comparison.data,
-                     align_columns(rows, 3), notes.empty() ? "" : "\n", notes);
+  return table;
 }
 
-std::string predictions_text(std::vector<ComparedPrediction> const& predictions) {
-  std::string text;
-  for (std::size_t first = 0; first < predictions.size();) {
-    std::vector<std::vector<std::string>> rows = {{"prediction", "model", "from", "nmse [%]", "coverage_95", "checks"}};
-    std::size_t last = first;
-    ComparedPrediction const& one = predictions[first];
-    for (; last < predictions.size() && predictions[last].samples == one.samples && predictions[last].on == one.on; ++last) {
-      ComparedPrediction const& each = predictions[last];
-      rows.push_back({each.name, each.model, each.kind, significant(each.nmse, 4),
-                      each.coverage ? significant(*each.coverage, 4) : "-", each.pass ? "pass" : "doubtful"});
-    }
-    text += fmt::format("{}{}, rows {}\n\n{}", first == 0 ? "" : "\n", one.on, one.rows, align_columns(rows, 3));
-    first = last;
-  }
-  return text;
+/// Of predictions of the same samples, which stand one after another.
+ReportTable predictions_table(std::span<ComparedPrediction const> predictions) {
+  ReportTable table;
+  table.title = fmt::format("{}, rows {}", predictions.front().on, predictions.front().rows);
+  table.header = {"prediction", "model", "from", "nmse [%]", "coverage_95", "checks"};
+  for (ComparedPrediction const& each : predictions)
+    table.rows.push_back({each.name, each.model, each.kind, significant(each.nmse, 4),
+                          each.coverage ? significant(*each.coverage, 4) : "-", each.pass ? "pass" : "doubtful"});
+  return table;
 }
 
 }  // namespace
 
+std::vector<ReportTable> comparison_tables(Comparison const& comparison) {
+  std::vector<ReportTable> tables;
+  if (!comparison.fits.empty()) tables.push_back(fits_table(comparison));
+  auto const& all = comparison.predictions;
+  for (auto first = all.begin(); first != all.end();) {
+    auto const last = std::find_if(
+        first, all.end(), [&](ComparedPrediction const& each) { return each.samples != first->samples || each.on != first->on; });
+    tables.push_back(predictions_table({first, last}));
+    first = last;
+  }
+  return tables;
+}
+
 std::string comparison_text(Comparison const& comparison) {
-  std::string text = comparison.fits.empty() ? "" : fits_text(comparison);
-  if (!text.empty() && !comparison.predictions.empty()) text += "\n";
-  return text + predictions_text(comparison.predictions);
+  std::string text;
+  for (ReportTable const& table : comparison_tables(comparison)) {
+    std::vector<std::vector<std::string>> rows = {table.header};
+    rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+    text += fmt::format("{}{}\n\n{}", text.empty() ? "" : "\n", table.title, align_columns(rows, 3));
+    if (!table.caption.empty()) text += "\n" + table.caption + "\n";
+  }
+  return text;
 }
 
 std::string comparison_json(Comparison const& comparison) {

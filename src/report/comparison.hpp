@@ -6,6 +6,8 @@
 
 namespace sysid {
 
+struct ReportTable;
+
 /// What a fit says of its model.
 struct ComparedFit {
   std::string name;  // of the task; of its folder where two tasks have one name
@@ -37,6 +39,9 @@ struct Comparison {
   std::vector<ComparedPrediction> predictions;  // of the same samples one after another
 };
 
+/// The fits, whose log Bayes factors are against the best of them, then the predictions, those of the same samples together. A
+/// table's caption says which fits have no evidence, or a rough one, a line each.
+std::vector<ReportTable> comparison_tables(Comparison const& comparison);
 std::string comparison_text(Comparison const& comparison);
 std::string comparison_json(Comparison const& comparison);
 

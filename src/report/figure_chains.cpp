@@ -10,28 +10,17 @@
 
 namespace sysid {
 
-namespace {
-
 using namespace plot;
-
-std::vector<double> pooled(Draws const& draws, std::size_t parameter) {
-  std::vector<double> out;
-  for (Chain const& chain : draws.chains)
-    for (auto const& row : chain.values) out.push_back(row[parameter]);
-  return out;
-}
-
-}  // namespace
 
 Figure trace_figure(Draws const& draws) {
   std::size_t const count = std::min(draws.names.size(), shown_cells);
   Cells const grid(count, 2, 118, 16);
-  Figure out{"trace", "Traces", "", preamble("trace", grid.width, grid.height)};
+  Figure out{"trace", "Traces", "", preamble("trace", grid.width, grid.height), Topic::chains};
   std::size_t longest = 1;
   for (Chain const& chain : draws.chains) longest = std::max(longest, chain.values.size());
   std::size_t const stride = (longest + 399) / 400;
   for (std::size_t i = 0; i < count; ++i) {
-    auto const [low, high] = range(pooled(draws, i));
+    auto const [low, high] = range(draws.column(i));
     Panel p = grid.cell(i, 66, 14, 24, 8);
     p.x = axis(0, static_cast<double>(longest), 3);
     std::erase_if(p.x.ticks, [](auto const& tick) { return tick.first != std::floor(tick.first); });
@@ -63,10 +52,10 @@ Figure rank_figure(Draws const& draws) {
   constexpr int bins = 20;
   std::size_t const count = std::min(draws.names.size(), shown_cells);
   Cells const grid(count, 3, 132);
-  Figure out{"ranks", "Rank plots", "", preamble("ranks", grid.width, grid.height)};
+  Figure out{"ranks", "Rank plots", "", preamble("ranks", grid.width, grid.height), Topic::chains};
   auto const total = static_cast<double>(draws.total());
   for (std::size_t i = 0; i < count; ++i) {
-    std::vector<double> const values = pooled(draws, i);
+    std::vector<double> const values = draws.column(i);
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     // Of equal values all chains get their share of the ranks, the first draws of each before the second.

@@ -73,6 +73,7 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   Axis const y = axis(extent.first, extent.second, 5, 0.04);
 
   Figure out;
+  out.topic = Topic::fit;
   out.name = figure_name(has_data ? "fit" : "state", prediction, quantity);
   out.title = fmt::format("{} on {}", quantity.name, prediction.experiment);
   out.script = preamble(out.name, width, height);

@@ -66,6 +66,7 @@ Figure input_figure(Prediction const& prediction, PredictedQuantity const& quant
   if (!curve && has_band && !has_noise) keys.push_back({Key::area, response_band, "95 % of the response"});
   int const width = column_width, legend_rows = legend_height(keys, 10, width - 14), height = 246 + legend_rows;
   Figure out;
+  out.topic = Topic::fit;
   out.name = identifier(fmt::format("inputs_{}_{}", prediction.experiment, quantity.name));
   out.title = fmt::format("{} over the input{}", quantity.name, all == 1 ? "" : "s");
   out.script = preamble(out.name, width, height) + legend(keys, 10, width - 14.0, height - 12.0, width, height);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/axis.hpp"
 #include "report/figures.hpp"
 #include "report/number.hpp"
 
@@ -31,15 +32,33 @@ double correlation(std::vector<double> const& a, std::vector<double> const& b) {
   return ab / std::sqrt(aa * bb);
 }
 
+/// An axis of a cell so many pixels wide: the fewest ticks of which two have numbers that stay clear of the neighbouring cells',
+/// counted from the digits they share where the numbers are too long for that.
+Axis cell_axis(std::pair<double, double> extent, int pixels) {
+  Axis best;
+  std::size_t most = 0;
+  for (auto* const make : {&axis, &counted_axis})
+    for (int wanted = 3; wanted <= 6 && most < 2; ++wanted) {
+      Axis next = make(extent.first, extent.second, wanted, 0.05);
+      double widest = 0;
+      for (auto const& [place, number] : next.ticks) widest = std::max(widest, text_pixels(number));
+      next.clear_edges(std::max(0.12, (widest / 2 - 2) / pixels));
+      Axis thinned = next;
+      thinned.thin_numbers(pixels, false);
+      if (!best.ticks.empty() && thinned.numbers() <= most) continue;
+      most = thinned.numbers();
+      best = std::move(next);
+    }
+  return best;
+}
+
 }  // namespace
 
 Figure pair_figure(Draws const& draws) {
   std::size_t const count = std::min(draws.names.size(), shown_pairs);
   // Draws of all chains, evenly thinned.
   std::vector<std::vector<double>> all(count), shown(count);
-  for (Chain const& chain : draws.chains)
-    for (auto const& row : chain.values)
-      for (std::size_t i = 0; i < count; ++i) all[i].push_back(row[i]);
+  for (std::size_t i = 0; i < count; ++i) all[i] = draws.column(i);
   std::size_t const stride = (all[0].size() + shown_draws - 1) / shown_draws;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t d = 0; d < all[i].size(); d += stride) shown[i].push_back(all[i][d]);
@@ -51,17 +70,7 @@ Figure pair_figure(Draws const& draws) {
   int const height = bottom + tall * static_cast<int>(count) + 6;
   Figure out{"pairs", "Pairs", "", preamble("pairs", width, height)};
   std::vector<Axis> axes;
-  for (std::size_t i = 0; i < count; ++i) {
-    auto const [low, high] = range(all[i]);
-    // The fewest ticks that leave two clear of the neighbouring panels' numbers.
-    for (int wanted = 3; wanted <= 6; ++wanted) {
-      Axis next = axis(low, high, wanted, 0.05);
-      next.clear_edges(0.12);
-      bool const enough = next.ticks.size() >= 2;
-      if (wanted == 3 || enough) axes.resize(i), axes.push_back(std::move(next));
-      if (enough) break;
-    }
-  }
+  for (std::size_t i = 0; i < count; ++i) axes.push_back(cell_axis(range(all[i]), cell - 8));
   out.script += "set grid noxtics noytics\n";
   for (std::size_t row = 0; row < count; ++row) {
     for (std::size_t column = 0; column < count; ++column) {

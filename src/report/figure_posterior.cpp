@@ -17,10 +17,8 @@ namespace {
 using namespace plot;
 
 /// The finite ones, sorted.
-std::vector<double> pooled(Draws const& draws, std::size_t parameter) {
-  std::vector<double> out;
-  for (Chain const& chain : draws.chains)
-    for (auto const& row : chain.values) out.push_back(row[parameter]);
+std::vector<double> finite_draws(Draws const& draws, std::size_t parameter) {
+  std::vector<double> out = draws.column(parameter);
   std::erase_if(out, [](double each) { return !std::isfinite(each); });
   std::sort(out.begin(), out.end());
   return out;
@@ -59,7 +57,7 @@ Figure posterior_figure(Report const& report) {
   auto const add_name = [](std::string& list, std::string const& name) { list += (list.empty() ? "" : ", ") + name; };
   for (std::size_t i = 0; i < count; ++i) {
     Summary const& summary = report.summary[columns[i]];
-    std::vector<double> const values = pooled(report.draws, columns[i]);
+    std::vector<double> const values = finite_draws(report.draws, columns[i]);
     if (values.empty()) {
       Panel p = cells.cell(i, 14, 12, 46, 20);
       p.x = p.y = axis(0, 1, 1);

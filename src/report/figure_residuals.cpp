@@ -14,30 +14,37 @@ namespace {
 using namespace plot;
 
 constexpr std::size_t shown_inputs = 3;
+constexpr int most_lags = 60;
+/// Of fewer the correlations say nothing.
+constexpr std::ptrdiff_t least_residuals = 20;
 
 /// Measured minus modelled at the scored samples, NaN elsewhere.
 std::vector<double> residuals_of(Prediction const& prediction, PredictedQuantity const& quantity) {
   std::vector<double> out;
-  for (std::size_t i = 0; i < quantity.measured.size(); ++i)
+  for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i)
     out.push_back(prediction.scored[i] != 0 ? quantity.measured[i] - quantity.response.mean[i] : std::nan(""));
   return out;
 }
 
+std::ptrdiff_t number_of(std::vector<double> const& residuals) {
+  return std::count_if(residuals.begin(), residuals.end(), [](double residual) { return std::isfinite(residual); });
+}
+
+/// One panel: the correlations of a test with what is written beside them.
 struct Correlations {
-  int first_lag = 0;
-  std::vector<double> value, bound;  // of lag first_lag + i; 95 % of noise stays within
+  CorrelationTest test;
   std::string label, name;
 };
 
 std::string correlation_panel(Correlations const& shown, std::string const& label, Panel p, int lags, int width, int height,
                               std::string_view colour) {
-  std::vector<double> all = shown.value;
+  std::vector<double> all = shown.test.correlation;
   std::vector<std::vector<double>> bars, limits;
-  for (std::size_t i = 0; i < shown.value.size(); ++i) {
-    double const lag = shown.first_lag + static_cast<double>(i);
-    bars.push_back({lag, shown.value[i]});
-    limits.push_back({lag, -shown.bound[i], shown.bound[i]});
-    for (double const factor : {-1.5, 1.5}) all.push_back(factor * shown.bound[i]);
+  for (std::size_t i = 0; i < shown.test.correlation.size(); ++i) {
+    double const lag = shown.test.first_lag + static_cast<double>(i);
+    bars.push_back({lag, shown.test.correlation[i]});
+    limits.push_back({lag, -shown.test.bound[i], shown.test.bound[i]});
+    for (double const factor : {-1.5, 1.5}) all.push_back(factor * shown.test.bound[i]);
   }
   // The band ends with the panel, not with the last lag.
   limits.insert(limits.begin(), {-0.5, limits.front()[1], limits.front()[2]});
@@ -59,57 +66,34 @@ std::string correlation_panel(Correlations const& shown, std::string const& labe
 
 }  // namespace
 
-std::vector<double> autocorrelation(std::vector<double> const& series, int lags) {
-  double sum = 0, count = 0;
-  for (double const v : series)
-    if (std::isfinite(v)) {
-      sum += v;
-      ++count;
-    }
-  std::vector<double> out;
-  double variance = 0;
-  for (int lag = 0; lag <= lags; ++lag) {
-    double product = 0;
-    for (std::size_t i = static_cast<std::size_t>(lag); i < series.size(); ++i) {
-      double const p = (series[i] - sum / count) * (series[i - static_cast<std::size_t>(lag)] - sum / count);
-      if (std::isfinite(p)) product += p;
-    }
-    if (lag == 0) variance = product;
-    out.push_back(product / variance);
-  }
-  return out;
+bool has_residuals(Prediction const& prediction, PredictedQuantity const& quantity) {
+  std::vector<double> const residuals = residuals_of(prediction, quantity);
+  return number_of(residuals) >= least_residuals && !whiteness(residuals, 1).correlation.empty();
 }
 
 Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
   std::vector<double> const residuals = residuals_of(prediction, quantity);
-  auto const count = static_cast<double>(
-      std::count_if(residuals.begin(), residuals.end(), [](double residual) { return std::isfinite(residual); }));
-  int const lags = static_cast<int>(std::min(60.0, count / 4));
-  std::vector<double> const values = autocorrelation(residuals, lags);
-  Correlations own{1, {values.begin() + 1, values.end()}, std::vector<double>(static_cast<std::size_t>(lags)), "", "acf"};
-  std::fill(own.bound.begin(), own.bound.end(), 1.96 / std::sqrt(count));
+  Correlations const own{whiteness(residuals, most_lags), "", "acf"};
+  int const lags = static_cast<int>(own.test.correlation.size());
 
   // Rows of any order have no input before them.
   std::vector<Correlations> crossed;
   std::size_t constant = 0;
   for (std::size_t k = 0; k < prediction.inputs.size() && !prediction.rows; ++k) {
     PredictedInput const& input = prediction.inputs[k];
-    CorrelationTest const test = input_correlation(residuals, input.values, lags);
-    bool const defined = !test.correlation.empty() && std::all_of(test.correlation.begin(), test.correlation.end(),
-                                                                  [](double each) { return std::isfinite(each); });
-    if (!defined) {
+    Correlations each{input_correlation(residuals, input.values, lags), input.name, fmt::format("input{}", k)};
+    std::vector<double> const& found = each.test.correlation;
+    if (!found.empty() && std::all_of(found.begin(), found.end(), [](double one) { return std::isfinite(one); }))
+      crossed.push_back(std::move(each));
+    else
       ++constant;
-      continue;
-    }
-    Correlations each{test.first_lag, test.correlation, test.bound, input.name, fmt::format("input{}", k)};
-    for (double& bound : each.bound) bound *= 1.960 / 2.576;  // 95 % in place of 99 % of a normal
-    crossed.push_back(std::move(each));
   }
   std::size_t const left_out = crossed.size() > shown_inputs ? crossed.size() - shown_inputs : 0;
   crossed.resize(crossed.size() - left_out);
 
   int const width = column_width, each = 118, below = 44, height = below + each * (1 + static_cast<int>(crossed.size()));
   Figure out;
+  out.topic = Topic::fit;
   out.name = identifier(fmt::format("residuals_{}_{}", prediction.experiment, quantity.name));
   out.title = fmt::format("Correlations of the residuals of {}", quantity.name);
   out.script = preamble(out.name, width, height);
@@ -127,8 +111,8 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
         correlation_panel(crossed[k], "with " + crossed[k].label, place(k + 1 == crossed.size()), lags, width, height, contrast);
   out.script += "unset multiplot\n";
   out.caption = fmt::format(
-      "Autocorrelation of the residuals of {}{}. White residuals stay inside the band (95 % of them); a pattern is dynamics the "
-      "model lacks.",
+      "Autocorrelation of the residuals of {}{}. Of white residuals 99 % stay inside the band, by which the checks of a fit judge "
+      "them, too; a pattern is dynamics the model lacks.",
       quantity.name, crossed.empty() ? "" : ", and below it their correlation with what the input was as many samples before");
   if (!crossed.empty()) out.caption += " Bars outside the lower band are what the input does and the model does not follow.";
   if (left_out > 0) out.caption += fmt::format(" Shown are the first {} of {} inputs.", shown_inputs, shown_inputs + left_out);

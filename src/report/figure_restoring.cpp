@@ -19,7 +19,7 @@ constexpr int shown_turns = 24;
 constexpr std::size_t shown_points = 400;
 
 std::string figure_name(std::string_view what, RestoringForce const& force) {
-  return identifier(fmt::format("{}_{}_{}", what, force.experiment, force.displacement));
+  return identifier(fmt::format("{}_{}_{}", what, force.experiment, force.name));
 }
 
 std::string force_name(RestoringForce const& force) { return force.per_mass ? "force per mass" : "restoring force"; }
@@ -42,6 +42,7 @@ std::pair<std::size_t, std::size_t> window(RestoringForce::Path const& path) {
 
 std::string where_data_come_from(RestoringForce const& force) {
   if (!force.why_no_data.empty()) return fmt::format(" The data are not shown: {}.", force.why_no_data);
+  if (force.accelerometer) return " Points: force from the measured accelerations, at the places where the model is.";
   return fmt::format(
       " Points: from the measured samples, differentiated twice by parabolas through {} of them each, and from the input under the "
       "same smoothing.",
@@ -68,6 +69,7 @@ Figure loop_figure(RestoringForce const& force) {
   auto const y_extent = extent(force.model.force, force.data.force);
   Axis const y = axis(y_extent.first, y_extent.second, 5, 0.05);
   Figure out;
+  out.topic = Topic::fit;
   out.name = figure_name("loop", force);
   out.title = fmt::format("Restoring force of {} on {}", force.displacement, force.experiment);
   out.script = preamble(out.name, width, height) + legend(keys, 10, width - 14.0, height - 12.0, width, height);
@@ -124,6 +126,7 @@ Figure surface_figure(RestoringForce const& force) {
              y = axis(force.grid_velocity.front(), force.grid_velocity.back(), 3, edge), z = axis(low, high, 4, 0.02);
   int const width = column_width, height = 310;
   Figure out;
+  out.topic = Topic::fit;
   out.name = figure_name("surface", force);
   out.title = fmt::format("Restoring-force surface of {} on {}", force.displacement, force.experiment);
   bool const has_data = !force.data.force.empty();

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 namespace sysid {
 
@@ -12,14 +12,19 @@ using namespace plot;
 
 namespace {
 
-constexpr std::size_t most_forces = 3;
-
 /// A state that a channel shows as it is (observe y) needs no figure of its own.
 bool repeats_a_channel(Prediction const& prediction, PredictedQuantity const& quantity) {
   if (!quantity.measured.empty()) return false;
   return std::any_of(prediction.quantities.begin(), prediction.quantities.end(), [&](PredictedQuantity const& other) {
     return !other.measured.empty() && other.unit == quantity.unit && other.response.mean == quantity.response.mean;
   });
+}
+
+/// How many records forces are known along.
+std::size_t records_of(std::vector<RestoringForce> const& forces) {
+  std::set<std::string> records;
+  for (RestoringForce const& force : forces) records.insert(force.experiment);
+  return records.size();
 }
 
 }  // namespace
@@ -35,15 +40,13 @@ std::vector<Figure> figures(Report const& report) {
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (over_inputs(prediction, quantity)) out.push_back(input_figure(prediction, quantity));
   for (FunctionReport const& function : report.functions) out.push_back(function_figure(function));
-  std::size_t shown_forces = 0;
   for (RestoringForce const& force : report.forces) {
-    // A fleet of fifty has one spring: it is not looked at fifty times.
-    if (shown_forces++ == most_forces) break;
     out.push_back(loop_figure(force));
     if (!force.surface.empty()) out.push_back(surface_figure(force));
-    if (shown_forces == most_forces && report.forces.size() > most_forces)
-      out.back().caption += fmt::format(" Of {} restoring forces the first {} are shown.", report.forces.size(), most_forces);
   }
+  if (std::size_t const records = records_of(report.forces); records > 0 && records < report.predictions.size())
+    out.back().caption +=
+        fmt::format(" Restoring forces are shown along the first {} of {} records.", records, report.predictions.size());
   if (report.discovery)
     for (std::size_t e = 0; e < report.discovery->equations.size(); ++e) {
       if (!report.discovery->equations[e].terms.empty()) out.push_back(inclusion_figure(*report.discovery, e));
@@ -60,12 +63,8 @@ std::vector<Figure> figures(Report const& report) {
   if (has_draws) out.push_back(trace_figure(report.draws));
   if (has_draws && report.draws.chains.size() > 1) out.push_back(rank_figure(report.draws));
   for (Prediction const& prediction : report.predictions)
-    for (PredictedQuantity const& quantity : prediction.quantities) {
-      std::size_t residuals = 0;
-      for (std::size_t i = 0; i < quantity.measured.size() && i < quantity.response.mean.size(); ++i)
-        if (prediction.scored[i] != 0 && std::isfinite(quantity.measured[i])) ++residuals;
-      if (residuals >= 20) out.push_back(residual_figure(prediction, quantity));
-    }
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (has_residuals(prediction, quantity)) out.push_back(residual_figure(prediction, quantity));
   return out;
 }
 

@@ -14,6 +14,8 @@ std::vector<plot::Figure> figures(Report const& report);
 
 /// Mean, bands and data of a quantity along the record, with its residuals below when it was measured.
 plot::Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Whether a measured quantity has residuals, and so many that their correlations mean something.
+bool has_residuals(Prediction const& prediction, PredictedQuantity const& quantity);
 /// Autocorrelation of the residuals of a measured quantity, and their correlation with each input before them.
 plot::Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity);
 /// Whether rows are independent and inputs vary, so that a measured quantity can be seen over them.
@@ -40,8 +42,5 @@ plot::Figure rank_figure(Draws const& draws);
 plot::Figure population_figure(SelectionReport const& selection);
 /// Draws of each two parameters against each other.
 plot::Figure pair_figure(Draws const& draws);
-
-/// Autocorrelation of a series at lags 0 ... lags, its mean removed; samples that are not finite are left out of every product.
-std::vector<double> autocorrelation(std::vector<double> const& series, int lags);
 
 }  // namespace sysid

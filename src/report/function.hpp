@@ -19,13 +19,14 @@ struct FunctionPoint {
 struct FunctionReport {
   std::string name, unit;
   std::vector<std::pair<std::string, std::string>> inputs;  // name and unit
-  std::vector<FunctionPoint> grid;                          // over its range, the last input's fastest
-  std::vector<std::vector<FunctionPoint>> cuts;             // along each input, the others in the middle of their range
+  std::vector<FunctionPoint> grid;               // over its range, the last input's fastest; of a process at samples its cuts
+  std::vector<std::vector<FunctionPoint>> cuts;  // along each input, the others in the middle of what is known of them
+  std::vector<std::vector<double>> visits;  // of each input: how many scored samples read each of so many equal parts of its range
 };
 
 /// What the file function_NAME.csv holds: a column for each input, then mean, sd, q5, q95; units in a comment.
 std::string function_csv(FunctionReport const& function);
-/// One panel for each cut: mean and 90 % band.
+/// One panel for each cut: mean and 90 % band, and along the bottom how often the record reads the function there.
 plot::Figure function_figure(FunctionReport const& function);
 
 }  // namespace sysid

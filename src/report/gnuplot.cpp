@@ -236,9 +236,10 @@ std::string embedded(std::string const& svg, plot::Figure const& figure) {
   follow(plot::contrast, "contrast");
   for (std::size_t c = 0; c < std::size(plot::chains); ++c) follow(plot::chains[c], fmt::format("chain-{}", c + 1));
   std::size_t const box = out.find("viewBox=\"0 0 ");
-  // Its text would otherwise be larger than the page's.
+  // Its text would otherwise be larger than the page's, or too small to be read: 9 pixels of its 12.
   double const width = box == std::string::npos ? 0 : std::strtod(out.c_str() + box + 13, nullptr);
-  std::string const widest = width > 0 ? fmt::format(" style=\"max-width:{:.0f}px\"", 1.4 * width) : "";
+  std::string const widest =
+      width > 0 ? fmt::format(" style=\"max-width:{:.0f}px;min-width:{:.0f}px\"", 1.4 * width, 0.75 * width) : "";
   replace_all(out, "<svg ", fmt::format("<svg role=\"img\" aria-label=\"{}\"{}", plot::identifier(figure.name), widest));
   return out;
 }

@@ -15,7 +15,7 @@ bool gnuplot_installed();
 std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format = FigureFormat::svg, int columns = 80);
 
 /// A standalone SVG as a part of a page: no prologue, no background, colours by the page's variables (`--fig-ink`, ...), so that it
-/// follows light and dark, and no wider than lets its text be as large as the page's.
+/// follows light and dark, no wider than lets its text be as large as the page's, and no narrower than lets it be read.
 std::string embedded(std::string const& svg, plot::Figure const& figure);
 
 }  // namespace sysid

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/xml.hpp"
+#include "report/html_parts.hpp"
 #include "report/html_sections.hpp"
 #include "report/html_style.hpp"
 
@@ -43,9 +44,20 @@ std::string all(std::vector<HtmlSection> const& sections, int level) {
   return out;
 }
 
-/// In words, so that colour alone tells nothing.
-std::string_view verdict_word(std::string_view kind) {
-  return kind == "bad" ? "a check failed" : kind == "doubtful" ? "something to look at" : kind == "good" ? "the checks pass" : "";
+/// "A run of 5 tasks".
+std::string run_title(std::size_t tasks) { return fmt::format("A run of {} task{}", tasks, tasks == 1 ? "" : "s"); }
+
+/// The models and predictions of a run side by side; empty where none can be compared.
+std::string together(RunReport const& run) {
+  std::string out;
+  for (ReportTable const& table : run.comparisons) out += table_html(table, 3);
+  if (!run.comparisons.empty() || !run.apart.empty())
+    out += paragraph(run.apart + (run.comparisons.empty() ? ""
+                                                          : "Log Bayes factors are against the best; a difference of 5 is strong. "
+                                                            "Evidences are densities of the samples, so that fits to the same ones "
+                                                            "are compared and no others."),
+                     "note");
+  return out;
 }
 
 }  // namespace
@@ -61,26 +73,33 @@ std::string report_html(Report const& report, std::vector<DrawnFigure> const& fi
               contents, all(sections, 2), report.version);
 }
 
-std::string run_html(std::vector<ReportedTask> const& tasks) {
+std::string run_html(RunReport const& run) {
   std::string contents, body;
   std::set<std::string> models;
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    Report const& report = tasks[i].report;
+  if (std::string const comparison = together(run); !comparison.empty()) {
+    contents += entry("together", "Models and predictions side by side", "plain");
+    body += html({"together", "Models and predictions side by side", comparison, "whole"}, 2);
+  }
+  for (std::size_t i = 0; i < run.tasks.size(); ++i) {
+    Report const& report = run.tasks[i].report;
     models.insert(title_of(report));
     std::string const id = fmt::format("task-{}", i + 1);
-    std::string_view const kind = verdict_kind(report);
-    contents += fmt::format("<li class=\"{}\"><a href=\"#{}\">{}</a> <span class=\"what\">{}</span>{}</li>\n", kind, id,
-                            escape(report.task), escape(report.what),
-                            verdict_word(kind).empty() ? "" : fmt::format(" <b>{}</b>", verdict_word(kind)));
+    contents += fmt::format("<li class=\"{}\"><a href=\"#{}\">{}</a> <span class=\"what\">{}</span>{}</li>\n", verdict_kind(report),
+                            id, escape(report.task), escape(report.what),
+                            has_verdict(report) ? fmt::format(" <b>{}</b>", marked(verdict_headline(report))) : "");
     body += html({id, fmt::format("{}: {}", report.task, title_of(report)),
-                  paragraph(report.what, "what") + all(task_sections(report, tasks[i].figures, id + "-", 3), 3), "whole"},
+                  paragraph(report.what, "what") + all(task_sections(report, run.tasks[i].figures, id + "-", 3), 3), "whole"},
                  2);
   }
-  std::string const title = models.size() == 1 ? *models.begin() : fmt::format("{} tasks", tasks.size());
+  for (std::string const& task : run.unfinished)
+    contents += fmt::format(
+        "<li class=\"doubtful\">{} <b>interrupted before it had a result; run it again with --resume</b></li>\n", escape(task));
+  std::string const count = run_title(run.tasks.size() + run.unfinished.size());
+  bool const one_model = models.size() == 1;
+  std::string const title = one_model ? *models.begin() : count;
   return page(title,
-              fmt::format("<p class=\"task\">A run of {} task{}</p>\n<h1>{}</h1>\n", tasks.size(), tasks.size() == 1 ? "" : "s",
-                          escape(title)),
-              contents, body, tasks.front().report.version);
+              fmt::format("{}<h1>{}</h1>\n", one_model ? fmt::format("<p class=\"task\">{}</p>\n", count) : "", escape(title)),
+              contents, body, run.tasks.empty() ? SYSID_VERSION : run.tasks.front().report.version);
 }
 
 }  // namespace sysid

@@ -23,7 +23,16 @@ struct ReportedTask {
   std::vector<DrawnFigure> figures;
 };
 
-/// Of all tasks of a run, in order: contents first, then each as `report_html` has it. `tasks` is not empty.
-std::string run_html(std::vector<ReportedTask> const& tasks);
+/// What the page of a run says of its tasks together.
+struct RunReport {
+  std::vector<ReportedTask> tasks;
+  std::vector<ReportTable> comparisons;  // of models and predictions of the same samples
+  std::string apart;                     // why some fits are not compared; empty: all are
+  std::vector<std::string> unfinished;   // tasks that were interrupted before they had a result
+};
+
+/// Of all tasks of a run, in order: contents first, what they say together, then each as `report_html` has it. There is a task, or
+/// one that is unfinished.
+std::string run_html(RunReport const& run);
 
 }  // namespace sysid

@@ -9,6 +9,8 @@
 
 #include "core/xml.hpp"
 #include "report/gnuplot.hpp"
+#include "report/number.hpp"
+#include "report/typeset.hpp"
 
 namespace sysid {
 
@@ -119,6 +121,11 @@ std::string capitalised(std::string words) {
 std::string paragraph(std::string_view words, std::string_view kind) {
   if (words.empty()) return "";
   return fmt::format("<p{}>{}</p>\n", kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), marked(words));
+}
+
+std::string with_unit(std::string const& name, std::string const& unit) {
+  std::string const text = pretty_unit(unit);
+  return escape(name) + (text.empty() || text == "-" ? "" : fmt::format(" <span class=\"unit\">{}</span>", escape(text)));
 }
 
 std::string code(std::string_view text) { return fmt::format("<code>{}</code>", escape(text)); }

@@ -31,6 +31,8 @@ std::string marked(std::string_view words);
 /// With a capital letter, where words begin and not a formula.
 std::string capitalised(std::string words);
 std::string paragraph(std::string_view words, std::string_view kind = {});
+/// "k N/m" with the unit as units are shown.
+std::string with_unit(std::string const& name, std::string const& unit);
 std::string code(std::string_view text);
 /// Text that is shown on demand, and always on paper.
 std::string folded(std::string_view summary, std::string_view text);

@@ -65,6 +65,7 @@ th:last-child, td:last-child { padding-right: 0.2rem; }
 thead th, thead td { font-weight: 600; color: var(--muted); border-bottom: 1px solid var(--rule); vertical-align: bottom; }
 tbody th { font-weight: 600; white-space: nowrap; }
 .n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+thead .n { white-space: normal; }
 .unit { color: var(--muted); font-weight: 400; font-size: 0.92em; white-space: nowrap; }
 td code { font-size: 0.88em; }
 .range { width: 130px; height: 18px; vertical-align: middle; }
@@ -88,7 +89,7 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   h1 { font-size: 1.5rem; }
   dl { display: block; } dd { margin: 0 0 0.5rem; }
   .equations { padding-left: 0; }
-  figure { overflow-x: auto; } figure > svg { min-width: 30rem; }
+  figure { overflow-x: auto; margin-left: -1rem; margin-right: -1rem; } figcaption { padding: 0 1rem; }
   tbody th { white-space: normal; }
   .said td:last-child { min-width: 17rem; }
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 
+#include "inference/chain_checks.hpp"
+#include "inference/residual_tests.hpp"
 #include "report/number.hpp"
 
 namespace sysid {
@@ -59,7 +61,7 @@ std::string size_words(Worst const& size, bool found, bool fitted) {
 
 std::string chance_words(Worst const& p, std::string_view pattern, std::string_view none) {
   return fmt::format("p {}{}: {}.", p.value < 1e-4 ? "below 0.0001" : "= " + number(p.value, 2), p.where,
-                     p.value < 0.001 ? pattern : none);
+                     p.value < rare ? pattern : none);
 }
 
 bool has_chains(Report const& report) { return report.draws.total() > 1 && !report.summary.empty(); }
@@ -143,15 +145,15 @@ std::string score_words(Report const& report, std::vector<FitLine> const& lines,
 std::vector<ChainWords> chain_words(Report const& report) {
   std::vector<ChainWords> out;
   if (!has_chains(report)) return out;
-  constexpr double rhat_bar = 1.01, ess_bar = 400;
   if (auto const rhat = extreme(
           report, [](Summary const& s) { return s.rhat; }, true)) {
     bool const good = rhat->value <= rhat_bar;
     out.push_back({"R-hat",
-                   fmt::format("{:.3f} at most ({}): {}", rhat->value, rhat->name,
-                               good                 ? "the chains tell the same story; they do below 1.01."
-                               : rhat->value > 1.05 ? "the chains tell different stories; they should be below 1.01."
-                                                    : "the chains have not quite agreed; they should be below 1.01."),
+                   fmt::format("{:.3f} at most ({}): {} below {}.", rhat->value, rhat->name,
+                               good                      ? "the chains tell the same story; they do"
+                               : rhat->value > rhat_loud ? "the chains tell different stories; they should be"
+                                                         : "the chains have not quite agreed; they should be",
+                               rhat_bar),
                    good});
   }
   for (auto const& [name, what, of] :
@@ -161,12 +163,13 @@ std::vector<ChainWords> chain_words(Report const& report) {
       bool const good = ess->value >= ess_bar;
       out.push_back({name,
                      fmt::format("{:.0f} at least ({}): the draws are worth that many independent ones for {}, {}.", ess->value,
-                                 ess->name, what, good ? "enough" : "fewer than the 400 that are asked for"),
+                                 ess->name, what, good ? "enough" : fmt::format("fewer than the {} that are asked for", ess_bar)),
                      good});
     }
   if (auto const error = extreme(
           report, [](Summary const& s) { return s.sd > 0 ? s.mcse_mean / s.sd : std::nan(""); }, true)) {
-    bool const good = error->value <= 0.05 + 1e-12;
+    // Of as many independent draws as are asked for.
+    bool const good = error->value <= 1 / std::sqrt(ess_bar) + 1e-12;
     out.push_back({"Monte Carlo error",
                    fmt::format("{} % of an sd at most ({}): another seed would move a mean by about that much.",
                                number(100 * error->value, 2), error->name),
@@ -178,7 +181,7 @@ std::vector<ChainWords> chain_words(Report const& report) {
       if (std::isfinite(each)) accepted += each, ++count;
   if (count > 0) {
     double const rate = accepted / count;
-    bool const good = rate >= 0.01;
+    bool const good = rate >= least_acceptance;
     out.push_back({"acceptance",
                    fmt::format("{} % of the moves that led to kept draws were accepted on average: {}.", number(100 * rate, 2),
                                !good        ? "the chains hardly moved"
@@ -196,13 +199,15 @@ std::string ledger_words(Report const& report) {
   if (ledger.failed() == 0) return fmt::format("{} simulations, none of them failed.", ledger.solves());
   double const share =
       100 * static_cast<double>(ledger.failed()) / static_cast<double>(std::max<std::uint64_t>(ledger.solves(), 1));
+  Severity const severity = failure_severity(ledger.failed(), ledger.solves());
   bool const fitted = report.draws.total() > 0 || report.selection;
   return fmt::format("{} simulations, {} of them failed ({} %). {}: {}", ledger.solves(), ledger.failed(), number(share, 2),
                      fitted ? "A simulation that fails counts as impossible for its parameters"
                             : "A trajectory that fails is left out of the bands",
-                     share < 1    ? "so few do not shape the result."
-                     : share < 20 ? "look whether the posterior ends where the model does."
-                                  : "with so many the posterior may end where the solver does, not where the data say.");
+                     severity == Severity::note ? "so few do not shape the result."
+                     : severity == Severity::warning
+                         ? "look whether the posterior ends where the model does."
+                         : "with so many the posterior may end where the solver does, not where the data say.");
 }
 
 std::pair<double, double> interval_90(Summary const& summary) {

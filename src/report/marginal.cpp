@@ -5,24 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "inference/convergence.hpp"
+
 namespace sysid {
-
-namespace {
-
-/// Of type 7, as `quantile` has it.
-double quantile_of(std::vector<double> const& sorted, double probability) {
-  double const place = probability * static_cast<double>(sorted.size() - 1);
-  auto const below = static_cast<std::size_t>(place);
-  std::size_t const above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-}  // namespace
 
 Histogram::Histogram(std::vector<double> const& sorted, double from, double to) : low(from) {
   double const n = static_cast<double>(sorted.size());
   double const extent = to - low;
-  double const quartiles = quantile_of(sorted, 0.75) - quantile_of(sorted, 0.25);
+  double const quartiles = sorted_quantile(sorted, 0.75) - sorted_quantile(sorted, 0.25);
   double const rule = quartiles > 0 ? extent / (2 * quartiles / std::cbrt(n)) : 1;
   auto const bins = static_cast<std::size_t>(std::clamp(std::ceil(rule), 12.0, 40.0));
   width = extent > 0 ? extent / static_cast<double>(bins) : 1;
@@ -46,7 +36,7 @@ std::vector<std::pair<double, double>> Histogram::outline(double from, double to
 }
 
 std::pair<double, double> shown_range(std::vector<double> const& sorted) {
-  double const low = quantile_of(sorted, 0.01), high = quantile_of(sorted, 0.99);
+  double const low = sorted_quantile(sorted, 0.01), high = sorted_quantile(sorted, 0.99);
   bool const long_tails = sorted.back() - sorted.front() > 8 * (high - low) && high > low;
   return long_tails ? std::pair{low, high} : std::pair(sorted.front(), sorted.back());
 }
@@ -66,7 +56,7 @@ double kernel_width(std::vector<double> const& sorted, double n) {
   for (double const v : sorted) mean += v / static_cast<double>(sorted.size());
   for (double const v : sorted) square += (v - mean) * (v - mean);
   double const sd = std::sqrt(square / static_cast<double>(sorted.size() - 1));
-  double const quartiles = (quantile_of(sorted, 0.75) - quantile_of(sorted, 0.25)) / 1.34;
+  double const quartiles = (sorted_quantile(sorted, 0.75) - sorted_quantile(sorted, 0.25)) / 1.34;
   return 0.9 * (quartiles > 0 ? std::min(sd, quartiles) : sd) * std::pow(std::max(n, 1.0), -0.2);
 }
 

@@ -7,12 +7,16 @@
 
 namespace sysid::plot {
 
+/// The part of a page that a figure stands in: what was found, how it fits the record, whether the chains agree.
+enum class Topic { result, fit, chains };
+
 /// A figure before it is drawn: the script alone, data included, is what gnuplot needs.
 struct Figure {
   std::string name;  // of its files: figures/NAME.svg, figures/NAME.gnuplot
   std::string title;
   std::string caption;  // what one should see
   std::string script;
+  Topic topic = Topic::result;
 };
 
 /// Pixels of a figure that stands in one column of print, 85 mm: its 12 pixels high text is 6 points there. A page of two columns
@@ -43,12 +47,15 @@ struct Axis {
   double unscaled(double number) const;
   /// Of a difference.
   double scaled_width(double width) const;
-  /// Numbers that would run into each other are left out, the ticks stay: `pixels` is the length of the axis.
+  /// Numbers that would run into each other are left out, the ticks stay, two numbers where there is room for two: `pixels` is the
+  /// length of the axis.
   void thin_numbers(double pixels, bool upright);
   /// Lengthens the range to the next tick when it falls short by a hair (0.499 s to 0.5 s).
   void reach_ticks();
   /// Drops ticks within this share of either end, where they would run into the neighbour's.
   void clear_edges(double share);
+  /// How many of its ticks have numbers.
+  std::size_t numbers() const;
 };
 
 /// Around [low, high] with a margin of the given share on both sides; about `count` ticks at round numbers.

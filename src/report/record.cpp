@@ -65,8 +65,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, kind, where, count, time, example, n
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FunctionPoint, inputs, mean, sd, q5, q95)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PredictedInput, name, unit, values)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RestoringForce::Path, displacement, velocity, force)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RestoringForce, experiment, displacement, displacement_unit, velocity, velocity_unit, force_unit,
-                                   per_mass, model, data, half_width, why_no_data, grid_displacement, grid_velocity, surface)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RestoringForce, experiment, name, displacement, displacement_unit, velocity, velocity_unit,
+                                   force_unit, per_mass, model, data, half_width, accelerometer, why_no_data, grid_displacement,
+                                   grid_velocity, surface)
 
 void to_json(json& out, Ledger const& ledger) { out = {{"solves", ledger.solves()}, {"failures", ledger.failures()}}; }
 void from_json(json const& stored, Ledger& ledger) {
@@ -80,6 +81,39 @@ void from_json(json const& stored, Ledger& ledger) {
 namespace {
 
 std::vector<double> column_of(json const& length) { return std::vector<double>(length.get<std::size_t>(), std::nan("")); }
+
+/// Writes members one after the other; of a column its length.
+class Writer {
+ public:
+  explicit Writer(json& out) : out_(out) {}
+  template <class T>
+  Writer& operator()(char const* name, T const& value) {
+    out_[name] = value;
+    return *this;
+  }
+  Writer& length(char const* name, std::vector<double> const& column) { return (*this)(name, column.size()); }
+
+ private:
+  json& out_;
+};
+
+/// Reads what a Writer wrote; columns are filled later.
+class Reader {
+ public:
+  explicit Reader(json const& stored) : stored_(stored) {}
+  template <class T>
+  Reader& operator()(char const* name, T& value) {
+    stored_.at(name).get_to(value);
+    return *this;
+  }
+  Reader& length(char const* name, std::vector<double>& column) {
+    column = column_of(stored_.at(name));
+    return *this;
+  }
+
+ private:
+  json const& stored_;
+};
 
 }  // namespace
 
@@ -105,49 +139,36 @@ void from_json(json const& stored, Band& band) {
   for (auto* column : {&band.mean, &band.sd, &band.lower, &band.upper}) *column = column_of(stored.at("length"));
 }
 
-void to_json(json& out, PredictedQuantity const& quantity) {
-  out = {{"name", quantity.name},
-         {"unit", quantity.unit},
-         {"response", quantity.response},
-         {"noisy", quantity.noisy},
-         {"measured", quantity.measured.size()}};
+template <class Way, class Quantity>
+void quantity_members(Way way, Quantity& quantity) {
+  way("name", quantity.name)("unit", quantity.unit)("response", quantity.response)("noisy", quantity.noisy);
+  way.length("measured", quantity.measured);
 }
-void from_json(json const& stored, PredictedQuantity& quantity) {
-  stored.at("name").get_to(quantity.name);
-  stored.at("unit").get_to(quantity.unit);
-  stored.at("response").get_to(quantity.response);
-  stored.at("noisy").get_to(quantity.noisy);
-  quantity.measured = column_of(stored.at("measured"));
-}
+void to_json(json& out, PredictedQuantity const& quantity) { quantity_members(Writer(out), quantity); }
+void from_json(json const& stored, PredictedQuantity& quantity) { quantity_members(Reader(stored), quantity); }
 
-void to_json(json& out, Prediction const& prediction) {
-  out = {{"experiment", prediction.experiment}, {"length", prediction.time.size()}, {"time_unit", prediction.time_unit},
-         {"time_scale", prediction.time_scale}, {"rows", prediction.rows},          {"quantities", prediction.quantities},
-         {"inputs", prediction.inputs}};
+template <class Way, class Along>
+void prediction_members(Way way, Along& prediction) {
+  way("experiment", prediction.experiment)("time_unit", prediction.time_unit)("time_scale", prediction.time_scale);
+  way("rows", prediction.rows)("quantities", prediction.quantities)("inputs", prediction.inputs);
+  way.length("length", prediction.time);
 }
+void to_json(json& out, Prediction const& prediction) { prediction_members(Writer(out), prediction); }
 void from_json(json const& stored, Prediction& prediction) {
-  stored.at("experiment").get_to(prediction.experiment);
-  prediction.time = column_of(stored.at("length"));
-  stored.at("time_unit").get_to(prediction.time_unit);
-  stored.at("time_scale").get_to(prediction.time_scale);
-  stored.at("rows").get_to(prediction.rows);
+  prediction_members(Reader(stored), prediction);
   prediction.scored.assign(prediction.time.size(), 0);
-  stored.at("quantities").get_to(prediction.quantities);
-  stored.at("inputs").get_to(prediction.inputs);
 }
 
+template <class Way, class Function>
+void function_members(Way way, Function& function) {
+  way("name", function.name)("unit", function.unit)("inputs", function.inputs)("cuts", function.cuts)("visits", function.visits);
+}
 void to_json(json& out, FunctionReport const& function) {
-  out = {{"name", function.name},
-         {"unit", function.unit},
-         {"inputs", function.inputs},
-         {"grid", function.grid.size()},
-         {"cuts", function.cuts}};
+  function_members(Writer(out), function);
+  out["grid"] = function.grid.size();
 }
 void from_json(json const& stored, FunctionReport& function) {
-  stored.at("name").get_to(function.name);
-  stored.at("unit").get_to(function.unit);
-  stored.at("inputs").get_to(function.inputs);
-  stored.at("cuts").get_to(function.cuts);
+  function_members(Reader(stored), function);
   double const none = std::nan("");
   function.grid.assign(stored.at("grid").get<std::size_t>(),
                        {std::vector<double>(function.inputs.size(), none), none, none, none, none});
@@ -155,56 +176,24 @@ void from_json(json const& stored, FunctionReport& function) {
 
 // --- selections
 
-void to_json(json& out, ParameterInfo const& parameter) {
-  out = {{"name", parameter.name}, {"unit", parameter.unit}, {"lower", parameter.lower}, {"upper", parameter.upper}};
-}
-void from_json(json const& stored, ParameterInfo& parameter) {
-  stored.at("name").get_to(parameter.name);
-  stored.at("unit").get_to(parameter.unit);
-  stored.at("lower").get_to(parameter.lower);
-  stored.at("upper").get_to(parameter.upper);
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ParameterInfo, name, unit, lower, upper)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WeightedSummary, name, unit, mean, sd, median, q5, q95)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PopulationRecord::OfModel, proposed, failed, particles, probability, nearest)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PopulationRecord, threshold, proposed, simulated, failed, accepted, ess, models)
 
-void to_json(json& out, SelectedModel const& model) {
-  out = {{"name", model.name},
-         {"prior", model.prior},
-         {"probability", model.probability},
-         {"share", model.share},
-         {"died_in", model.died_in},
-         {"by_chance", model.by_chance},
-         {"parameters", model.parameters},
-         {"particles", model.weight.size()},
-         {"summaries", model.summaries}};
+template <class Way, class Candidate>
+void candidate_members(Way way, Candidate& model) {
+  way("name", model.name)("prior", model.prior)("probability", model.probability)("share", model.share);
+  way("died_in", model.died_in)("by_chance", model.by_chance)("parameters", model.parameters)("summaries", model.summaries);
+  way.length("particles", model.weight);
 }
+void to_json(json& out, SelectedModel const& model) { candidate_members(Writer(out), model); }
 void from_json(json const& stored, SelectedModel& model) {
-  stored.at("name").get_to(model.name);
-  stored.at("prior").get_to(model.prior);
-  stored.at("probability").get_to(model.probability);
-  stored.at("share").get_to(model.share);
-  stored.at("died_in").get_to(model.died_in);
-  stored.at("by_chance").get_to(model.by_chance);
-  stored.at("parameters").get_to(model.parameters);
-  model.weight = model.distance = column_of(stored.at("particles"));
+  candidate_members(Reader(stored), model);
+  model.distance = model.weight;
   model.declared = LaneArray(static_cast<int>(model.parameters.size()), static_cast<int>(model.weight.size()));
-  stored.at("summaries").get_to(model.summaries);
 }
-
-void to_json(json& out, SelectionResult const& result) {
-  out = {{"models", result.models},         {"populations", result.populations},
-         {"threshold", result.threshold},   {"next_threshold", result.next_threshold},
-         {"stopped_by", result.stopped_by}, {"ran_out", result.ran_out}};
-}
-void from_json(json const& stored, SelectionResult& result) {
-  stored.at("models").get_to(result.models);
-  stored.at("populations").get_to(result.populations);
-  stored.at("threshold").get_to(result.threshold);
-  stored.at("next_threshold").get_to(result.next_threshold);
-  stored.at("stopped_by").get_to(result.stopped_by);
-  stored.at("ran_out").get_to(result.ran_out);
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionResult, models, populations, threshold, next_threshold, stopped_by, ran_out)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LikelihoodCheck, log_evidence, probability, solver, given_up)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport::Unmoved, name, unit, prior, why)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport, result, distance, likelihoods, polished, polished_draws, floor, floor_words,
@@ -237,8 +226,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, model_name, mode
 
 namespace {
 
-/// Raised when members change: a record of another form is refused.
-constexpr int form = 1;
+/// Raised when members keep their names and change their meaning. Other members tell themselves: the bytes are whole and do not
+/// fit.
+constexpr int form = 2;
 
 /// Any change of a byte shows: what is read needs no further doubt.
 std::uint32_t checksum(std::vector<std::uint8_t> const& bytes) {
@@ -263,15 +253,16 @@ std::string record_bytes(Report const& report) {
 
 Report read_record(std::string const& bytes, std::filesystem::path const& path) {
   json const stored = json::from_cbor(bytes, true, false);
-  if (!stored.is_object() || !stored.contains("form")) throw unusable(path, "is damaged");
-  if (stored["form"] != form) throw unusable(path, "was written by another version of the program");
+  std::string const other = "was written by another version of sysid";
+  if (!stored.is_object()) throw unusable(path, "is damaged");
+  if (stored.value("form", 0) != form) throw unusable(path, other);
   if (!stored.contains("report") || !stored["report"].is_binary() ||
       stored.value("crc32", std::uint32_t{0}) != checksum(stored["report"].get_binary()))
     throw unusable(path, "is damaged");
   try {
     return json::from_cbor(stored["report"].get_binary()).get<Report>();
   } catch (json::exception const&) {
-    throw unusable(path, "is damaged");
+    throw unusable(path, other);
   }
 }
 

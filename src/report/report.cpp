@@ -16,6 +16,11 @@ Severity grade(Report const& report) {
   return worst;
 }
 
+Severity failure_severity(std::uint64_t failed, std::uint64_t solves) {
+  double const share = solves == 0 ? 0 : static_cast<double>(failed) / static_cast<double>(solves);
+  return share < 0.01 ? Severity::note : share < 0.2 ? Severity::warning : Severity::error;
+}
+
 bool has_verdict(Report const& report) { return report.draws.total() > 0 || !report.verdict.empty() || !report.findings.empty(); }
 
 std::string verdict_headline(Report const& report) {

@@ -110,6 +110,9 @@ struct Report {
 /// The worst of the findings; note when there are none.
 Severity grade(Report const& report);
 
+/// What failed solves mean for a result: an error from 20 % on, a warning from 1 %, a note below.
+Severity failure_severity(std::uint64_t failed, std::uint64_t solves);
+
 /// Whether there is anything to judge: a plain simulation has no diagnostics.
 bool has_verdict(Report const& report);
 

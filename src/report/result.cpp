@@ -78,7 +78,7 @@ void prepare_result(fs::path const& folder, bool force) {
   make_folder(folder);
 }
 
-void write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
+std::vector<std::string> write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
   make_folder(folder);
   // What an interrupted run left may have more files than its end: chains of models that died later.
   remove_files(folder);
@@ -93,12 +93,13 @@ void write_result(Report const& report, fs::path const& folder, std::vector<Figu
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
     write_file(folder / prediction_names[p], predict_csv(report, report.predictions[p]));
   std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
-  write_figures(drawn, folder, pictures);
+  std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
   write_file(folder / "report.html", report_html(report, drawn));
   write_file(folder / "report.cbor", record_bytes(report));
   if (!report.resolved_text.empty()) write_file(folder / "resolved.sysid", report.resolved_text);
   write_file(folder / "timing.json", timing_json(report));
   write_file(folder / "summary.json", summary_json(report));
+  return undrawn;
 }
 
 std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
@@ -108,16 +109,29 @@ std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
   return drawn;
 }
 
-void write_figures(std::vector<DrawnFigure> const& figures, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
+std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, fs::path const& folder,
+                                       std::vector<FigureFormat> const& pictures) {
+  bool const can_draw = gnuplot_installed();
+  std::vector<std::string> undrawn;
+  if (!figures.empty()) make_folder(folder / "figures");
   for (DrawnFigure const& each : figures) {
-    make_folder(folder / "figures");
     write_file(folder / "figures" / (each.figure.name + ".gnuplot"), each.figure.script);
-    if (!gnuplot_installed()) continue;
     for (FigureFormat const format : pictures) {
-      auto const picture = format == FigureFormat::svg ? each.svg : draw(each.figure, format);
-      if (picture) write_file(folder / "figures" / fmt::format("{}.{}", each.figure.name, extension(format)), *picture);
+      std::string const name = fmt::format("{}.{}", each.figure.name, extension(format));
+      auto const picture = format == FigureFormat::svg && each.svg ? each.svg : can_draw ? draw(each.figure, format) : std::nullopt;
+      if (picture)
+        write_file(folder / "figures" / name, *picture);
+      else
+        undrawn.push_back(name);
     }
   }
+  return undrawn;
+}
+
+std::string undrawn_words(std::vector<std::string> const& undrawn) {
+  return fmt::format("{} {}{}; the scripts are in figures/",
+                     gnuplot_installed() ? "gnuplot did not draw" : "gnuplot is not installed and did not draw", undrawn.front(),
+                     undrawn.size() > 1 ? fmt::format(" and {} more", undrawn.size() - 1) : "");
 }
 
 std::string draws_file(std::size_t chain) { return fmt::format("draws_{}.csv", chain + 1); }

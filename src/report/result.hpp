@@ -20,16 +20,21 @@ void prepare_result(std::filesystem::path const& folder, bool force);
 
 /// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, report.cbor, resolved.sysid,
 /// timing.json and, last of all, summary.json: where it stands, the result is whole. `pictures`: what figures are drawn as, beside
-/// their scripts; with none the page has none either. IoError names the file that could not be written.
-void write_result(Report const& report, std::filesystem::path const& folder,
-                  std::vector<FigureFormat> const& pictures = {FigureFormat::svg});
+/// their scripts; with none the page has none either. Returns what `write_figures` does; IoError names the file that could not be
+/// written.
+std::vector<std::string> write_result(Report const& report, std::filesystem::path const& folder,
+                                      std::vector<FigureFormat> const& pictures = {FigureFormat::svg});
 
 /// All figures of a report, drawn where `pictures` are wanted and gnuplot is there.
 std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures);
 
-/// Their scripts, and each as `pictures` say where gnuplot draws it, into figures/ of the folder.
-void write_figures(std::vector<DrawnFigure> const& figures, std::filesystem::path const& folder,
-                   std::vector<FigureFormat> const& pictures);
+/// Their scripts, and each as `pictures` say, into figures/ of the folder. Returns the pictures that gnuplot did not draw:
+/// "pairs.pdf".
+std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, std::filesystem::path const& folder,
+                                       std::vector<FigureFormat> const& pictures);
+
+/// "gnuplot did not draw pairs.pdf and 2 more; the scripts are in figures/". undrawn: as `write_figures` returns it, not empty.
+std::string undrawn_words(std::vector<std::string> const& undrawn);
 
 // Names of its files, as the writer gives them and the reader looks for them.
 

@@ -3,10 +3,11 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <sstream>
 
 #include "app/report_results.hpp"
-#include "app/restoring_force.hpp"
+#include "app/second_difference.hpp"
 #include "app/stored_pages.hpp"
 #include "app/truth.hpp"
 #include "running.hpp"
@@ -55,26 +56,32 @@ std::vector<std::vector<double>> block(std::string const& script, std::string co
   return rows;
 }
 
+/// The error of the forces of a script's rows ("data" or "model") against force(place, speed), as a part of their size. SI of
+/// lengths in mm.
+double error(std::string const& script, std::string const& rows, std::function<double(double, double)> const& force) {
+  auto const places = block(script, "displacement_" + rows), speeds = block(script, "velocity_" + rows);
+  REQUIRE(places.size() > 100);
+  REQUIRE(places.size() == speeds.size());
+  double square = 0, size = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    double const right = force(1e-3 * places[i][0], 1e-3 * speeds[i][0]);
+    square += (places[i][1] - right) * (places[i][1] - right);
+    size += right * right;
+  }
+  return std::sqrt(square / size);
+}
+
 }  // namespace
 
 TEST_CASE("the restoring force of a spring is the one it was made with, by the model and by the data") {
   CaseRun const run(with(oscillator, "NOISE", "1"), {});
   std::string const script = run.file("best/figures/loop_bench_y.gnuplot");
-  auto const rows = block(script, "displacement_data");
-  auto const speeds = block(script, "velocity_data");
-  REQUIRE(rows.size() > 100);
-  REQUIRE(rows.size() == speeds.size());
   for (char const* label : {"'restoring force [N]'", "'y [mm]'", "'y'' [mm/s]'"})
     REQUIRE_MESSAGE(script.find(label) != std::string::npos, label);
-  double square = 0, size = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    double const y = 1e-3 * rows[i][0], v = 1e-3 * speeds[i][0];
-    double const force = 1e4 * y + 5e9 * y * y * y + 20 * v;
-    square += (rows[i][1] - force) * (rows[i][1] - force);
-    size += force * force;
-  }
+  auto const force = [](double y, double v) { return 1e4 * y + 5e9 * y * y * y + 20 * v; };
+  CHECK(error(script, "model", force) < 0.05);  // the parameters are estimates
   // The noise that is left is a tenth of the force, what smoothing bends at most another.
-  CHECK(std::sqrt(square / size) < 0.2);
+  CHECK(error(script, "data", force) < 0.2);
   CHECK(std::filesystem::exists(run.folder.path() / "results/best/figures/surface_bench_y.gnuplot"));
   // All of it comes back from the folder.
   CHECK(test::broken_promises(run.folder.path() / "results") == "");
@@ -100,7 +107,7 @@ TEST_CASE("a spring on a moving ground pulls back, too: the sign of its input is
 }
 
 TEST_CASE("figures are drawn anew from the folder of their results") {
-  if (!can_draw(FigureFormat::pdf)) return;
+  REQUIRE(can_draw(FigureFormat::pdf));
   CaseRun const run(with(oscillator, "NOISE", "1"), {});
   std::filesystem::path const results = run.folder.path() / "results", figures = results / "best/figures";
   redraw_figures(results, {FigureFormat::text, FigureFormat::pdf});
@@ -160,21 +167,66 @@ TEST_CASE("a hysteresis has loops and no surface") {
   CHECK_FALSE(std::filesystem::exists(figures / "surface_bench_y.gnuplot"));
 }
 
-TEST_CASE("a model of first order and masses that pull at each other have no restoring force of their own") {
+TEST_CASE("a model of first order has no restoring force") {
   std::string first = with(oscillator, "NOISE", "1");
   first = with(first, "initial y = 0, y' = 0", "initial y = 0");
   first = with(first, "  parameter m  [kg]     ~ log_uniform(0.1, 10)\n", "");
   first = with(first, "m = 1, ", "");
   first = with(first, "  m*y'' + c*y' + k*y + k3*y^3 = x", "  c*y' + k*y + k3*y^3 = x");
-  std::string coupled = with(oscillator, "NOISE", "1");
-  coupled = with(coupled, "state   y [mm]", "state   y [mm], w [mm]");
-  coupled = with(coupled, "y' = 0", "y' = 0, w = 0, w' = 0");
-  coupled = with(coupled, "k*y + k3*y^3 = x", "k*(y - w) + k3*y^3 = x\n  m*w'' + c*w' + k*(w - y) + k*w = 0 [N]");
-  for (std::string const& text : {first, coupled}) {
-    CaseRun const run(text, {});
-    for (auto const& entry : std::filesystem::directory_iterator(run.folder.path() / "results/best/figures"))
-      CHECK_MESSAGE(!entry.path().filename().string().starts_with("loop"), entry.path().filename());
+  CaseRun const run(first, {});
+  for (auto const& entry : std::filesystem::directory_iterator(run.folder.path() / "results/best/figures"))
+    CHECK_MESSAGE(!entry.path().filename().string().starts_with("loop"), entry.path().filename());
+}
+
+namespace {
+
+/// The spring with a second mass of the same size on it, pushed at that; ground: what holds the second to the ground.
+std::string chain(std::string const& ground) {
+  std::string text = with(oscillator, "NOISE", "1");
+  text = with(text, "state   y [mm]", "state   y [mm], w [mm]");
+  text = with(text, "y' = 0", "y' = 0, w = 0, w' = 0");
+  text =
+      with(text, "  m*y'' + c*y' + k*y + k3*y^3 = x",
+           "  m*y'' + c*y' + k*y + k3*y^3 - k*(w - y) - c*(w' - y') = 0 [N]\n  m*w'' + c*(w' - y') + k*(w - y)" + ground + " = x");
+  text = with(text, "normal(y, sd = sigma)", "normal(y, sd = sigma)\n  observe outer ~ normal(w, sd = sigma)");
+  return with(text, "displacement [mm]\n", "displacement [mm]\n  measure outer = outer [mm]\n");
+}
+
+}  // namespace
+
+TEST_CASE("each spring between coupled masses has its force, over its elongation, by the model and by the data") {
+  CaseRun const run(chain(""), {});
+  std::string const inner = run.file("best/figures/loop_bench_y.gnuplot"), outer = run.file("best/figures/loop_bench_w_y.gnuplot");
+  auto const at_ground = [](double y, double v) { return 1e4 * y + 5e9 * y * y * y + 20 * v; };
+  auto const between = [](double d, double v) { return 1e4 * d + 20 * v; };
+  CHECK(error(inner, "model", at_ground) < 0.05);
+  CHECK(error(outer, "model", between) < 0.05);
+  CHECK(error(inner, "data", at_ground) < 0.25);
+  CHECK(error(outer, "data", between) < 0.25);
+  CHECK(outer.find("'w − y [mm]'") != std::string::npos);
+  CHECK(outer.find("'restoring force [N]'") != std::string::npos);
+  CHECK(std::filesystem::exists(run.folder.path() / "results/best/figures/surface_bench_w_y.gnuplot"));
+  CHECK(test::broken_promises(run.folder.path() / "results") == "");
+}
+
+TEST_CASE("where both masses are held by the ground, too, the model alone tells the forces apart") {
+  CaseRun const run(chain(" + 2*k*w"), {});
+  for (auto const& [name, stiffness] : {std::pair("w_y", 1e4), std::pair("w", 2e4)}) {
+    std::string const script = run.file(std::string("best/figures/loop_bench_") + name + ".gnuplot");
+    CHECK(script.find("$displacement_data") == std::string::npos);
+    bool const link = std::string(name) == "w_y";
+    CHECK(error(script, "model", [&](double d, double v) { return stiffness * d + (link ? 20 * v : 0); }) < 0.05);
   }
+}
+
+TEST_CASE("an accelerometer shows the force without any differentiation") {
+  std::string text = with(oscillator, "NOISE", "1");
+  text = with(text, "observe displacement ~ normal(y, sd = sigma)", "observe felt ~ normal(y'', sd = 1e6*sigma/area)");
+  text = with(text, "  parameter sigma", "  parameter area [s^2] = 1\n  parameter sigma");
+  text = with(text, "measure displacement = displacement [mm]", "measure felt = felt [mm/s^2]");
+  CaseRun const run(text, {});
+  std::string const script = run.file("best/figures/loop_bench_y.gnuplot");
+  CHECK(error(script, "data", [](double y, double v) { return 1e4 * y + 5e9 * y * y * y + 20 * v; }) < 0.1);
 }
 
 TEST_CASE("values that data were made with come with their unit, and only from what simulate wrote") {

@@ -9,6 +9,7 @@
 #include "app/tables.hpp"
 #include "core/random.hpp"
 #include "gaussian_process/dense.hpp"
+#include "gaussian_process/regression.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -48,6 +49,39 @@ bool says(json const& summary, std::string const& code) {
 }
 
 }  // namespace
+
+TEST_CASE("a process at samples is drawn as a function over what the samples reach, as regression has it") {
+  CaseRun const run(R"(
+model toy {
+  input x
+  parameter rho = 6
+  parameter alpha = 2
+  parameter sigma ~ log_uniform(0.99, 1.01)
+  function f(u) ~ gp(squared_exponential(amplitude = alpha, length = rho))
+  observe y ~ normal(f(x), sd = sigma)
+}
+data points { file "points.csv"; input x = x; measure y = y }
+best = fit toy to points with map, seed = 1
+)",
+                    {{"points.csv", points()}});
+  std::string const table = run.file("best/function_f.csv");
+  std::vector<double> const places = column(table, "u"), mean = column(table, "mean"), sd = column(table, "sd");
+  REQUIRE(places.size() == 61);
+  CHECK(places.front() == -10);
+  CHECK(places.back() == 10);
+  gp::Covariance const covariance(*gp::find_kernel("squared_exponential"), {0});
+  double const sigma = parameter(run.summary("best"), "sigma").at("mean").get<double>();
+  std::vector<double> const hyper_parameters = {2, 6, sigma};
+  gp::Places at{Eigen::MatrixXd(61, 1), Eigen::MatrixXd(61, 0)};
+  for (int i = 0; i < 61; ++i) at.inputs(i, 0) = places[static_cast<std::size_t>(i)];
+  auto const exact = gp::conditional(covariance, observations(), hyper_parameters, at).prediction;
+  for (int i = 0; i < 61; ++i) {
+    CHECK(mean[static_cast<std::size_t>(i)] == doctest::Approx(exact.mean[i]).epsilon(1e-9));
+    CHECK(sd[static_cast<std::size_t>(i)] == doctest::Approx(std::sqrt(exact.variance[i])).epsilon(1e-7));
+  }
+  std::string const script = run.file("best/figures/function_f.gnuplot");
+  CHECK(script.find("$visits0") != std::string::npos);
+}
 
 TEST_CASE("chains over hyper-parameters agree with quadrature") {
   CaseRun const run(R"(

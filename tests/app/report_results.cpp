@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <boost/crc.hpp>
+#include <nlohmann/json.hpp>
+
 #include "answer.hpp"
 #include "app/reporting.hpp"
 #include "app/running.hpp"
@@ -58,7 +61,7 @@ std::string refusal(fs::path const& results, fs::path const& folder) {
 }  // namespace
 
 TEST_CASE("a page made from a folder is the one that the run wrote, pictures included") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   DishRun const run(true);
   for (char const* task : {"posterior", "forecast"}) {
     std::string const written = read_file(run.results / task / "report.html");
@@ -86,6 +89,84 @@ TEST_CASE("the page of a whole run holds its tasks in the order of the file") {
   CHECK(posterior < second);
   CHECK(page.find(">forecast: Decay &amp; &lt;growth&gt;</h2>") > second);
   CHECK(page.find("<a href=\"#task-2\">forecast</a>") < first);
+}
+
+TEST_CASE("the page of a whole run says its number of tasks once, and of each the verdict of its own page") {
+  DishRun const run;
+  report_results(run.results, run.folder.path() / "all.html", false);
+  std::string const page = read_file(run.folder.path() / "all.html");
+  CHECK(page.find("<p class=\"task\">A run of 2 tasks</p>\n<h1>Decay &amp; &lt;growth&gt;</h1>") != std::string::npos);
+  for (char const* task : {"posterior", "forecast"}) {
+    std::string const own = read_file(run.results / task / "report.html");
+    std::size_t const begin = own.find("<p class=\"headline\">") + 20;
+    std::string headline = own.substr(begin, own.find("</p>", begin) - begin);
+    headline[0] = static_cast<char>(headline[0] - 'A' + 'a');
+    CHECK_MESSAGE(page.find("<b>" + headline + "</b></li>") != std::string::npos, headline);
+  }
+}
+
+TEST_CASE("fits of the same samples stand side by side on the page of a run, of other samples they are not compared") {
+  std::string const other = with(with(text, "model decay \"Decay & <growth>\"", "model still"), "y' = -k*a*y", "y' = 0*k*a*y");
+  std::string const model = other.substr(0, other.find("data dish"));
+  std::string const fits = with(text, "data dish {", model + "data dish {").substr(0, (model + text).find("posterior = ")) +
+                           "grows = fit decay to dish with map, seed = 1\nstays = fit still to dish with map, seed = 1\n";
+  DishRun const run(false, fits);
+  report_results(run.results, run.folder.path() / "all.html", false);
+  std::string const page = read_file(run.folder.path() / "all.html");
+  CHECK(page.find("<h1>A run of 2 tasks</h1>") != std::string::npos);
+  CHECK(page.find("log Bayes factor") != std::string::npos);
+  CHECK(page.find("<td class=\"n\">0.0</td>") != std::string::npos);  // the best against itself
+  CHECK(page.find("<a href=\"#together\">") != std::string::npos);
+  CHECK(page.find("cannot be compared") == std::string::npos);
+
+  std::string const parts =
+      with(with(fits, "measure size = y\n", "measure size = y\n  split early = rows 1..2, late = rows 3..4\n"),
+           "grows = fit decay to dish ", "grows = fit decay to dish.early ");
+  DishRun const apart(false, with(parts, "stays = fit still to dish ", "stays = fit still to dish.late "));
+  report_results(apart.results, apart.folder.path() / "all.html", false);
+  std::string const second = read_file(apart.folder.path() / "all.html");
+  CHECK(second.find("log Bayes factor</th>") == std::string::npos);
+  CHECK(second.find("2 different sets of samples, between which evidences cannot be compared") != std::string::npos);
+}
+
+TEST_CASE("tasks that were interrupted before they had a result have a line on the page of their run") {
+  DishRun const run;
+  fs::create_directory(run.results / "late");
+  write_file(run.results / "late" / "checkpoint.cbor", ".");
+  report_results(run.results, run.folder.path() / "all.html", false);
+  std::string const page = read_file(run.folder.path() / "all.html");
+  CHECK(page.find("A run of 3 tasks") != std::string::npos);
+  CHECK(page.find("late <b>interrupted before it had a result; run it again with --resume</b>") != std::string::npos);
+}
+
+TEST_CASE("what another version wrote is told from what is damaged") {
+  DishRun const run;
+  fs::path const record = run.results / "posterior" / "report.cbor";
+  std::string const bytes = read_file(record);
+  std::string const other =
+      "`results/posterior/report.cbor` was written by another version of sysid\nrun the task again with --force";
+  auto const refused_as = [&](nlohmann::json const& stored) {
+    auto const changed = nlohmann::json::to_cbor(stored);
+    write_file(record, std::string(changed.begin(), changed.end()));
+    return refusal(run.results / "posterior", run.folder.path());
+  };
+  nlohmann::json const whole = nlohmann::json::from_cbor(bytes);
+  nlohmann::json older = whole;
+  older["form"] = 1;
+  CHECK(refused_as(older) == other);
+  older.erase("form");
+  CHECK(refused_as(older) == other);
+  // Members that are missing in bytes that are whole were never written.
+  nlohmann::json report = nlohmann::json::from_cbor(whole["report"].get_binary());
+  report.erase("functions");
+  auto const inner = nlohmann::json::to_cbor(report);
+  boost::crc_32_type sum;
+  sum.process_bytes(inner.data(), inner.size());
+  older = whole;
+  older["report"] = nlohmann::json::binary(inner);
+  CHECK(refused_as(older) == "`results/posterior/report.cbor` is damaged\nrun the task again with --force");
+  older["crc32"] = sum.checksum();
+  CHECK(refused_as(older) == other);
 }
 
 TEST_CASE("the command makes the same result again, whatever the folder is called") {

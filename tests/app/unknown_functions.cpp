@@ -138,6 +138,7 @@ TEST_CASE("an unknown spring force inside an equation of motion is found, and it
   std::vector<double> const record = column(read_file(run.folder.path() / "made.csv"), "displacement");
   double reach = 0;
   for (std::size_t i = 0; i < 1000; ++i) reach = std::max(reach, std::fabs(record[i]));
+  CHECK(run.file("best/figures/function_f.gnuplot").find("$visits0") != std::string::npos);
   CHECK(reach > 1e-3);
   int inside = 0, looked = 0;
   for (std::size_t i = 0; i < y.size(); ++i) {

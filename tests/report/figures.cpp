@@ -11,6 +11,7 @@
 
 #include "core/random.hpp"
 #include "example.hpp"
+#include "inference/residual_tests.hpp"
 #include "report/gnuplot.hpp"
 
 using namespace sysid;
@@ -56,7 +57,7 @@ TEST_CASE("a state that a channel shows as it is has no second figure") {
 }
 
 TEST_CASE("gnuplot draws every figure, the same bytes for the same script") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   for (plot::Figure const& figure : figures(example::duffing(40))) {
     auto const first = draw(figure);
     REQUIRE_MESSAGE(first.has_value(), figure.name);
@@ -67,7 +68,7 @@ TEST_CASE("gnuplot draws every figure, the same bytes for the same script") {
 }
 
 TEST_CASE("gnuplot draws degenerate results: constant draws, missing samples, a second of two draws, odd names") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   Report report = example::duffing(2);
   for (Chain& chain : report.draws.chains)
     for (auto& row : chain.values) row[0] = 1;
@@ -88,11 +89,11 @@ TEST_CASE("a figure in the page takes its colours from the page") {
       "<?xml version=\"1.0\"?>\n<svg \n viewBox=\"0 0 480 1\"><path stroke='rgb( 27,  94, 155)'/><text "
       "fill=\"rgb(31,41,51)\"/><rect "
       "fill=\"#ffffff\"/></svg>\n";
-  CHECK(
-      embedded(svg, figure) ==
-      "<svg role=\"img\" aria-label=\"f\" style=\"max-width:672px\"\n viewBox=\"0 0 480 1\"><path stroke='var(--fig-model)'/><text "
-      "fill=\"var(--fig-ink)\"/><rect "
-      "fill=\"var(--fig-paper)\"/></svg>\n");
+  CHECK(embedded(svg, figure) ==
+        "<svg role=\"img\" aria-label=\"f\" style=\"max-width:672px;min-width:360px\"\n viewBox=\"0 0 480 1\"><path "
+        "stroke='var(--fig-model)'/><text "
+        "fill=\"var(--fig-ink)\"/><rect "
+        "fill=\"var(--fig-paper)\"/></svg>\n");
 }
 
 TEST_CASE("a long record is shown in part and says so") {
@@ -138,7 +139,7 @@ TEST_CASE("the numbers over a marginal are in the unit of its axis") {
 }
 
 TEST_CASE("curves are written to a tenth of a pixel") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   auto const svg = draw({"f", "", "", plot::preamble("f", 300, 200) + "plot [0:1] x with lines, 2*x with filledcurves y1=0\n"});
   REQUIRE(svg);
   std::size_t const path = svg->find(" d='M");
@@ -216,7 +217,7 @@ TEST_CASE("the value that data were made with is a line at its place, where all 
 }
 
 TEST_CASE("figures are drawn as SVG, PNG, PDF and characters from one script") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   plot::Figure const figure = posterior_figure(example::duffing(40));
   for (FigureFormat const format : {FigureFormat::svg, FigureFormat::png, FigureFormat::pdf, FigureFormat::text}) {
     REQUIRE(can_draw(format));
@@ -229,7 +230,7 @@ TEST_CASE("figures are drawn as SVG, PNG, PDF and characters from one script") {
 }
 
 TEST_CASE("a figure of characters fits the columns that there are, whatever their number") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   for (plot::Figure const& figure : figures(example::duffing(40)))
     for (int const columns : {40, 80, 157}) {
       auto const text = draw(figure, FigureFormat::text, columns);
@@ -247,7 +248,7 @@ TEST_CASE("a figure of characters fits the columns that there are, whatever thei
 }
 
 TEST_CASE("forty parameters, twelve chains, values of 1e-12, long names and a band with holes are drawn") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   Report report = example::duffing(20);
   for (int p = 5; p < 40; ++p) {
     report.draws.names.push_back("a_parameter_whose_name_does_not_end_" + std::to_string(p));
@@ -276,7 +277,7 @@ TEST_CASE("forty parameters, twelve chains, values of 1e-12, long names and a ba
 }
 
 TEST_CASE("draws that are not finite leave the others to be seen, and where there are none the figure says so") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   Report report = example::duffing(40);
   for (Chain& chain : report.draws.chains)
     for (std::size_t d = 0; d < chain.values.size(); ++d) {
@@ -316,7 +317,7 @@ TEST_CASE("terms of a discovery stand in the order of how sure they are, with th
   plot::Figure const densities = coefficient_figure(discovery, 0);
   CHECK(block(densities.script, "all0").size() == 81);
   CHECK(block(densities.script, "all1").empty());  // without a spread there is no density
-  if (gnuplot_installed()) CHECK((draw(bars).has_value() && draw(densities).has_value()));
+  CHECK((draw(bars).has_value() && draw(densities).has_value()));
   equation.terms.resize(3);
   CHECK_FALSE(has_coefficients(equation));
 }
@@ -347,7 +348,7 @@ TEST_CASE("rows of any order have a figure over their inputs, a curve where ther
   CHECK(std::is_sorted(rows.begin(), rows.end(), [](auto const& a, auto const& b) { return a[0] < b[0]; }));
   prediction.inputs = {first, second};
   CHECK(block(input_figure(prediction, quantity).script, "input1").size() == 50);
-  if (gnuplot_installed()) CHECK(draw(input_figure(prediction, quantity)).has_value());
+  CHECK(draw(input_figure(prediction, quantity)).has_value());
   for (double& each : prediction.inputs[0].values) each = 1;
   prediction.inputs.resize(1);
   CHECK_FALSE(over_inputs(prediction, quantity));
@@ -368,21 +369,80 @@ TEST_CASE("twenty models have twenty keys, told apart by colour and dashes, in r
   CHECK(plot::legend_height(keys, 10, 466) >= 10 * 15);
 }
 
-TEST_CASE("the autocorrelation of an alternating series alternates") {
-  std::vector<double> series;
-  for (int i = 0; i < 100; ++i) series.push_back(i % 2 == 0 ? 1 : -1);
-  auto const values = autocorrelation(series, 3);
-  REQUIRE(values.size() == 4);
-  // n - lag products of magnitude 1 over n.
-  CHECK(values[0] == 1);
-  CHECK(values[1] == doctest::Approx(-0.99).epsilon(1e-14));
-  CHECK(values[2] == doctest::Approx(0.98).epsilon(1e-14));
+TEST_CASE("the autocorrelation in the figure, and its band, are those of the test behind the verdict") {
+  Report const report = example::duffing(40);
+  Prediction const& prediction = report.predictions[0];
+  PredictedQuantity const& quantity = prediction.quantities[0];
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i < quantity.measured.size(); ++i)
+    residuals.push_back(prediction.scored[i] != 0 ? quantity.measured[i] - quantity.response.mean[i] : std::nan(""));
+  CorrelationTest const test = whiteness(residuals, 60);
+  plot::Figure const figure = residual_figure(prediction, quantity);
+  auto const bars = block(figure.script, "acf"), limits = block(figure.script, "acf_limit");
+  REQUIRE(bars.size() == test.correlation.size());
+  REQUIRE(limits.size() == bars.size() + 2);
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    CHECK(bars[i][1] == doctest::Approx(test.correlation[i]).epsilon(1e-5));
+    CHECK(limits[i + 1][2] == doctest::Approx(test.bound[i]).epsilon(1e-5));
+  }
+  CHECK(figure.caption.find("99 %") != std::string::npos);
 }
 
-TEST_CASE("missing samples do not spoil the autocorrelation") {
-  auto const values = autocorrelation({1, -1, std::nan(""), -1, 1, -1}, 1);
-  CHECK(std::isfinite(values[1]));
-  CHECK(values[1] < 0);
+TEST_CASE("residuals that are few, or all nothing, have no figure") {
+  Report report = example::duffing(40);
+  Prediction& prediction = report.predictions[0];
+  PredictedQuantity& quantity = prediction.quantities[0];
+  CHECK(has_residuals(prediction, quantity));
+  std::vector<double> const measured = quantity.measured;
+  quantity.measured = quantity.response.mean;
+  CHECK_FALSE(has_residuals(prediction, quantity));
+  quantity.measured = measured;
+  std::fill(quantity.measured.begin() + 15, quantity.measured.end(), std::nan(""));
+  CHECK_FALSE(has_residuals(prediction, quantity));
+}
+
+TEST_CASE("each figure says which part of the page it belongs to") {
+  std::string chains, fit;
+  for (plot::Figure const& figure : figures(example::duffing(40))) {
+    if (figure.topic == plot::Topic::chains) chains += figure.name + " ";
+    if (figure.topic == plot::Topic::fit) fit += figure.name + " ";
+  }
+  CHECK(chains == "trace ranks ");
+  CHECK(fit == "fit_bench_train_displacement state_bench_train_y_dot residuals_bench_train_displacement ");
+}
+
+TEST_CASE("every axis of the pairs has two numbers, also where they are long") {
+  Report report = example::duffing(40);
+  for (Chain& chain : report.draws.chains)
+    for (std::size_t d = 0; d < chain.values.size(); ++d) {
+      chain.values[d][0] = 998.087 + 0.004 * std::sin(static_cast<double>(d));
+      chain.values[d][1] = -0.0995 + 1e-4 * std::cos(static_cast<double>(d));
+    }
+  std::string const script = pair_figure(report.draws).script;
+  std::regex const ticks("set [xy]tics [^(]*\\(([^)]*)\\)"), number("'[^']+' ");
+  int axes = 0;
+  for (std::sregex_iterator at(script.begin(), script.end(), ticks), end; at != end; ++at) {
+    std::string const list = (*at)[1];
+    auto const numbers = std::distance(std::sregex_iterator(list.begin(), list.end(), number), std::sregex_iterator());
+    if (numbers == 0) continue;  // inner cells
+    ++axes;
+    CHECK_MESSAGE(numbers >= 2, list);
+  }
+  CHECK(axes >= 9);
+}
+
+TEST_CASE("a function that was found shows where the record reads it") {
+  FunctionReport function{"f", "N", {{"v", "m/s"}}, {}, {{}}, {{0, 4, 0, 2}}};
+  for (int i = 0; i <= 10; ++i) function.cuts[0].push_back({{0.1 * i}, 1.0 * i, 0.1, i - 0.2, i + 0.2});
+  plot::Figure const figure = function_figure(function);
+  auto const strip = block(figure.script, "visits0");
+  REQUIRE(strip.size() == 8);
+  double const low = strip[0][1];
+  CHECK(strip[2][0] == doctest::Approx(0.25));
+  CHECK(strip[2][1] - low == doctest::Approx(2 * (strip[6][1] - low)));
+  CHECK(figure.caption.find("how often") != std::string::npos);
+  function.visits[0].assign(4, 0);
+  CHECK(block(function_figure(function).script, "visits0").empty());
 }
 
 TEST_CASE("captions are prose: no names of our own stand in them") {

@@ -91,7 +91,11 @@ TEST_CASE("pages keep the rules whatever is in them") {
 
 TEST_CASE("pages of several tasks keep the rules, their ids apart") {
   Report const one = example::duffing(20), other = example::duffing(30);
-  CHECK(test::broken_rules(run_html({{one, all_drawn(one)}, {other, all_drawn(other)}})) == "");
+  CHECK(test::broken_rules(run_html({{{one, all_drawn(one)}, {other, all_drawn(other)}},
+                                     {{"fitted to a & b", "c has no evidence: <d>", {"fit", "log evidence"}, {{"e", "-"}}}},
+                                     "The fits are of two samples. ",
+                                     {"late & <lost>"}})) == "");
+  CHECK(test::broken_rules(run_html({{}, {}, "", {"late"}})) == "");
 }
 
 TEST_CASE("text stands out from what is behind it, light and dark") {

@@ -34,11 +34,11 @@ TEST_CASE("a result folder holds draws per chain, prediction, summary, timing, r
     CHECK_MESSAGE(files.contains(name), name);
   CHECK_FALSE(files.contains("draws_5.csv"));
   for (auto const& [name, bytes] : files) CHECK_MESSAGE(name.find("partial") == std::string::npos, name);
-  CHECK(files.contains("figures/posterior.svg") == gnuplot_installed());
+  CHECK(files.contains("figures/posterior.svg"));
 }
 
 TEST_CASE("pictures stand beside each other in the formats asked for, and go with the result they are of") {
-  if (!gnuplot_installed()) return;
+  REQUIRE(gnuplot_installed());
   TemporaryFolder const folder;
   fs::path const path = folder.path() / "posterior";
   write_result(example::duffing(10), path, {FigureFormat::pdf, FigureFormat::text, FigureFormat::png});
@@ -52,6 +52,19 @@ TEST_CASE("pictures stand beside each other in the formats asked for, and go wit
   CHECK(files.contains("figures/posterior.gnuplot"));
   for (char const* ending : {"svg", "pdf", "txt", "png"}) CHECK_FALSE(files.contains(std::string("figures/posterior.") + ending));
   CHECK(files["report.html"].find("<svg") == std::string::npos);
+}
+
+TEST_CASE("pictures that gnuplot refuses are named, and their scripts stay") {
+  TemporaryFolder const folder;
+  std::vector<DrawnFigure> const figures = {{{"fine", "", "", plot::preamble("fine", 300, 200) + "plot [0:1] x\n"}, std::nullopt},
+                                            {{"broken", "", "", "this is no command\n"}, std::nullopt}};
+  auto const undrawn = write_figures(figures, folder.path(), {FigureFormat::svg, FigureFormat::pdf});
+  CHECK(undrawn == std::vector<std::string>{"broken.svg", "broken.pdf"});
+  CHECK(undrawn_words(undrawn) == "gnuplot did not draw broken.svg and 1 more; the scripts are in figures/");
+  auto const files = contents(folder.path());
+  CHECK(files.contains("figures/broken.gnuplot"));
+  CHECK(files.contains("figures/fine.pdf"));
+  CHECK_FALSE(files.contains("figures/broken.pdf"));
 }
 
 TEST_CASE("the same result is the same bytes but for the timing") {

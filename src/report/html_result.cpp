@@ -1,0 +1,118 @@
+// What a task found: parameters, tables of its kind, the evidence of the model, modes.
+#include "report/html_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/xml.hpp"
+#include "report/html_words.hpp"
+#include "report/number.hpp"
+#include "report/typeset.hpp"
+
+namespace sysid {
+
+namespace {
+
+/// A cell of a table that other writers share: a number or a unit as a page shows it.
+std::string cell_html(std::string const& text, std::string const& column) {
+  if (column == "unit") return escape(pretty_unit(text));
+  double value = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  bool const number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return number ? pretty_number(text) : escape(text);
+}
+
+std::string parameters(Report const& report) {
+  if (report.summary.empty()) return "";
+  bool const optimum = report.draws.total() == 1;
+  HtmlTable table{"Priors against posteriors", {"parameter", "prior"}, {}, 3};
+  bool const priors = !report.priors.empty();
+  table.header.push_back(priors ? "posterior within it" : "");
+  for (std::string const& column :
+       optimum ? std::vector<std::string>{"optimum", "sd"} : std::vector<std::string>{"mean", "sd", "5 %", "median", "95 %"})
+    table.header.push_back(column);
+  for (Summary const& s : report.summary) {
+    if (s.coefficient) continue;
+    SummaryText const t = format_summary(s);
+    auto const prior =
+        std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& each) { return each.name == s.name; });
+    bool const known = prior != report.priors.end();
+    std::vector<std::string> row = {with_unit(s.name, s.unit), known ? code(prior->text) : "follows from the others", ""};
+    if (known && prior->q5 && prior->q95)
+      row[1] += fmt::format("<br/><span class=\"unit\">{} to {}</span>", pretty_number(significant(*prior->q5, 3)),
+                            pretty_number(significant(*prior->q95, 3)));
+    if (auto const ratio = known ? narrowing(*prior, s) : std::nullopt) {
+      auto const [low, high] = interval_90(s);
+      row[2] = range_chart(*prior->q5, *prior->q95, low, high, s.mean,
+                           fmt::format("{} from {} to {}, prior from {} to {}", s.name, significant(low, 3), significant(high, 3),
+                                       significant(*prior->q5, 3), significant(*prior->q95, 3))) +
+               fmt::format("<br/><span class=\"unit\">{}</span>",
+                           *ratio < hardly_narrower ? "hardly narrower"
+                                                    : pretty_number(significant(*ratio, *ratio < 10 ? 2 : 3)) + " times narrower");
+    }
+    for (std::string const& cell :
+         optimum ? std::vector<std::string>{t.mean, t.sd} : std::vector<std::string>{t.mean, t.sd, t.q5, t.median, t.q95})
+      row.push_back(pretty_number(cell));
+    table.rows.push_back(std::move(row));
+  }
+  std::string out = html(table) + paragraph(learning_words(report));
+  return out + paragraph(std::string(optimum ? "sd: of the normal approximation at the optimum (Laplace). "
+                                             : "Digits end where the Monte Carlo error begins. ") +
+                             (priors ? "Below each prior the interval that holds 90 % of it, beside it the posterior's within "
+                                       "that: dark, with a stroke at the "
+                                       "mean, on a logarithmic scale where the prior's is positive and spans more than a decade."
+                                     : ""),
+                         "note");
+}
+
+}  // namespace
+
+std::string result_html(Report const& report) {
+  std::string out = parameters(report);
+  if (report.evidence)
+    if (std::string const text = evidence_text(*report.evidence); !text.empty())
+      out += paragraph(
+          fmt::format("The model as a whole: {}. {}", text,
+                      report.evidence->log_evidence
+                          ? "It has a meaning only beside that of another model of the same samples: `sysid compare` sets "
+                            "them side by side, and a difference of 5 is strong."
+                          : ""));
+  for (ReportTable const& table : report.tables) out += table_html(table);
+  return out;
+}
+
+std::string table_html(ReportTable const& table, std::size_t words) {
+  HtmlTable out{capitalised(table.title), {}, {}, words};
+  for (std::string const& cell : table.header) out.header.push_back(escape(cell));
+  for (auto const& row : table.rows) {
+    out.rows.emplace_back();
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out.rows.back().push_back(cell_html(row[c], c < table.header.size() ? table.header[c] : ""));
+  }
+  return html(out) + paragraph(table.caption, "note");
+}
+
+std::string modes_html(Report const& report) {
+  if (report.modes.empty()) return "";
+  HtmlTable table{"Modes that the global search over the prior found", {"mode", "share", "log density"}, {}, 1};
+  std::size_t const count = std::min(report.modes[0].declared.size(), report.draws.names.size());
+  for (std::size_t i = 0; i < count; ++i) table.header.push_back(escape(report.draws.names[i]));
+  for (std::size_t m = 0; m < report.modes.size(); ++m) {
+    Mode const& mode = report.modes[m];
+    table.rows.push_back(
+        {std::to_string(m + 1), pretty_number(significant(mode.share, 3)), pretty_number(significant(mode.log_density, 6))});
+    for (std::size_t i = 0; i < std::min(count, mode.declared.size()); ++i)
+      table.rows.back().push_back(pretty_number(significant(mode.declared[i], 4)));
+  }
+  double const second = report.modes.size() > 1 ? report.modes[1].share : 0;
+  return paragraph(report.modes.size() == 1
+                       ? "One mode was found: no other values of the parameters explain the data nearly as well."
+                   : second > 0.01 ? "Several modes carry weight: the parameters are not told by these data alone."
+                                   : "Other modes were found and carry next to no weight.") +
+         html(table) + paragraph("Share: of the Laplace masses of all modes.", "note");
+}
+
+}  // namespace sysid
