@@ -18,6 +18,9 @@ namespace sysid::test {
 
 constexpr double step = 0.01;  // [s] of the made records
 
+/// Statements of a dictionary for it.
+inline std::string const oscillator = "target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1";
+
 /// y'' of an oscillator under a force.
 using Acceleration = std::function<double(double force, double position, double speed)>;
 
@@ -77,7 +80,7 @@ inline std::string file(std::string const& statements, std::string const& option
          "measure displacement = y [m] }\nfound = discover terms from bench with " + options + "\n";
 }
 
-struct Answer {
+struct DiscoveryAnswer {
   int exit = 0;
   std::string said;  // standard output, or the message that ended it
   nlohmann::json summary;
@@ -104,7 +107,7 @@ struct Answer {
 using Texts = std::vector<std::string>;
 
 /// As the command line would: messages of the text and of the data end it with 65.
-inline Answer run_with(std::string const& text, std::map<std::string, std::string> const& files) {
+inline DiscoveryAnswer run_with(std::string const& text, std::map<std::string, std::string> const& files) {
   TemporaryFolder folder;
   for (auto const& [name, content] : files) write_file(folder.path() / name, content);
   RunOptions options;
@@ -113,7 +116,7 @@ inline Answer run_with(std::string const& text, std::map<std::string, std::strin
   Source source((folder.path() / "case.sysid").string(), text);
   Diagnostics diagnostics;
   auto const checked = load(source, diagnostics);
-  Answer answer;
+  DiscoveryAnswer answer;
   answer.said = render(diagnostics, source);
   answer.exit = 65;
   if (!checked) return answer;

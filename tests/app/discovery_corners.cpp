@@ -18,9 +18,7 @@ namespace {
 
 std::string const record = Made(900).csv();
 
-Answer run(std::string const& text, std::string const& csv = record) { return run_with(text, {{"bench.csv", csv}}); }
-
-std::string const oscillator = "target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1";
+DiscoveryAnswer run(std::string const& text, std::string const& csv = record) { return run_with(text, {{"bench.csv", csv}}); }
 
 /// The record with column `column` of row `row` (from 0) replaced.
 std::string replaced(std::size_t row, int column, std::string const& value) {
@@ -35,14 +33,14 @@ std::string replaced(std::size_t row, int column, std::string const& value) {
 }  // namespace
 
 TEST_CASE("the record that the corner cases vary is found without a word") {
-  Answer const answer = run(file(oscillator));
+  DiscoveryAnswer const answer = run(file(oscillator));
   CHECK(answer.exit == 0);
   CHECK(answer.kept() == Texts{"y'", "y", "y^3"});
   CHECK(answer.codes().empty());
 }
 
 TEST_CASE("a forcing that the dictionary declares and does not read is named where it stands") {
-  Answer const answer = run(file("target = y''\nterms = y', y, y^2, y^3, 1"));
+  DiscoveryAnswer const answer = run(file("target = y''\nterms = y', y, y^2, y^3, 1"));
   CHECK(answer.exit == 0);
   CHECK(contains(answer.said, "case.sysid:2:7: warning[E3019]: nothing in this dictionary reads the input `u`"));
   json const finding = answer.finding("unexplained_residual");
@@ -53,27 +51,28 @@ TEST_CASE("a forcing that the dictionary declares and does not read is named whe
 TEST_CASE("a forcing that the data hold and the dictionary does not declare is named where it stands") {
   std::string text = file("target = y''\nterms = y', y, y^2, y^3, 1");
   text = without(text, "input u [N]\n");
-  Answer const answer = run(text);
+  DiscoveryAnswer const answer = run(text);
   CHECK(answer.exit == 65);
   CHECK(contains(answer.said, "error[E4115]: dictionary `terms` has no input `u`"));
 }
 
 TEST_CASE("a forcing that was not recorded, and a term that the dictionary lacks, are missed in the residual") {
   std::string text = without(file("target = y''\nterms = y', y, y^2, y^3, 1", "seed = 1", ""), "input u [N]\n");
-  Answer const forcing = run(text);
+  DiscoveryAnswer const forcing = run(text);
   CHECK(forcing.exit == 0);
   REQUIRE_FALSE(forcing.finding("unexplained_residual").is_null());
   CHECK(contains(forcing.finding("unexplained_residual").at("message"), "a forcing or a term is missing"));
-  Answer const term = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, 1"));
+  DiscoveryAnswer const term = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, 1"));
   CHECK_FALSE(term.finding("unexplained_residual").is_null());
 }
 
 TEST_CASE("terms that are one on this record are named, and the first stays") {
-  Answer const repeats = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^3, abs(y)*sign(y)"));
+  DiscoveryAnswer const repeats = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^3, abs(y)*sign(y)"));
   CHECK(repeats.exit == 0);
   CHECK(repeats.kept() == Texts{"y'", "y", "y^3"});
   CHECK(contains(repeats.finding("terms_repeat").at("message"), "`abs(y)*sign(y)` is a multiple of `y`"));
-  Answer const sum = run(file("let angle = y/1 [m]\ntarget = u - 1 [kg]*y''\nterms = y', y, y^3, sin(angle)^2, 1, cos(angle)^2"));
+  DiscoveryAnswer const sum =
+      run(file("let angle = y/1 [m]\ntarget = u - 1 [kg]*y''\nterms = y', y, y^3, sin(angle)^2, 1, cos(angle)^2"));
   CHECK(sum.exit == 0);
   CHECK(contains(sum.finding("terms_collinear").at("message"), "`cos(angle)^2` is a sum of `sin(angle)^2` and `1`"));
   CHECK(sum.finding("terms_collinear").at("severity") == "warning");
@@ -81,26 +80,26 @@ TEST_CASE("terms that are one on this record are named, and the first stays") {
 
 TEST_CASE("terms that are nearly one are named") {
   // Around a displacement of 20 the powers of y say nearly the same.
-  Answer const near = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1", "threshold(share = 1e-9), seed = 1"),
-                          Made(900, {.offset = 20}).csv());
+  DiscoveryAnswer const near = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1", "threshold(share = 1e-9), seed = 1"),
+                                   Made(900, {.offset = 20}).csv());
   REQUIRE_FALSE(near.finding("terms_nearly_collinear").is_null());
   CHECK(contains(near.finding("terms_nearly_collinear").at("message"), "barely told apart"));
   CHECK(near.exit == 0);
 }
 
 TEST_CASE("a term that is always zero is named, by its text or on the record") {
-  Answer const text = run(file(oscillator + ", y - y"));
+  DiscoveryAnswer const text = run(file(oscillator + ", y - y"));
   CHECK(text.exit == 0);
   CHECK(contains(text.said, "y - y  always zero"));
   CHECK(text.kept() == Texts{"y'", "y", "y^3"});
-  Answer const data = run(file(oscillator + ", max(y - 100 [m], 0)"));
+  DiscoveryAnswer const data = run(file(oscillator + ", max(y - 100 [m], 0)"));
   CHECK(data.exit == 0);
   CHECK(contains(data.finding("term_always_zero").at("message"), "`max(y - 100 [m], 0)` is zero on the whole record"));
   CHECK(data.kept() == Texts{"y'", "y", "y^3"});
 }
 
 TEST_CASE("a term that is not finite somewhere is left out by name") {
-  Answer const answer = run(file(oscillator + ", sqrt(y*1 [m])"));
+  DiscoveryAnswer const answer = run(file(oscillator + ", sqrt(y*1 [m])"));
   CHECK(answer.exit == 0);
   CHECK(contains(answer.finding("term_not_finite").at("message"), "`sqrt(y*1 [m])` is not finite in"));
   CHECK(answer.kept() == Texts{"y'", "y", "y^3"});
@@ -109,17 +108,17 @@ TEST_CASE("a term that is not finite somewhere is left out by name") {
 TEST_CASE("too few samples are counted") {
   for (int const rows : {2, 15, 25}) {
     CAPTURE(rows);
-    Answer const answer = run(file(oscillator), Made(rows).csv());
+    DiscoveryAnswer const answer = run(file(oscillator), Made(rows).csv());
     CHECK(answer.exit == 1);
     CHECK(answer.codes() == Texts{"too_few_rows"});
     CHECK(answer.finding("too_few_rows").at("severity") == "error");
   }
-  Answer const samples = run(file(oscillator, "threshold(derivatives = central), seed = 1"), Made(9).csv());
+  DiscoveryAnswer const samples = run(file(oscillator, "threshold(derivatives = central), seed = 1"), Made(9).csv());
   CHECK(contains(samples.finding("too_few_rows").at("message"), "samples for 5 terms are too few; at least 11 are needed"));
 }
 
 TEST_CASE("a single row is an error of the data, as for any task") {
-  Answer const answer = run(file(oscillator), Made(1).csv());
+  DiscoveryAnswer const answer = run(file(oscillator), Made(1).csv());
   CHECK(answer.exit == 65);
   CHECK(contains(answer.said, "case.sysid:7:"));
   CHECK(contains(answer.said, "error[E4"));
@@ -128,7 +127,7 @@ TEST_CASE("a single row is an error of the data, as for any task") {
 TEST_CASE("a record at rest says nothing about its equation") {
   Made still(900);
   for (double& value : still.y) value = 0.3;
-  Answer const answer = run(file(oscillator), still.csv());
+  DiscoveryAnswer const answer = run(file(oscillator), still.csv());
   CHECK(answer.exit == 1);
   CHECK(answer.codes() == Texts{"record_at_rest"});
   CHECK(contains(answer.finding("record_at_rest").at("message"), "`displacement` is 0.3 on the whole record"));
@@ -139,7 +138,7 @@ TEST_CASE("a sensor's noise about a rest says nothing either, whatever the seed"
     Made still(900);
     Stream stream({.seed = seed});
     for (double& value : still.y) value = 0.3 + 1e-4 * stream.normal();
-    Answer const answer = run(file(oscillator), still.csv());
+    DiscoveryAnswer const answer = run(file(oscillator), still.csv());
     CAPTURE(seed);
     CHECK(answer.exit == 1);
     CHECK(answer.codes() == Texts{"record_at_rest"});
@@ -147,20 +146,20 @@ TEST_CASE("a sensor's noise about a rest says nothing either, whatever the seed"
 }
 
 TEST_CASE("a unit that no term can have is an error where it stands") {
-  Answer const answer = run(file(oscillator + "\ncoefficients = [N/m], [N/m^3], [N s/m], [N/m^4]"));
+  DiscoveryAnswer const answer = run(file(oscillator + "\ncoefficients = [N/m], [N/m^3], [N s/m], [N/m^4]"));
   CHECK(answer.exit == 65);
   CHECK(contains(answer.said, "case.sysid:6:42: error[E6609]: no term has a coefficient in [N/m^4]"));
 }
 
 TEST_CASE("missing samples cost windows, missing forces are an error") {
-  Answer const gap = run(file(oscillator), replaced(200, 2, "NA"));
+  DiscoveryAnswer const gap = run(file(oscillator), replaced(200, 2, "NA"));
   CHECK(gap.exit == 0);
   CHECK(gap.kept() == Texts{"y'", "y", "y^3"});
   CHECK(gap.finding("windows_missing").at("severity") == "note");
-  Answer const number = run(file(oscillator), replaced(200, 2, "nan"));
+  DiscoveryAnswer const number = run(file(oscillator), replaced(200, 2, "nan"));
   CHECK(number.exit == 65);
   CHECK(contains(number.said, "case.sysid:7:"));
-  Answer const force = run(file(oscillator), replaced(200, 1, "NA"));
+  DiscoveryAnswer const force = run(file(oscillator), replaced(200, 1, "NA"));
   CHECK(force.exit == 65);
   CHECK(contains(force.said, "case.sysid:7:"));
   // Every second sample: no window is whole.
@@ -168,14 +167,14 @@ TEST_CASE("missing samples cost windows, missing forces are an error") {
   std::string csv = "t,u,y\n";
   for (std::size_t i = 0; i < sparse.t.size(); ++i)
     csv += fmt::format("{:.12g},{:.12g},{}\n", sparse.t[i], sparse.u[i], i % 2 == 1 ? "NA" : fmt::format("{:.12g}", sparse.y[i]));
-  Answer const none = run(file(oscillator), csv);
+  DiscoveryAnswer const none = run(file(oscillator), csv);
   CHECK(none.exit == 1);
   CHECK_FALSE(none.finding("too_few_rows").is_null());
   CHECK(contains(none.finding("windows_missing").at("message"), "100 % of the windows touch a missing sample"));
 }
 
 TEST_CASE("unequal steps are named") {
-  Answer const answer = run(file(oscillator), replaced(450, 0, "4.5031"));
+  DiscoveryAnswer const answer = run(file(oscillator), replaced(450, 0, "4.5031"));
   CHECK(answer.exit == 1);
   CHECK(answer.codes() == Texts{"unequal_steps"});
   CHECK(contains(answer.finding("unequal_steps").at("message"), "`bench`"));
@@ -183,24 +182,24 @@ TEST_CASE("unequal steps are named") {
 
 TEST_CASE("an input that is constant stands for the constant, and is named with it") {
   Made steady(900);
-  Answer const held = [&] {
+  DiscoveryAnswer const held = [&] {
     Made still(900);
     for (double& value : still.u) value = 2;
     return run(file("target = y''\nterms = y', y, y^2, y^3, u, 1"), still.csv());
   }();
   CHECK(contains(held.finding("terms_repeat").at("message"), "`1` is a multiple of `u`"));
   for (double& value : steady.u) value = 0;
-  Answer const zero = run(file("target = u\nterms = y'', y', y, y^3"), steady.csv());
+  DiscoveryAnswer const zero = run(file("target = u\nterms = y'', y', y, y^3"), steady.csv());
   CHECK(zero.exit == 1);
   CHECK(zero.codes() == Texts{"nothing_to_explain"});
 }
 
 TEST_CASE("noise that is given takes the place of the estimate") {
-  Answer const estimated = run(file(oscillator));
+  DiscoveryAnswer const estimated = run(file(oscillator));
   json const& of_record = estimated.summary.at("discovery").at("noise").at("displacement");
   CHECK(of_record.at("given") == false);
   CHECK(of_record.at("sd").get<double>() == doctest::Approx(0.00175).epsilon(0.1));
-  Answer const given = run(file(oscillator, "noise(displacement = 0.5 [mm]), seed = 1"));
+  DiscoveryAnswer const given = run(file(oscillator, "noise(displacement = 0.5 [mm]), seed = 1"));
   json const& noise = given.summary.at("discovery").at("noise").at("displacement");
   CHECK(noise.at("given") == true);
   CHECK(noise.at("sd").get<double>() == doctest::Approx(0.0005).epsilon(1e-14));
@@ -208,10 +207,10 @@ TEST_CASE("noise that is given takes the place of the estimate") {
   double const ratio = given.summary.at("discovery").at("equations").at(0).at("noise_ratio");
   CHECK(ratio == doctest::Approx(3.5).epsilon(0.15));
   CHECK_FALSE(given.finding("unexplained_residual").is_null());
-  Answer const unknown = run(file(oscillator, "noise(position = 0.5 [mm]), seed = 1"));
+  DiscoveryAnswer const unknown = run(file(oscillator, "noise(position = 0.5 [mm]), seed = 1"));
   CHECK(unknown.exit == 65);
   CHECK(contains(unknown.said, "dictionary `terms` has no channel `position`"));
-  Answer const unit = run(file(oscillator, "noise(displacement = 0.5 [N]), seed = 1"));
+  DiscoveryAnswer const unit = run(file(oscillator, "noise(displacement = 0.5 [N]), seed = 1"));
   CHECK(unit.exit == 65);
 }
 
@@ -244,7 +243,7 @@ TEST_CASE("functions of modules serve in dictionaries, and come with the model t
   RunResult const result = run_text(folder.path() / "case.sysid", text, options);
   CHECK(result.exit == 0);
   json const summary = json::parse(read_file(options.output / "found/summary.json"));
-  Answer const answer{result.exit, result.out, summary, {}};
+  DiscoveryAnswer const answer{result.exit, result.out, summary, {}};
   CHECK(answer.kept() == Texts{"y'", "inner(y)", "cube(y)"});
   std::string const source = read_file(options.output / "found/found.sysid");
   CHECK(contains(source, "powers_inner(z) = z*z"));

@@ -23,13 +23,6 @@ json const* finding(json const& summary, std::string const& code) {
   return nullptr;
 }
 
-json parameter(json const& summary, std::string const& name) {
-  for (auto const& [key, value] : summary.at("parameters").items())
-    if (key == name || (value.contains("name") && value.at("name") == name)) return value;
-  FAIL("no parameter " << name);
-  return {};
-}
-
 /// Rows "x,y" of a curve with noise of sd 0.2.
 std::string curve(int count) {
   std::ostringstream rows;

@@ -14,13 +14,6 @@ using json = nlohmann::json;
 
 namespace {
 
-json parameter(json const& summary, std::string const& name) {
-  for (auto const& [key, value] : summary.at("parameters").items())
-    if (key == name || (value.is_object() && value.contains("name") && value.at("name") == name)) return value;
-  FAIL("no parameter " << name);
-  return {};
-}
-
 /// Posterior of a linear model with normal priors N(0, prior_sd^2) and noise sd: mean and covariance.
 struct Posterior {
   Eigen::VectorXd mean;

@@ -34,7 +34,7 @@ Told run_optimum(std::string const& text) {
   return told;
 }
 
-int count(std::string const& text, std::string const& part) {
+int times_in(std::string const& text, std::string const& part) {
   int found = 0;
   for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
   return found;
@@ -97,10 +97,10 @@ TEST_CASE("a parameter that nothing uses is said once, and the direction it leav
   std::string const used = text.substr(0, text.find("\ntruth")) + text.substr(text.find("\nposterior"));
   Told const told = run_optimum(used);
   CHECK(found(told.fit, "unused_parameter"));
-  CHECK(count(told.run.out, "idle enters no equation") == 1);
+  CHECK(times_in(told.run.out, "idle enters no equation") == 1);
   // Its prior has a width: the posterior has one, too.
   CHECK_FALSE(found(told.fit, "flat_direction"));
   std::string const likeliest = with(used, "with map", "with ml");
   Told const flat = run_optimum(likeliest);
-  CHECK(count(flat.run.out, "the data leave idle undetermined") == 1);
+  CHECK(times_in(flat.run.out, "the data leave idle undetermined") == 1);
 }

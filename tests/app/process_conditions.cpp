@@ -12,8 +12,8 @@ using namespace sysid;
 
 namespace {
 
-constexpr double noise = 0.05;  // [N]
-double spring(double y) { return 2 * y * y * y; }
+constexpr double force_noise = 0.05;  // [N]
+double spring_force(double y) { return 2 * y * y * y; }
 
 /// Forces of a cubic spring at 8 displacements in metres, then without noise at 9 between 0 and them.
 std::string forces(std::uint64_t record) {
@@ -23,9 +23,9 @@ std::string forces(std::uint64_t record) {
   rows << "y,force\n";
   for (int i = 0; i < 8; ++i) {
     double const y = 0.8 + 0.1 * i;
-    rows << y << "," << spring(y) + noise * stream.normal() << "\n";
+    rows << y << "," << spring_force(y) + force_noise * stream.normal() << "\n";
   }
-  for (int i = 0; i < 9; ++i) rows << 0.08 * i << "," << spring(0.08 * i) << "\n";
+  for (int i = 0; i < 9; ++i) rows << 0.08 * i << "," << spring_force(0.08 * i) << "\n";
   return rows.str();
 }
 
@@ -67,7 +67,7 @@ data record {
       mean.erase(mean.begin(), mean.begin() + 8);
       sd.erase(sd.begin(), sd.begin() + 8);
       for (std::size_t i = 0; i < 9; ++i) {
-        error[m] += std::pow(mean[i] - spring(0.08 * static_cast<double>(i)), 2) / 36;
+        error[m] += std::pow(mean[i] - spring_force(0.08 * static_cast<double>(i)), 2) / 36;
         width[m] += sd[i] * sd[i] / 36;
       }
       if (m == 1) CHECK(std::fabs(mean[0]) < 1e-4);

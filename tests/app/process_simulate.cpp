@@ -10,16 +10,7 @@
 
 using namespace sysid;
 
-namespace {
-
-nlohmann::json parameter(nlohmann::json const& summary, std::string const& name) {
-  for (auto const& [key, value] : summary.at("parameters").items())
-    if (key == name || (value.is_object() && value.contains("name") && value.at("name") == name)) return value;
-  FAIL("no parameter " << name);
-  return {};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("records made with functions from the prior tell its hyper-parameters") {
   // Four records, each with a function of its own: their estimates scatter about the truth by the widths that they claim.

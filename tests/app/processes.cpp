@@ -35,13 +35,6 @@ gp::Observations observations() {
   return o;
 }
 
-json parameter(json const& summary, std::string const& name) {
-  for (auto const& [key, value] : summary.at("parameters").items())
-    if (key == name || (value.is_object() && value.contains("name") && value.at("name") == name)) return value;
-  FAIL("no parameter " << name);
-  return {};
-}
-
 bool says(json const& summary, std::string const& code) {
   for (json const& each : summary.at("findings"))
     if (each.at("code") == code) return true;

@@ -50,6 +50,13 @@ struct CaseRun {
   nlohmann::json summary(std::string const& task) const { return nlohmann::json::parse(file(task + "/summary.json")); }
 };
 
+/// The entry of a parameter in a summary.
+inline nlohmann::json parameter(nlohmann::json const& summary, std::string const& name) {
+  for (auto const& [key, value] : summary.at("parameters").items())
+    if (key == name || (value.is_object() && value.contains("name") && value.at("name") == name)) return value;
+  throw std::out_of_range("no parameter " + name);
+}
+
 /// `text` without any occurrence of `part`.
 inline std::string without(std::string text, std::string const& part) {
   for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at)) text.erase(at, part.size());

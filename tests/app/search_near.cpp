@@ -7,7 +7,7 @@ using namespace sysid;
 
 namespace {
 
-std::string const text = R"(
+std::string const near_text = R"(
 model linear {
   input x [N]
   state y [m]
@@ -34,7 +34,7 @@ data bench { file "made.csv"; time t [s]; input x = x [N] hold zero_order; measu
 
 std::string made_record() {
   static std::string const record =
-      CaseRun(text +
+      CaseRun(near_text +
                   "made = simulate cubic with values(c = 20, k = 10, k3 = 5e9), input x = gaussian(sd = 10), "
                   "noise = 1 [percent], samples = 400, rate = 500 [Hz], seed = 1\n",
               {{"made.csv", ""}})
@@ -51,7 +51,7 @@ bool found(nlohmann::json const& summary, std::string const& code) {
 }  // namespace
 
 TEST_CASE("a search near an earlier fit ends where a search everywhere ends, with a fraction of the simulations, and says so") {
-  CaseRun const run(text +
+  CaseRun const run(near_text +
                         "first = fit linear to bench with map, seed = 1\n"
                         "everywhere = fit cubic to bench with map, seed = 1\n"
                         "near = fit cubic to bench with map, search = near(first), seed = 1\n"
@@ -73,7 +73,7 @@ TEST_CASE("a search near an earlier fit ends where a search everywhere ends, wit
 }
 
 TEST_CASE("what reproduces a fit that searched near another holds that one, too") {
-  CaseRun const run(text +
+  CaseRun const run(near_text +
                         "first = fit linear to bench with map, seed = 1\n"
                         "unused = fit linear to bench with ml, seed = 1\n"
                         "near = fit cubic to bench with map, search = near(first), seed = 1\n",
@@ -87,7 +87,7 @@ TEST_CASE("what reproduces a fit that searched near another holds that one, too"
 TEST_CASE("a search begins near a fit that stands above it") {
   auto const refusal = [](std::string const& task) {
     try {
-      CaseRun(text + task, {{"made.csv", made_record()}});
+      CaseRun(near_text + task, {{"made.csv", made_record()}});
     } catch (UserError const& error) {
       return error.diagnostic().code;
     }
@@ -101,7 +101,7 @@ TEST_CASE("a search begins near a fit that stands above it") {
 
 TEST_CASE("a function that is new begins at zero near an earlier fit") {
   // Functions as the prior draws them push so hard that no motion stays finite.
-  CaseRun const run(text + R"(
+  CaseRun const run(near_text + R"(
 model unknown {
   input x [N]
   state y [m]

@@ -13,15 +13,15 @@ using json = nlohmann::json;
 
 namespace {
 
-std::filesystem::path const model = std::filesystem::path(SYSID_SOURCE_DIR) / "models/bouc_wen/bouc_wen.sysid";
+std::filesystem::path const bouc_wen_file = std::filesystem::path(SYSID_SOURCE_DIR) / "models/bouc_wen/bouc_wen.sysid";
 
 /// Three of the five candidates, few particles, a threshold that is soon reached.
-std::string shortened() {
-  std::string text = with(read_file(model), "bouc_wen(n = 1..4)", "bouc_wen(n = 1..2)");
+std::string shortened_selection() {
+  std::string text = with(read_file(bouc_wen_file), "bouc_wen(n = 1..4)", "bouc_wen(n = 1..2)");
   return with(text, "particles = 1000, quantile = 0.2, polish = yes", "particles = 200, target = 2");
 }
 
-std::map<std::string, std::string> promised_files(std::filesystem::path const& folder) {
+std::map<std::string, std::string> selection_files(std::filesystem::path const& folder) {
   std::map<std::string, std::string> files;
   for (auto const& entry : std::filesystem::recursive_directory_iterator(folder)) {
     std::string const name = entry.path().filename().string();
@@ -31,26 +31,27 @@ std::map<std::string, std::string> promised_files(std::filesystem::path const& f
   return files;
 }
 
-std::map<std::string, std::string> files_of(RunOptions options, std::vector<std::string> const& verbs = {"select", "predict"}) {
+std::map<std::string, std::string> files_of_selection(RunOptions options,
+                                                      std::vector<std::string> const& verbs = {"select", "predict"}) {
   TemporaryFolder folder;
   options.output = folder.path() / "results";
-  run_text(model, shortened(), options, verbs);
-  return promised_files(options.output);
+  run_text(bouc_wen_file, shortened_selection(), options, verbs);
+  return selection_files(options.output);
 }
 
-std::map<std::string, std::string> const& reference() {
-  static std::map<std::string, std::string> const files = files_of({});
+std::map<std::string, std::string> const& reference_selection() {
+  static std::map<std::string, std::string> const files = files_of_selection({});
   return files;
 }
 
 }  // namespace
 
 TEST_CASE("a selection leaves its populations, the particles of each model under its name, and a summary by model") {
-  REQUIRE(reference().contains("selection/populations.csv"));
-  CHECK(reference().contains("selection/particles_bouc_wen(n=2).csv"));
-  CHECK(reference().contains("selection/draws_bouc_wen(n=2).csv"));
-  CHECK(reference().contains("forecast/predict.csv"));
-  json const summary = json::parse(reference().at("selection/summary.json"));
+  REQUIRE(reference_selection().contains("selection/populations.csv"));
+  CHECK(reference_selection().contains("selection/particles_bouc_wen(n=2).csv"));
+  CHECK(reference_selection().contains("selection/draws_bouc_wen(n=2).csv"));
+  CHECK(reference_selection().contains("forecast/predict.csv"));
+  json const summary = json::parse(reference_selection().at("selection/summary.json"));
   REQUIRE(summary.at("models").size() == 3);
   double total = 0;
   for (auto const& [name, entry] : summary.at("models").items()) {
@@ -75,7 +76,7 @@ TEST_CASE("threads, lanes and a second run change no byte of a selection") {
     CAPTURE(threads);
     RunOptions options;
     options.execution = {lanes, threads};
-    CHECK(files_of(options) == reference());
+    CHECK(files_of_selection(options) == reference_selection());
   }
 }
 
@@ -87,31 +88,31 @@ TEST_CASE("a selection interrupted again and again ends with the bytes of an unb
   for (std::uint64_t const after : {1, 3, 5, 9}) {
     options.interrupt_after = after;
     options.resume = interruptions > 0;
-    if (run_text(model, shortened(), options, {"select", "predict"}).exit != 75) break;
+    if (run_text(bouc_wen_file, shortened_selection(), options, {"select", "predict"}).exit != 75) break;
     clear_interrupt();
     ++interruptions;
   }
   CHECK(interruptions > 1);
   options.interrupt_after = 0;
   options.resume = true;
-  CHECK(run_text(model, shortened(), options, {"select", "predict"}).exit != 75);
-  CHECK(promised_files(options.output) == reference());
+  CHECK(run_text(bouc_wen_file, shortened_selection(), options, {"select", "predict"}).exit != 75);
+  CHECK(selection_files(options.output) == reference_selection());
 }
 
 TEST_CASE("a selection interrupted while it polishes is not a finished one") {
-  std::string const text = with(shortened(), "target = 2", "target = 2, polish = yes, polish_samples = 2000");
+  std::string const text = with(shortened_selection(), "target = 2", "target = 2, polish = yes, polish_samples = 2000");
   auto const run = [&](std::filesystem::path const& folder, std::uint64_t after, bool resume) {
     RunOptions options;
     options.output = folder;
     options.interrupt_after = after;
     options.resume = resume;
-    int const exit = run_text(model, text, options, {"select"}).exit;
+    int const exit = run_text(bouc_wen_file, text, options, {"select"}).exit;
     clear_interrupt();
     return exit;
   };
   TemporaryFolder whole, folder;
   std::uint64_t const populations = [] {
-    json const summary = json::parse(reference().at("selection/summary.json"));
+    json const summary = json::parse(reference_selection().at("selection/summary.json"));
     return summary.at("populations").at("count").get<std::uint64_t>();
   }();
   CHECK(run(whole.path() / "results", 0, false) != 75);
@@ -120,31 +121,31 @@ TEST_CASE("a selection interrupted while it polishes is not a finished one") {
   json const summary = json::parse(read_file(folder.path() / "results/selection/summary.json"));
   CHECK(summary.at("populations").at("threshold") == 2);
   CHECK(run(folder.path() / "results", 0, true) != 75);
-  CHECK(promised_files(folder.path() / "results") == promised_files(whole.path() / "results"));
+  CHECK(selection_files(folder.path() / "results") == selection_files(whole.path() / "results"));
 }
 
 TEST_CASE("a prediction from stored particles is the one that follows the selection at once") {
   TemporaryFolder folder;
   RunOptions options;
   options.output = folder.path() / "results";
-  run_text(model, shortened(), options, {"select"});
-  run_text(model, shortened(), options, {"predict"});
-  CHECK(promised_files(options.output) == reference());
+  run_text(bouc_wen_file, shortened_selection(), options, {"select"});
+  run_text(bouc_wen_file, shortened_selection(), options, {"predict"});
+  CHECK(selection_files(options.output) == reference_selection());
   // Of another text of one candidate they are refused, whichever leads.
-  std::string const other = with(shortened(), "~ uniform(2, 200)", "~ uniform(3, 200)");
+  std::string const other = with(shortened_selection(), "~ uniform(2, 200)", "~ uniform(3, 200)");
   options.force = true;
-  CHECK_THROWS_AS(run_text(model, other, options, {"predict"}), UserError);
+  CHECK_THROWS_AS(run_text(bouc_wen_file, other, options, {"predict"}), UserError);
 }
 
 TEST_CASE("a distance of one's own, and one by root mean squares, select the same law") {
   for (std::string const distance : {"distance = rmse", "distance = abs(residual(displacement))"}) {
     CAPTURE(distance);
-    std::string const text =
-        with(with(shortened(), "target = 2)", "target = 2e-5)"), ", seed = 1\nforecast", ", " + distance + ", seed = 1\nforecast");
+    std::string const text = with(with(shortened_selection(), "target = 2)", "target = 2e-5)"), ", seed = 1\nforecast",
+                                  ", " + distance + ", seed = 1\nforecast");
     TemporaryFolder folder;
     RunOptions options;
     options.output = folder.path() / "results";
-    run_text(model, text, options, {"select"});
+    run_text(bouc_wen_file, text, options, {"select"});
     json const summary = json::parse(read_file(options.output / "selection/summary.json"));
     CHECK(summary.at("populations").at("threshold").get<double>() == doctest::Approx(2e-5));
     CHECK(summary.at("models").at("bouc_wen(n = 2)").at("probability").get<double>() > 0);

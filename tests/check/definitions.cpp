@@ -8,7 +8,7 @@ namespace {
 
 std::string const head = "state y\ninitial y = 1\nparameter k ~ normal(1, sd = 1)\nobserve d ~ normal(y, sd = 1)\n";
 
-std::string refused(std::string const& statements, std::string const& before = {}) {
+std::string refused_definitions(std::string const& statements, std::string const& before = {}) {
   return messages(before + "model m {\n" + head + statements + "\n}\n");
 }
 
@@ -20,14 +20,14 @@ TEST_CASE("definitions may stand behind their use, in any order") {
 }
 
 TEST_CASE("a loop of definitions is written out once") {
-  std::string const shown = refused("y' = a\nlet a = b + 1\nlet b = c + 1\nlet c = 2*a");
+  std::string const shown = refused_definitions("y' = a\nlet a = b + 1\nlet b = c + 1\nlet c = 2*a");
   CHECK(errors_in(shown) == 1);
   CHECK(shown.find("error[E2006]: this definition needs itself: a -> b -> c -> a") != std::string::npos);
-  CHECK(errors_in(refused("y' = a\nlet a = a + 1")) == 1);
+  CHECK(errors_in(refused_definitions("y' = a\nlet a = a + 1")) == 1);
 }
 
 TEST_CASE("a function that calls itself is refused") {
-  std::string const shown = refused("y' = f(y)\nfunction f(a) = a*f(a - 1)");
+  std::string const shown = refused_definitions("y' = f(y)\nfunction f(a) = a*f(a - 1)");
   CHECK(errors_in(shown) == 1);
   CHECK(shown.find("this definition needs itself: f() -> f()") != std::string::npos);
 }
@@ -89,15 +89,15 @@ TEST_CASE("what a definition depends on decides how often it is reported") {
 }
 
 TEST_CASE("names near the wrong one are offered") {
-  CHECK(refused("y' = -kk*y").find("help: did you mean `k`?") != std::string::npos);
-  CHECK(refused("y' = -ln(y)").find("help: did you mean `log`?") != std::string::npos);
-  CHECK(refused("y' = -pow(y, 2)").find("help: powers are written with ^: `a^b`") != std::string::npos);
-  CHECK(refused("y' = -sqr(y)").find("help: did you mean `sqrt`") != std::string::npos);
-  CHECK(refused("y' = -k(y)").find("`k` is a quantity, not a function") != std::string::npos);
+  CHECK(refused_definitions("y' = -kk*y").find("help: did you mean `k`?") != std::string::npos);
+  CHECK(refused_definitions("y' = -ln(y)").find("help: did you mean `log`?") != std::string::npos);
+  CHECK(refused_definitions("y' = -pow(y, 2)").find("help: powers are written with ^: `a^b`") != std::string::npos);
+  CHECK(refused_definitions("y' = -sqr(y)").find("help: did you mean `sqrt`") != std::string::npos);
+  CHECK(refused_definitions("y' = -k(y)").find("`k` is a quantity, not a function") != std::string::npos);
 }
 
 TEST_CASE("several independent mistakes are all reported, and nothing follows from them") {
-  std::string const shown = refused(
+  std::string const shown = refused_definitions(
       "y' = -k*y + unknown1\nlet a = unknown2\nlet b = a + 1\nparameter p ~ nrmal(0, sd = 1)\nlet c = p + b\nderive e = sqrt(c, "
       "c)\n"
       "observe f ~ normal(b, sd = unknown3)");
@@ -107,9 +107,10 @@ TEST_CASE("several independent mistakes are all reported, and nothing follows fr
 }
 
 TEST_CASE("a mistake in a model is not repeated by the tasks that use it") {
-  std::string const shown = refused("y' = -kk*y") + messages("model m {\n" + head +
-                                                             "y' = -kk*y\n}\nt = simulate m with samples = 10\nf = fit m with mh\n"
-                                                             "p = predict f on nothing");
+  std::string const shown =
+      refused_definitions("y' = -kk*y") + messages("model m {\n" + head +
+                                                   "y' = -kk*y\n}\nt = simulate m with samples = 10\nf = fit m with mh\n"
+                                                   "p = predict f on nothing");
   CHECK(shown.find("model `m`") == std::string::npos);
   CHECK(shown.find("fit `f`") == std::string::npos);
 }

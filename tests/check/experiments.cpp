@@ -6,22 +6,23 @@ using namespace sysid::test;
 
 namespace {
 
-std::string const model =
+std::string const fleet_model =
     "model m {\ninput x\nstate y [m]\ninitial y = 0\nparameter dose per experiment [g]\nparameter mass per experiment [kg] = 2\n"
     "parameter k per experiment [N/mm] ~ log_uniform(1, 10)\nparameter c ~ log_uniform(1, 10)\n"
     "y' = x - k*y/mass*c*dose\nobserve displacement ~ normal(y, sd = 1)\n}\n";
 
-std::string block(std::string const& name, std::string const& more) {
+std::string block_of(std::string const& name, std::string const& more) {
   return "data " + name + " {\nfile \"d.csv\"\ntime t\ninput x = x hold linear\nmeasure displacement = y\n" +
          "split early = rows 1..10, late = rows 11..20\n" + more + "\n}\n";
 }
-std::string const blocks = block("bench", "constant dose = 30 [mg]") + block("hall", "constant dose = 5; constant mass = 700 [g]") +
-                           block("field", "constant dose = 1; constant k = 3");
+std::string const blocks = block_of("bench", "constant dose = 30 [mg]") +
+                           block_of("hall", "constant dose = 5; constant mass = 700 [g]") +
+                           block_of("field", "constant dose = 1; constant k = 3");
 
 std::vector<ExperimentUse> fitted(std::string const& data) {
-  return std::get<FitTask>(checked(model + blocks + "f = fit m to " + data + " with mh\n").tasks.at(0).what).experiments;
+  return std::get<FitTask>(checked(fleet_model + blocks + "f = fit m to " + data + " with mh\n").tasks.at(0).what).experiments;
 }
-std::string refused(std::string const& text) { return messages(model + blocks + text + "\n"); }
+std::string refused_tasks(std::string const& text) { return messages(fleet_model + blocks + text + "\n"); }
 
 }  // namespace
 
@@ -54,7 +55,7 @@ TEST_CASE("constants are converted to the zero point of their parameter, and ref
       "parameter Tk per experiment [K] = 300\nparameter rise per experiment [delta_degC] = 1\n"
       "parameter w per experiment [rad/s] = 1\nparameter k [1/s] ~ log_uniform(1, 10)\n"
       "T' = -k*(T - Ta - rise)*sin(w*1 [s])*Tk/300 [K]\nobserve displacement ~ normal(T, sd = 1)\n}\n";
-  auto const with = [&](std::string const& constants) { return room + block("d", constants) + "f = fit room to d with map\n"; };
+  auto const with = [&](std::string const& constants) { return room + block_of("d", constants) + "f = fit room to d with map\n"; };
   auto const values = [&](std::string const& constants) {
     return std::get<FitTask>(checked(with(constants)).tasks.at(0).what).experiments.at(0).constants;
   };
@@ -90,7 +91,7 @@ TEST_CASE("values and rates of a task are not taken in cycles for radians, and w
 
 TEST_CASE("a prediction has the parameters of the fitted experiment of its block, else of a new one") {
   auto const of = [](std::string const& tasks) {
-    return std::get<PredictTask>(checked(model + blocks + tasks).tasks.at(1).what).fitted;
+    return std::get<PredictTask>(checked(fleet_model + blocks + tasks).tasks.at(1).what).fitted;
   };
   CHECK(of("f = fit m to bench.early, hall with mh\np = predict f on hall.late, field, bench.late\n") ==
         std::vector<int>{1, -1, 0});
@@ -98,30 +99,31 @@ TEST_CASE("a prediction has the parameters of the fitted experiment of its block
 }
 
 TEST_CASE("what a data block fixes must be a parameter that experiments have for themselves") {
-  std::string const other = messages(model + block("b", "constant dose = 1; constant dosis = 2") + "f = fit m to b with mh\n");
+  std::string const other =
+      messages(fleet_model + block_of("b", "constant dose = 1; constant dosis = 2") + "f = fit m to b with mh\n");
   CHECK(other.find("error[E6301]") != std::string::npos);
   CHECK(other.find("did you mean") != std::string::npos);
-  CHECK(messages(model + block("b", "constant dose = 1; constant c = 2") + "f = fit m to b with mh\n").find("error[E6302]") !=
+  CHECK(messages(fleet_model + block_of("b", "constant dose = 1; constant c = 2") + "f = fit m to b with mh\n")
+            .find("error[E6302]") != std::string::npos);
+  CHECK(messages(fleet_model + block_of("b", "") + "f = fit m to b with mh\n").find("error[E6303]") != std::string::npos);
+  CHECK(messages(fleet_model + block_of("b", "constant dose = 1 [s]") + "f = fit m to b with mh\n").find("error[E2014]") !=
         std::string::npos);
-  CHECK(messages(model + block("b", "") + "f = fit m to b with mh\n").find("error[E6303]") != std::string::npos);
-  CHECK(messages(model + block("b", "constant dose = 1 [s]") + "f = fit m to b with mh\n").find("error[E2014]") !=
-        std::string::npos);
-  CHECK(messages(model + block("b", "constant dose = 1; constant dose = 2")).find("error[E4104]") != std::string::npos);
+  CHECK(messages(fleet_model + block_of("b", "constant dose = 1; constant dose = 2")).find("error[E4104]") != std::string::npos);
   // Said once, however many tasks use the block.
-  CHECK(errors_in(messages(model + block("b", "constant dose = 1; constant c = 2") +
+  CHECK(errors_in(messages(fleet_model + block_of("b", "constant dose = 1; constant c = 2") +
                            "f = fit m to b with mh\ng = fit m to b.late with mh\n")) == 1);
   // A block may serve several models.
   std::string const second =
       "model n {\ninput x\nstate y [m]\ninitial y = 0\nparameter c ~ log_uniform(1, 10)\ny' = x - c*y\n"
       "observe displacement ~ normal(y, sd = 1)\n}\n";
-  CHECK(messages(model + second + blocks + "f = fit n to bench with mh\n").empty());
+  CHECK(messages(fleet_model + second + blocks + "f = fit n to bench with mh\n").empty());
 }
 
 TEST_CASE("rows are used once") {
-  CHECK(refused("f = fit m to bench, hall, bench with mh").find("error[E6304]: `bench` is used twice") != std::string::npos);
-  CHECK(refused("f = fit m to bench.late, bench with mh").find("error[E6304]: `bench` and `bench.late` share rows") !=
+  CHECK(refused_tasks("f = fit m to bench, hall, bench with mh").find("error[E6304]: `bench` is used twice") != std::string::npos);
+  CHECK(refused_tasks("f = fit m to bench.late, bench with mh").find("error[E6304]: `bench` and `bench.late` share rows") !=
         std::string::npos);
-  CHECK(errors_in(refused("f = fit m to bench.early, bench.late with mh")) == 0);
+  CHECK(errors_in(refused_tasks("f = fit m to bench.early, bench.late with mh")) == 0);
 }
 
 TEST_CASE("a shared parameter's prior cannot read what experiments have for themselves") {
@@ -134,7 +136,7 @@ TEST_CASE("a shared parameter's prior cannot read what experiments have for them
 
 TEST_CASE("a simulation takes values of per-experiment parameters, or their value in the model") {
   auto const task = [](std::string const& values) {
-    return std::get<SimulateTask>(checked(model + "s = simulate m with values(" + values +
+    return std::get<SimulateTask>(checked(fleet_model + "s = simulate m with values(" + values +
                                           "), input x = gaussian(sd = 1), noise = model, samples = 9, step = 1\n")
                                       .tasks.at(0)
                                       .what)

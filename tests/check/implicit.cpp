@@ -15,7 +15,7 @@ std::string const braking =
     "model braking {\nstate v [m/s]\nparameter a [m/s^3] ~ log_uniform(0.1, 10)\ninitial v = 10, v' = -1\n(v')^2 = a*v\n"
     "observe speed ~ normal(v, sd = 0.1)\n}\n";
 
-std::string refused(std::string const& statements) { return messages("model m {\n" + statements + "\n}\n"); }
+std::string refused_model(std::string const& statements) { return messages("model m {\n" + statements + "\n}\n"); }
 
 }  // namespace
 
@@ -82,17 +82,17 @@ TEST_CASE("what no differentiation can mend is refused by name") {
   std::string const driven =
       "input u [m]\nstate y [m], force [N]\ninitial y = 0, y' = 0\ny'' + y = force\ny = u\n"
       "observe d ~ normal(force, sd = 1)\n";
-  CHECK(refused(driven).find("error[E3015]: this constraint prescribes a motion") != std::string::npos);
+  CHECK(refused_model(driven).find("error[E3015]: this constraint prescribes a motion") != std::string::npos);
   std::string const tied = "input u\nstate y, a, b\ninitial y = 0\na = u\na = y\ny' = b\nobserve d ~ normal(y, sd = 1)\n";
-  CHECK(refused(tied).find("error[E3016]") != std::string::npos);
+  CHECK(refused_model(tied).find("error[E3016]") != std::string::npos);
   std::string const open = "state y, a, b\ninitial y = 0\ny' = a + b\na + b = 1\n2*a + 2*b = y\nobserve d ~ normal(y, sd = 1)\n";
-  CHECK(refused(open).find("error[E3005]") != std::string::npos);
+  CHECK(refused_model(open).find("error[E3005]") != std::string::npos);
 }
 
 TEST_CASE("initial values off a constraint, or off its time derivative, are refused; those on it for every parameter are not") {
   auto const with_initial = [](std::string const& values) {
-    return refused("state x, y, pull\nparameter l ~ log_uniform(1, 2)\ninitial " + values +
-                   "\nx'' = -pull*x\ny'' = -pull*y - 9.81\nx^2 + y^2 = l^2\nobserve d ~ normal(x, sd = 1)\n");
+    return refused_model("state x, y, pull\nparameter l ~ log_uniform(1, 2)\ninitial " + values +
+                         "\nx'' = -pull*x\ny'' = -pull*y - 9.81\nx^2 + y^2 = l^2\nobserve d ~ normal(x, sd = 1)\n");
   };
   CHECK(with_initial("x = l*sin(0.3), y = -l*cos(0.3), x' = 0, y' = 0") == "");
   CHECK(with_initial("x = 0.8*l, y = -0.6*l, x' = 0.3, y' = 0.4") == "");

@@ -9,7 +9,7 @@ using namespace sysid::test;
 namespace {
 
 Model with(std::string const& parameters) { return model_of(parameters + "\nobserve c ~ normal(a, sd = 1)"); }
-std::string refused(std::string const& parameters) {
+std::string refused_parameters(std::string const& parameters) {
   return messages("model m {\n" + parameters + "\nobserve c ~ normal(a, sd = 1)\n}\n");
 }
 
@@ -40,37 +40,38 @@ TEST_CASE("bounds count as what a prior reads") {
 }
 
 TEST_CASE("priors that need each other are refused with the loop written out") {
-  std::string const shown =
-      refused("parameter a ~ normal(b, sd = 1)\nparameter b ~ normal(0, sd = 1, upper = c)\nparameter c ~ normal(a, sd = 1)");
+  std::string const shown = refused_parameters(
+      "parameter a ~ normal(b, sd = 1)\nparameter b ~ normal(0, sd = 1, upper = c)\nparameter c ~ normal(a, sd = 1)");
   CHECK(errors_in(shown) == 1);
   CHECK(shown.find("error[E2111]: these priors need each other: a -> b -> c -> a") != std::string::npos);
-  CHECK(errors_in(refused("parameter a ~ normal(a, sd = 1)")) == 1);
+  CHECK(errors_in(refused_parameters("parameter a ~ normal(a, sd = 1)")) == 1);
 }
 
 TEST_CASE("a prior may not read what moves") {
   for (char const* moving : {"x", "t", "y"}) {
     CAPTURE(moving);
-    std::string const shown =
-        refused(std::string("input x\ntime t\nstate y\ninitial y = 0\ny' = a\nparameter a ~ normal(") + moving + ", sd = 1)");
+    std::string const shown = refused_parameters(
+        std::string("input x\ntime t\nstate y\ninitial y = 0\ny' = a\nparameter a ~ normal(") + moving + ", sd = 1)");
     CHECK(errors_in(shown) == 1);
     CHECK(shown.find("error[E2110]") != std::string::npos);
   }
 }
 
 TEST_CASE("one spelling of a width is wanted, and is named") {
-  CHECK(refused("parameter a ~ normal(0, sd = 1, precision = 1)").find("`sd` and `precision` say the same thing twice") !=
+  CHECK(
+      refused_parameters("parameter a ~ normal(0, sd = 1, precision = 1)").find("`sd` and `precision` say the same thing twice") !=
+      std::string::npos);
+  CHECK(refused_parameters("parameter a ~ normal(0, 1)").find("error[E2106]: say which this is: `sd`, `variance` or `precision`") !=
         std::string::npos);
-  CHECK(refused("parameter a ~ normal(0, 1)").find("error[E2106]: say which this is: `sd`, `variance` or `precision`") !=
-        std::string::npos);
-  CHECK(refused("parameter a ~ normal(0, precison = 1)").find("help: did you mean `precision`?") != std::string::npos);
-  CHECK(refused("parameter a ~ normal(mean = 0, mean = 1, sd = 1)").find("`mean` is given twice") != std::string::npos);
+  CHECK(refused_parameters("parameter a ~ normal(0, precison = 1)").find("help: did you mean `precision`?") != std::string::npos);
+  CHECK(refused_parameters("parameter a ~ normal(mean = 0, mean = 1, sd = 1)").find("`mean` is given twice") != std::string::npos);
 }
 
 TEST_CASE("impossible numbers are refused before the run") {
   for (char const* call : {"normal(0, sd = -1)", "normal(0, sd = 0)", "uniform(2, 1)", "log_uniform(0, 1)", "gamma(-1, rate = 1)",
                            "normal(0, sd = 1, lower = 2, upper = 1)"}) {
     CAPTURE(call);
-    std::string const shown = refused(std::string("parameter a ~ ") + call);
+    std::string const shown = refused_parameters(std::string("parameter a ~ ") + call);
     CHECK(errors_in(shown) == 1);
     CHECK(shown.find("error[E2112]") != std::string::npos);
   }
@@ -80,22 +81,22 @@ TEST_CASE("bounds that leave nothing are refused before the run, those that leav
   for (char const* call :
        {"normal(0, sd = 1, lower = 50)", "log_normal(1, sd = 1, upper = -1)", "exponential(mean = 1, upper = 0)"}) {
     CAPTURE(call);
-    CHECK(refused(std::string("parameter a ~ ") + call).find("error[E2115]") != std::string::npos);
+    CHECK(refused_parameters(std::string("parameter a ~ ") + call).find("error[E2115]") != std::string::npos);
   }
   for (char const* call : {"normal(0, sd = 1, lower = 30)", "exponential(mean = 1, lower = 0.5)", "flat(lower = 0)"}) {
     CAPTURE(call);
-    CHECK(refused(std::string("parameter a ~ ") + call).empty());
+    CHECK(refused_parameters(std::string("parameter a ~ ") + call).empty());
   }
 }
 
 TEST_CASE("a share has no unit but those of pure numbers") {
-  CHECK(refused("parameter a [m] ~ beta(2, 2)").find("error[E2117]") != std::string::npos);
-  CHECK(refused("parameter a [percent] ~ beta(2, 2)").empty());
-  CHECK(refused("parameter a ~ beta(2, 2)").empty());
+  CHECK(refused_parameters("parameter a [m] ~ beta(2, 2)").find("error[E2117]") != std::string::npos);
+  CHECK(refused_parameters("parameter a [percent] ~ beta(2, 2)").empty());
+  CHECK(refused_parameters("parameter a ~ beta(2, 2)").empty());
 }
 
 TEST_CASE("a width that some value of the priors makes positive is left to the run") {
-  auto const refused = [](std::string const& prior, std::string const& width) {
+  auto const refused_parameters = [](std::string const& prior, std::string const& width) {
     std::string const said = messages("model line {\n  input x\n  parameter b ~ half_normal(sd = 1)\n  parameter s ~ " + prior +
                                       "\n  observe y ~ normal(b*x, " + width + ")\n}\n");
     bool const impossible = said.find("error[E2112]") != std::string::npos;
@@ -104,13 +105,13 @@ TEST_CASE("a width that some value of the priors makes positive is left to the r
   };
   for (char const* width : {"sd = s", "sd = 2*s/3", "variance = s", "precision = s", "sd = s - b", "sd = min(s, b)", "sd = 1/s"}) {
     CAPTURE(width);
-    CHECK(refused("uniform(-2, -1)", width));
-    CHECK(refused("uniform(-2, 0)", width));
-    CHECK(refused("normal(-9, sd = 0.1, upper = -b)", width));
-    CHECK(!refused("uniform(-2, 0.1)", width));
-    CHECK(!refused("normal(-9, sd = 0.1)", width));
+    CHECK(refused_parameters("uniform(-2, -1)", width));
+    CHECK(refused_parameters("uniform(-2, 0)", width));
+    CHECK(refused_parameters("normal(-9, sd = 0.1, upper = -b)", width));
+    CHECK(!refused_parameters("uniform(-2, 0.1)", width));
+    CHECK(!refused_parameters("normal(-9, sd = 0.1)", width));
   }
   for (char const* width :
        {"sd = -s", "sd = abs(s)", "sd = s^2", "sd = s*s", "sd = sqrt(-s)", "sd = exp(s)", "sd = max(s, b)", "sd = s + b"})
-    CHECK(!refused("uniform(-2, -1)", width));
+    CHECK(!refused_parameters("uniform(-2, -1)", width));
 }

@@ -6,7 +6,7 @@ using namespace sysid::test;
 
 namespace {
 
-std::string const head =
+std::string const reduced_head =
     "input x\nstate y\ninitial y = 0, y' = 0\nparameter m ~ normal(1, sd = 1)\nparameter c = 1\nparameter k = 1\n"
     "observe d ~ normal(y, sd = 1)\n";
 Values const point = {{"x", 3}, {"y", 0.5}, {"y'", -2}, {"m", 4}, {"c", 0.25}, {"k", 6}};
@@ -26,7 +26,7 @@ TEST_CASE("an equation means the same in every arrangement") {
         "y'' = (x - c*y' - k*y)/m", "0 = x - k*y - c*y' - m*y''", "2*(m*y'' + c*y') + 2*k*y = 2*x", "(x - m*y'')/(c*y' + k*y) = 1",
         "m*y''/2 + m*y''/2 = x - (c*y' + k*y)"}) {
     CAPTURE(equation);
-    Model const model = model_of(head + equation);
+    Model const model = model_of(reduced_head + equation);
     REQUIRE(model.states.size() == 2);
     CHECK(rate_of(model, "y", point) == -2);
     CHECK(rate_of(model, "y'", point) == near(acceleration));
@@ -90,7 +90,7 @@ TEST_CASE("a highest derivative may stand in a definition or a function") {
        {"let inertia = m*y''\ninertia + c*y' + k*y = x", "let right = x - damping\nlet damping = c*y' + k*y\nm*y'' = right",
         "function force(a) = m*a\nforce(y'') + c*y' + k*y = x", "function inertia() = m*y''\ninertia() + c*y' + k*y = x"}) {
     CAPTURE(statements);
-    Model const model = model_of(head + statements);
+    Model const model = model_of(reduced_head + statements);
     CHECK(model.states.size() == 2);
     CHECK(rate_of(model, "y'", point) == near(acceleration));
   }
@@ -106,7 +106,7 @@ TEST_CASE("a derived acceleration does not raise the order of its state") {
 
 TEST_CASE("an observed or derived highest derivative is its solution") {
   Model const model =
-      model_of(head + "m*y'' + c*y' + k*y = x\nobserve acceleration ~ normal(y'', sd = 1)\nderive power = m*y''*y'");
+      model_of(reduced_head + "m*y'' + c*y' + k*y = x\nobserve acceleration ~ normal(y'', sd = 1)\nderive power = m*y''*y'");
   CHECK(at(model, model.channels[1].noise.arguments[0], point) == near(acceleration));
   CHECK(at(model, model.derived[0].value, point) == near(4 * acceleration * -2));
   CHECK(model.derived[0].per_sample);
@@ -115,7 +115,7 @@ TEST_CASE("an observed or derived highest derivative is its solution") {
 TEST_CASE("an equation that is not linear in a highest derivative makes the model implicit") {
   for (char const* equation : {"(y'')^2 = x", "sin(y'') = x", "m*y'' + abs(y'') = x", "y''*y'' = x", "1/y'' = x"}) {
     CAPTURE(equation);
-    Model const model = model_of(head + equation);
+    Model const model = model_of(reduced_head + equation);
     REQUIRE(model.implicit);
     CHECK(model.implicit->unknown == "y''");
   }
@@ -128,7 +128,7 @@ TEST_CASE("equations that say the same thing twice leave a state undetermined") 
 }
 
 TEST_CASE("the surplus equation is the one that finds no state left") {
-  std::string const shown = messages("model m {\n" + head + "m*y'' = x\nc*y'' = k*y\n}\n");
+  std::string const shown = messages("model m {\n" + reduced_head + "m*y'' = x\nc*y'' = k*y\n}\n");
   CHECK(errors_in(shown) == 1);
   CHECK(shown.find("test.sysid:10:1: error[E3003]") != std::string::npos);
 }

@@ -6,11 +6,11 @@
 #include <limits>
 
 #include "core/diagnostic.hpp"
+#include "core/not_finite.hpp"
 
 using namespace sysid;
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr SettingRow rows[] = {
     {"samples", SettingKind::integer, "25000", 1, infinity, "", "iterations"},
     {"stop", SettingKind::real, "1e-4", 0, 1, "", "threshold"},

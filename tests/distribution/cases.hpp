@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/not_finite.hpp"
 #include "distribution/distribution.hpp"
 
 namespace sysid::test {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Canonical arguments; bounds infinite where there is no truncation.
 struct Case {
@@ -104,6 +103,13 @@ inline std::vector<Case> all_cases() {
   std::vector<Case> cases = whole_cases();
   cases.insert(cases.end(), truncated_cases().begin(), truncated_cases().end());
   return cases;
+}
+
+/// For messages.
+inline std::string describe(Case const& use) {
+  std::string text = use.name + "(";
+  for (double const argument : use.arguments) text += std::to_string(argument) + " ";
+  return text + "| " + std::to_string(use.lower) + ", " + std::to_string(use.upper) + ")";
 }
 
 }  // namespace sysid::test

@@ -34,12 +34,6 @@ struct Counting {
   double probability(double y) const { return std::exp(log_probability(y)); }
 };
 
-std::string describe(Case const& use) {
-  std::string text = use.name;
-  for (double const argument : use.arguments) text += " " + std::to_string(argument);
-  return text;
-}
-
 double log_probability(Case const& given, double y) { return Counting(given).log_probability(y); }
 
 }  // namespace

@@ -16,12 +16,6 @@ using test::Case;
 
 namespace {
 
-std::string describe(Case const& use) {
-  std::string text = use.name + "(";
-  for (double const argument : use.arguments) text += std::to_string(argument) + " ";
-  return text + "| " + std::to_string(use.lower) + ", " + std::to_string(use.upper) + ")";
-}
-
 /// The log density and the sampler's coordinate of one case, as functions of a number.
 struct Evaluated {
   Graph graph;
@@ -208,7 +202,7 @@ TEST_CASE("coordinates far out stay inside the bounds and finite") {
     auto const bound = [&](std::optional<NodeId> const& node, double otherwise) {
       return node ? *evaluated.graph.constant_value(*node) : otherwise;
     };
-    double const low = bound(evaluated.bounds.lower, -test::infinity), high = bound(evaluated.bounds.upper, test::infinity);
+    double const low = bound(evaluated.bounds.lower, -infinity), high = bound(evaluated.bounds.upper, infinity);
     for (double const u : {-700.0, -300.0, -50.0, 0.0, 50.0, 300.0, 700.0}) {
       double const x = evaluated.at(evaluated.coordinate.value, u);
       CAPTURE(describe(given));
@@ -231,7 +225,7 @@ TEST_CASE("inadmissible arguments are refused with a reason, by draw as well") {
     CHECK_FALSE(row.refuse(none).empty());
     CHECK_FALSE(row.refuse(negative).empty());
     Stream stream{StreamKey{}};
-    CHECK_THROWS_AS(draw(row, none, -test::infinity, test::infinity, stream), UserError);
+    CHECK_THROWS_AS(draw(row, none, -infinity, infinity, stream), UserError);
   }
   for (Case const& given : test::whole_cases()) CHECK(given.row().refuse(given.arguments).empty());
 }

@@ -105,7 +105,7 @@ TEST_CASE("a truncated density keeps its digits in the far tail") {
 }
 
 TEST_CASE("an interval without mass has density zero and no draws") {
-  CHECK(log_density_at({"uniform", {0, 1}, 2, 3}, 2.5) == -test::infinity);
+  CHECK(log_density_at({"uniform", {0, 1}, 2, 3}, 2.5) == -infinity);
   Stream stream{StreamKey{}};
   std::vector<double> const unit = {0, 1};
   auto const code = [&](DistributionRow const& row, std::vector<double> const& arguments, double lower, double upper) {
@@ -162,7 +162,7 @@ TEST_CASE("a bound that is a parameter cuts off like a number") {
   use.arguments = {graph.constant(1)};
   use.upper = bound;
   NodeId const density = log_density(graph, use, graph.constant(0.2));
-  CHECK(graph.evaluate(density, [](NodeId) { return 0.3; }) == log_density_at({"half_normal", {1}, -test::infinity, 0.3}, 0.2));
+  CHECK(graph.evaluate(density, [](NodeId) { return 0.3; }) == log_density_at({"half_normal", {1}, -infinity, 0.3}, 0.2));
   Support const bounds = support(graph, use);
   CHECK(bounds.lower == graph.constant(0));
   CHECK(bounds.upper == bound);
@@ -171,8 +171,8 @@ TEST_CASE("a bound that is a parameter cuts off like a number") {
 TEST_CASE("infinite bounds are none") {
   Graph graph;
   Distribution use = Case{"normal", {0, 1}}.in(graph);
-  use.lower = graph.constant(-test::infinity);
-  use.upper = graph.constant(test::infinity);
+  use.lower = graph.constant(-infinity);
+  use.upper = graph.constant(infinity);
   CHECK_FALSE(support(graph, use).lower.has_value());
   CHECK_FALSE(support(graph, use).upper.has_value());
   CHECK(mass(graph, use) == graph.constant(1));

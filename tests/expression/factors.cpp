@@ -7,7 +7,7 @@ using namespace sysid;
 
 namespace {
 
-struct Leaves {
+struct FactorLeaves {
   Graph graph;
   NodeId x = graph.leaf(LeafKind::state, 0), y = graph.leaf(LeafKind::state, 1);
   NodeId number(double value) { return graph.constant(value); }
@@ -19,7 +19,7 @@ struct Leaves {
 }  // namespace
 
 TEST_CASE("the order of factors, signs and constants do not count") {
-  Leaves l;
+  FactorLeaves l;
   NodeId const xy = l.graph.multiply(l.x, l.y);
   CHECK(l.same(xy, l.graph.multiply(l.graph.multiply(l.number(-3), l.y), l.x)));
   CHECK(l.same(xy, l.graph.negate(xy)));
@@ -30,7 +30,7 @@ TEST_CASE("the order of factors, signs and constants do not count") {
 }
 
 TEST_CASE("powers are multiplied out where that holds for every sign") {
-  Leaves l;
+  FactorLeaves l;
   CHECK(l.same(l.to(l.x, 3), l.graph.multiply(l.x, l.graph.multiply(l.x, l.x))));
   CHECK(l.same(l.to(l.graph.multiply(l.x, l.y), 2), l.graph.multiply(l.to(l.x, 2), l.to(l.y, 2))));
   // (x^2)^(1/2) is |x|.
@@ -38,7 +38,7 @@ TEST_CASE("powers are multiplied out where that holds for every sign") {
 }
 
 TEST_CASE("magnitudes are those of factors, and their even powers lose them") {
-  Leaves l;
+  FactorLeaves l;
   CHECK(l.same(l.magnitude(l.graph.multiply(l.number(-2), l.x)), l.magnitude(l.x)));
   CHECK(l.same(l.graph.multiply(l.magnitude(l.x), l.magnitude(l.y)), l.magnitude(l.graph.multiply(l.x, l.y))));
   CHECK(l.same(l.graph.multiply(l.magnitude(l.x), l.magnitude(l.x)), l.to(l.x, 2)));

@@ -10,7 +10,7 @@ using namespace sysid;
 
 namespace {
 
-struct Leaves {
+struct SwitchingLeaves {
   Graph graph;
   Term x{graph, graph.leaf(LeafKind::state, 0)}, y{graph, graph.leaf(LeafKind::state, 1)};
   Term u{graph, graph.leaf(LeafKind::input, 0)}, t{graph, graph.leaf(LeafKind::time)};
@@ -22,7 +22,7 @@ struct Leaves {
 }  // namespace
 
 TEST_CASE("each operation that switches gives what it compares") {
-  Leaves s;
+  SwitchingLeaves s;
   CHECK(s.of(abs(s.x * s.p)).front().value == (s.x * s.p).id);
   CHECK(s.of(sign(s.x)).front().value == s.x.id);
   CHECK(s.of(min(s.x, s.y)).front().value == (s.x - s.y).id);
@@ -37,7 +37,7 @@ TEST_CASE("each operation that switches gives what it compares") {
 }
 
 TEST_CASE("what bends is told from what may jump, also where both switch at one place") {
-  Leaves s;
+  SwitchingLeaves s;
   CHECK_FALSE(s.of(abs(s.x)).front().jumps);
   CHECK_FALSE(s.of(max(s.x, s.y)).front().jumps);
   CHECK(s.of(sign(s.x)).front().jumps);
@@ -49,7 +49,7 @@ TEST_CASE("what bends is told from what may jump, also where both switch at one 
 }
 
 TEST_CASE("surfaces of time and inputs alone are told from those of states") {
-  Leaves s;
+  SwitchingLeaves s;
   auto const of_input = s.of(abs(s.u)), of_time = s.of(select(less(s.t, s.p), s.x, s.y)), of_state = s.of(abs(s.x - s.u));
   REQUIRE(of_input.size() == 1);
   CHECK(of_input.front().reads_inputs);
@@ -63,7 +63,7 @@ TEST_CASE("surfaces of time and inputs alone are told from those of states") {
 }
 
 TEST_CASE("what moves with parameters alone is none, and equal surfaces are one") {
-  Leaves s;
+  SwitchingLeaves s;
   CHECK(s.of(abs(s.p) * s.x).empty());
   CHECK(s.of(s.x * s.y + pow(s.x, s.p)).empty());
   CHECK(s.of(abs(s.x) * pow(abs(s.x), s.p) * sign(s.x)).size() == 1);

@@ -11,8 +11,6 @@ using namespace sysid::gaussian_process;
 
 namespace {
 
-Covariance kernel(char const* name, std::vector<int> columns = {0}) { return {*find_kernel(name), std::move(columns)}; }
-
 /// What multiplies each standard normal coefficient at points [N x D]: [N x size].
 Eigen::MatrixXd functions(KernelRow const& row, Numbers parameters, Box const& box, Eigen::MatrixXd const& points) {
   Graph graph;

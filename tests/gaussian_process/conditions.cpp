@@ -7,6 +7,7 @@
 
 #include "gaussian_process/dense.hpp"
 #include "gaussian_process/jet.hpp"
+#include "gaussian_process/made.hpp"
 #include "gaussian_process/regression.hpp"
 #include "gaussian_process/state_space_model.hpp"
 #include "gaussian_process/textbook.hpp"
@@ -17,8 +18,6 @@ using namespace sysid::gaussian_process;
 using textbook::Matrix, textbook::Real;
 
 namespace {
-
-Covariance kernel(char const* name, std::vector<int> columns = {0}) { return {*find_kernel(name), std::move(columns)}; }
 
 /// Value and slopes at one point.
 std::vector<Condition> rest_at(std::vector<double> const& point) {

@@ -8,11 +8,7 @@
 using namespace sysid;
 using namespace sysid::gaussian_process;
 
-namespace {
-
-Covariance kernel(char const* name, std::vector<int> columns) { return {*find_kernel(name), std::move(columns)}; }
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("an expression adds and multiplies what its kernels say of the inputs they read") {
   Covariance const whole = (kernel("matern32", {2}) + kernel("constant", {})) * kernel("periodic", {0}) + kernel("linear", {1, 0});

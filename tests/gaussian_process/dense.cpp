@@ -9,16 +9,14 @@
 #include <limits>
 #include <numbers>
 
+#include "core/not_finite.hpp"
+#include "gaussian_process/made.hpp"
 #include "gaussian_process/textbook.hpp"
 
 using namespace sysid;
 using namespace sysid::gaussian_process;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Covariance kernel(char const* name, std::vector<int> columns = {0}) { return {*find_kernel(name), std::move(columns)}; }
 
 /// 40 observations of two inputs with a mean of three columns: level, line, and a second input's square.
 Observations with_mean(std::vector<double> const& sds) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/not_finite.hpp"
 #include "gaussian_process/dense.hpp"
 #include "gaussian_process/made.hpp"
 #include "gaussian_process/maximise.hpp"
@@ -17,10 +18,6 @@ using namespace sysid;
 using namespace sysid::gaussian_process;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Covariance kernel(char const* name, std::vector<int> columns = {0}) { return {*find_kernel(name), std::move(columns)}; }
 
 Likelihood dense(Covariance const& covariance, Observations const& observations) {
   return

@@ -12,6 +12,9 @@
 
 namespace sysid::gaussian_process {
 
+/// Of these columns of the inputs.
+inline Covariance kernel(char const* name, std::vector<int> columns = {0}) { return {*find_kernel(name), std::move(columns)}; }
+
 inline Eigen::MatrixXd made_inputs(Eigen::Index count, Eigen::Index columns, double width, std::uint64_t index = 0) {
   Stream stream({.seed = 11, .purpose = Purpose::test, .index = index});
   Eigen::MatrixXd result(count, columns);

@@ -14,8 +14,6 @@ using namespace sysid::gaussian_process;
 
 namespace {
 
-Covariance kernel(char const* name, std::vector<int> columns = {0}) { return {*find_kernel(name), std::move(columns)}; }
-
 /// Unequal spacing in no order, two equal instants among them.
 Observations record(Eigen::Index count, int columns) {
   Observations o;

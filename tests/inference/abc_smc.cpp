@@ -17,7 +17,6 @@ using namespace sysid;
 
 namespace {
 
-using testing::infinity;
 using testing::Prior;
 using testing::size_of_first;
 using testing::Toy;

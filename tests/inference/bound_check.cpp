@@ -7,13 +7,12 @@
 #include <functional>
 #include <limits>
 
+#include "core/not_finite.hpp"
 #include "core/random.hpp"
 
 using namespace sysid;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> draws_of(std::function<double(Stream&)> const& draw, int n = 2000) {
   Stream stream({5, Purpose::test, 0, 0});

@@ -39,7 +39,7 @@ TEST_CASE("a change of width is a move of the limits") {
   narrow.declared = wide.declared = {1, 5};
   narrow.sd = {0.5, 0.1};
   wide.sd = {0.5, 0.3};
-  Move const move = largest_move(narrow, wide);
+  sysid::Move const move = largest_move(narrow, wide);
   CHECK(move.parameter == 1);
   CHECK(move.value == 0);
   CHECK(move.size == doctest::Approx(2).epsilon(1e-12));

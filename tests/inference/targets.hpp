@@ -10,12 +10,11 @@
 #include <vector>
 
 #include "core/elementary.hpp"
+#include "core/not_finite.hpp"
 #include "inference/backend.hpp"
 #include "likelihood/target.hpp"
 
 namespace sysid::testing {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A parameter with a normal prior on the line, or a uniform or log-uniform one between bounds.
 struct Prior {

@@ -12,7 +12,7 @@ using namespace sysid;
 namespace {
 
 /// Leaves are states in registers 0, 1, ...; constants are uniforms in the order they are met.
-struct Bench {
+struct EmitBench {
   Graph graph;
   std::vector<double> constants;
 
@@ -38,7 +38,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("states exchanged in one step do not overwrite each other") {
-  Bench bench;
+  EmitBench bench;
   Emitted const emitted = bench.emit({{bench.state(1), 0}, {bench.state(2), 1}, {bench.state(0), 2}}, 3);
   std::vector<double> const after = bench.run(emitted, {10, 20, 30});
   CHECK(after[0] == 20);
@@ -47,7 +47,7 @@ TEST_CASE("states exchanged in one step do not overwrite each other") {
 }
 
 TEST_CASE("new states are computed from the old ones, in whatever order they are updated") {
-  Bench bench;
+  EmitBench bench;
   Graph& g = bench.graph;
   NodeId const x = bench.state(0), y = bench.state(1);
   Emitted const emitted = bench.emit({{g.add(x, y), 0}, {g.multiply(x, y), 1}}, 2);
@@ -57,7 +57,7 @@ TEST_CASE("new states are computed from the old ones, in whatever order they are
 }
 
 TEST_CASE("one value may go to several targets, one of them a register it is computed from") {
-  Bench bench;
+  EmitBench bench;
   Graph& g = bench.graph;
   NodeId const sum = g.add(bench.state(0), bench.state(1));
   Emitted const emitted = bench.emit({{sum, 0}, {sum, 1}, {bench.state(0), 2}}, 3);
@@ -68,7 +68,7 @@ TEST_CASE("one value may go to several targets, one of them a register it is com
 }
 
 TEST_CASE("a chain of single uses lives in the accumulator and touches no temporary") {
-  Bench bench;
+  EmitBench bench;
   Graph& g = bench.graph;
   NodeId value = bench.state(0);
   for (int i = 0; i < 20; ++i) value = g.multiply(g.add(value, g.constant(i + 0.5)), bench.state(1));
@@ -78,7 +78,7 @@ TEST_CASE("a chain of single uses lives in the accumulator and touches no tempor
 }
 
 TEST_CASE("a balanced tree of 64 values needs as many registers as its depth") {
-  Bench bench;
+  EmitBench bench;
   Graph& g = bench.graph;
   std::vector<NodeId> level;
   for (int i = 0; i < 64; ++i) level.push_back(g.multiply(bench.state(i), bench.state(63 - i + (i < 32 ? 0 : 64))));
@@ -92,7 +92,7 @@ TEST_CASE("a balanced tree of 64 values needs as many registers as its depth") {
 }
 
 TEST_CASE("operands no executor reads as uniforms are moved to registers") {
-  Bench bench;
+  EmitBench bench;
   Graph& g = bench.graph;
   NodeId const x = bench.state(0);
   NodeId const power = g.power(x, g.constant(1.5));

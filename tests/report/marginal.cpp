@@ -8,13 +8,12 @@
 #include <limits>
 #include <numbers>
 
+#include "core/not_finite.hpp"
 #include "core/random.hpp"
 
 using namespace sysid;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> normals(int count) {
   Stream stream({5, Purpose::test, 0, 0});

@@ -13,7 +13,7 @@ using namespace sysid;
 namespace {
 
 /// y'' + 2 d y' + w^2 y = x, from y(0) = 1 at rest; parameters d, w.
-SimulationSource oscillator() {
+SimulationSource driven_oscillator() {
   SimulationSource source;
   Graph& g = source.graph;
   NodeId const d = g.leaf(LeafKind::parameter, 0), w = g.leaf(LeafKind::parameter, 1);
@@ -38,7 +38,7 @@ double exact(double t, double d, double w, double p, double q) {
 
 /// The largest error along 4 s of the oscillator under a ramp, sampled every `interval` seconds.
 double error(double relative, double interval) {
-  auto const program = std::make_shared<SimulationProgram const>(compile(oscillator()));
+  auto const program = std::make_shared<SimulationProgram const>(compile(driven_oscillator()));
   int const samples = static_cast<int>(std::lround(4 / interval)) + 1;
   std::vector<double> const times = testing::uniform_times(samples, interval);
   Experiment const record = testing::experiment(times, {[](double t) { return 0.5 + 2 * t; }}, {});
@@ -128,7 +128,7 @@ TEST_CASE("an adaptive lane depends on its own parameters alone") {
 }
 
 TEST_CASE("a lane that needs more steps than it may take fails as step_limit") {
-  auto const program = std::make_shared<SimulationProgram const>(compile(oscillator()));
+  auto const program = std::make_shared<SimulationProgram const>(compile(driven_oscillator()));
   Experiment const record = testing::experiment(testing::uniform_times(5, 1.0), {[](double) { return 0.0; }}, {});
   Simulator const simulator(program, Schedule(*program, record, {.method = "dopri5", .relative = 1e-8, .steps = 20}));
   LaneArray parameters(2, 2), out(2, 2);
@@ -210,7 +210,7 @@ TEST_CASE("a ball thrown up through a surface comes back through it") {
 
 TEST_CASE("what is remembered takes no part in the error of a step") {
   auto const source = [](bool remembers) {
-    SimulationSource result = oscillator();
+    SimulationSource result = driven_oscillator();
     Graph& g = result.graph;
     result.parameters = result.inputs = 0;
     NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1);

@@ -15,7 +15,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-std::map<std::string, double> const truth = {{"m", 1}, {"c", 20}, {"k", 1e4}, {"k3", 5e9}};
+std::map<std::string, double> const duffing_truth = {{"m", 1}, {"c", 20}, {"k", 1e4}, {"k3", 5e9}};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ TEST_CASE("over 100 records the truth is inside 3 sd in at least 95, with the kn
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Fitted const fitted = run_file(with(duffing_text(), "forecast  =", "# forecast ="), seeded(seed));
     bool all = true;
-    for (auto const& [name, value] : truth) {
+    for (auto const& [name, value] : duffing_truth) {
       double const mean = fitted.of("posterior", name).at("mean"), sd = fitted.of("posterior", name).at("sd");
       all = all && std::abs(mean - value) <= 3 * sd;
       widths[name].push_back(100 * sd / value);
