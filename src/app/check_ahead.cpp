@@ -31,15 +31,29 @@ std::string obstacle(LookedAt const& look, PriorDraws const& prior, std::vector<
   return {};
 }
 
+Parameter const* improper(Model const& model) {
+  auto const found = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                  [](Parameter const& each) { return each.prior && !each.prior->row->proper; });
+  return found == model.parameters.end() ? nullptr : &*found;
+}
+
 }  // namespace
+
+Findings check_prior_size(Session& session, FitTask const& what, std::vector<ExperimentData> const& data) {
+  if (improper(session.file.models[static_cast<std::size_t>(what.model)]) != nullptr) return {};
+  Outlook page;
+  LookedAt const look(session, what, data, page);
+  describe_prior(look, draw_prior(look));
+  std::erase_if(page.findings, [](Finding const& each) { return each.code != "prior_far_from_data"; });
+  return page.findings;
+}
 
 void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
-  for (Parameter const& parameter : written.parameters)
-    if (parameter.prior && !parameter.prior->row->proper) {
-      page.left_out = fmt::format("what needs draws of the prior: that of {} is {}", parameter.name, parameter.prior->row->name);
-      return;
-    }
+  if (Parameter const* parameter = improper(written)) {
+    page.left_out = fmt::format("what needs draws of the prior: that of {} is {}", parameter->name, parameter->prior->row->name);
+    return;
+  }
   if (!written.processes.empty()) {
     look_at_processes(session, what, data, page);
     page.left_out = "identifiability: the model has a Gaussian process";

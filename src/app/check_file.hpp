@@ -17,6 +17,10 @@ struct CheckResult {
 };
 CheckResult check_file(Session& session);
 
+/// Whether draws of the prior predict channels of another size than was measured, as a wrong unit makes them: what a fit asks
+/// before it searches (`prior_far_from_data`). Nothing of priors that cannot be drawn from.
+Findings check_prior_size(Session& session, FitTask const& what, std::vector<ExperimentData> const& data);
+
 /// Equations, unknowns and everything declared, in the user's words where the text has them. flat: the models with their parts
 /// written out (CheckedFile::tree), for what stands in modules.
 ModelPage describe_structure(ast::File const& written, ast::File const& flat, Model const& model);

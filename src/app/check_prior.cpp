@@ -14,9 +14,8 @@
 namespace sysid {
 namespace {
 
-constexpr double many_wild = 0.5;      // share of the draws
-constexpr double many_failures = 0.2;  // share of failed draws that deserves a warning
-constexpr double bare_mention = 3.2;   // a Bayes factor "not worth more than a bare mention" (Kass and Raftery 1995)
+constexpr double many_wild = 0.5;     // share of the draws
+constexpr double bare_mention = 3.2;  // a Bayes factor "not worth more than a bare mention" (Kass and Raftery 1995)
 
 struct Draw {
   int lane;
@@ -58,6 +57,7 @@ void judge_failures(LookedAt const& look) {
 }
 
 void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double apart) {
+  if (line.middle == 0) return;  // held constant by the model, in whatever unit
   double const ratio = line.middle / line.measured;
   std::string size;
   if (ratio > wild || ratio < 1 / wild)

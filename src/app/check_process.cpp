@@ -20,7 +20,6 @@ namespace {
 constexpr int draws = 64;
 constexpr double nearly_straight = 30;  // a length so many times the range of its input
 constexpr double most = 0.5;            // share of the draws
-constexpr double many_failures = 0.2;
 
 ProcessPage::Spread spread_of(std::vector<double> const& values) {
   return {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95)};

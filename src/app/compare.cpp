@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/made_from.hpp"
 #include "core/diagnostic.hpp"
 #include "core/elementary.hpp"
 #include "core/files.hpp"
@@ -29,6 +30,11 @@ struct Result {
   json summary;
 
   bool is(std::string_view verb) const { return summary.value("what", std::string()).starts_with(std::string(verb) + " "); }
+  int warnings() const {
+    json const findings = summary.value("findings", json::array());
+    return static_cast<int>(
+        std::count_if(findings.begin(), findings.end(), [](json const& each) { return each.value("severity", "") == "warning"; }));
+  }
   bool pass() const { return !summary.contains("verdict") || summary["verdict"].value("pass", true); }
   std::string model() const { return summary.value("model", std::string()); }
 };
@@ -133,6 +139,7 @@ ComparedFit compared_fit(Result const& result) {
   fit.name = result.name;
   fit.model = result.model();
   fit.pass = result.pass();
+  fit.warnings = result.warnings();
   fit.parameters = summary.value("parameter_count", 0);
   fit.noise = noise_text(summary);
   json const evidence = summary.value("evidence", json::object());
@@ -151,6 +158,14 @@ std::string identity(Result const& result) {
   json const settings = result.summary.value("settings", json::object());
   return result.summary.value("versions", json::object()).value("model_sha256", "") + settings.value("prediction", "") +
          settings.value("start_state", "");
+}
+
+/// Models of one name that are not the same, as an equation before and after a change, are told apart by their fits.
+void tell_models_apart(std::vector<Result> const& results, std::vector<ComparedFit>& fits) {
+  std::map<std::string, std::set<std::string>> of_name;
+  for (std::size_t f = 0; f < fits.size(); ++f) of_name[fits[f].model].insert(identity(results[f]));
+  for (ComparedFit& fit : fits)
+    if (of_name[fit.model].size() > 1) fit.model += fmt::format(" ({})", fit.name);
 }
 
 void add_probabilities(std::vector<Result> const& results, std::vector<ComparedFit>& fits) {
@@ -188,6 +203,7 @@ void add_predictions(Result const& result, std::vector<ComparedPrediction>& pred
                               scores["nmse"].get<double>(),
                               {},
                               result.pass(),
+                              result.warnings(),
                               data.value("samples_sha256", "")};
       if (scores.contains("coverage_95") && scores["coverage_95"].is_number()) each.coverage = scores["coverage_95"].get<double>();
       auto const same = [&](ComparedPrediction const& other) { return other.samples == each.samples && other.on == each.on; };
@@ -213,6 +229,8 @@ Comparison compare(std::vector<fs::path> const& folders) {
   for (Result const& each : results) {
     if (each.is("predict")) {
       add_predictions(each, comparison.predictions);
+      if (auto const finding = made_from_earlier(each.folder))
+        comparison.notes.push_back(fmt::format("{}: {}: {}", each.name, finding->message, finding->help));
     } else {
       fits.push_back(each);
       require_same_samples(fits.front(), each);
@@ -221,6 +239,7 @@ Comparison compare(std::vector<fs::path> const& folders) {
   }
   if (!fits.empty()) comparison.data = data_text(fits.front());
   add_probabilities(fits, comparison.fits);
+  tell_models_apart(fits, comparison.fits);
   return comparison;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace sysid {
@@ -33,11 +34,26 @@ bool misses(double coverage, int samples) {
 std::string prediction_verdict(Report const& report, bool missed) {
   if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
   if (report.ledger.failed() > 0) return "some trajectories do not stay finite";
+  if (std::any_of(report.findings.begin(), report.findings.end(),
+                  [](Finding const& each) { return each.code == "worse_than_the_mean"; }))
+    return "all trajectories stay finite, but the mean of the record predicts better";
   return missed ? "all trajectories stay finite, but the data lie outside their bands" : "all trajectories stay finite";
 }
 
+/// nmse [%] of a prediction that is none: an error twice as large as the variance. A free run that has lost its phase has 200 at
+/// most.
+constexpr double useless = 200;
+
 bool add_coverage(Report& report, bool fed_back) {
   bool any = false;
+  for (FitLine const& line : fit_lines(report))
+    for (Score const& score : line.scores)
+      if (score.name == "nmse" && score.value > useless)
+        report.findings.push_back(
+            {Severity::warning, "worse_than_the_mean",
+             fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
+                         line.what(), score.value),
+             "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"});
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores) {
       if (score.name != "coverage_95" || !misses(score.value, measured_samples(report, line))) continue;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/bands.hpp"
+#include "app/check_file.hpp"
 #include "app/derived_draws.hpp"
 #include "app/drift.hpp"
 #include "app/experiments.hpp"
@@ -18,6 +19,7 @@
 #include "app/process_fit.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
+#include "app/residual_checks.hpp"
 #include "app/resolved.hpp"
 #include "app/restoring_force.hpp"
 #include "app/search_near.hpp"
@@ -87,10 +89,17 @@ class Fit {
     return make_fit_target(session_, what_, compiled_, space_, experiments_of(data_), solver, execution);
   }
 
+  // Before what takes time, so that one need not wait for it.
+  void tell(Findings const& findings) const {
+    for (Finding const& each : findings) session_.notices << fmt::format("{}: warning: {}\n", task_.name, each.message);
+  }
+
   // Search and, unless the user fixed it, the step. False: interrupted.
   bool prepare(RunContext& context) {
     MakeTarget const make = [this](SolverSettings const& solver) { return make_target(solver, session_.interruptible()); };
     preparation_.solver = what_.solver;
+    Findings const size = check_prior_size(session_, what_, data_);
+    tell(size);
     if (what_.settle && model_.integrated()) {
       SearchSolver const search = search_solver(make, what_.solver, seed_);
       if (context.stop_requested()) return false;
@@ -111,9 +120,8 @@ class Fit {
     }
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
-    // Before what takes time, so that one need not wait for it.
-    for (Finding const& each : ranges_at(preparation_.modes.front().declared))
-      session_.notices << fmt::format("{}: warning: {}\n", task_.name, each.message);
+    preparation_.findings.insert(preparation_.findings.end(), size.begin(), size.end());
+    tell(ranges_at(preparation_.modes.front().declared));
     return !what_.settle || settle(session_, task_, make, backend_.aim, what_.solver, preparation_, search_context);
   }
 
@@ -140,7 +148,10 @@ class Fit {
       FitCheck check = check_residuals(*target_, best);
       report.fit = std::move(check.lines);
       add(check.findings);
-      if (!preparation_.modes.empty() && model_.dynamics == Dynamics::continuous)
+      bool const explains = std::none_of(check.findings.begin(), check.findings.end(), [](Finding const& each) {
+        return each.code == "worse_than_the_mean" || each.code == "explains_little";
+      });
+      if (explains && !preparation_.modes.empty() && model_.dynamics == Dynamics::continuous)
         add(check_input_timing(*target_, backend_.aim, preparation_.modes.front(), seed_, extra));
       if (model_.integrated()) add(step_check(result.draws, extra));
     }

@@ -1,5 +1,5 @@
-// What a finished fit is asked: does the model leave structure in the residuals, is the noise as stated, would another timing of
-// the input fit much better.
+// What a finished fit is asked apart from its residuals: does a population upset it, is every parameter used, would another timing
+// of the input fit much better.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,14 +9,6 @@
 #include "report/report.hpp"
 
 namespace sysid {
-
-struct FitCheck {
-  std::vector<FitLine> lines;  // per experiment and channel: nmse, rmse, chi_squared_per_sample, whiteness_p, input_correlation_p
-  Findings findings;
-};
-
-/// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input.
-FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared);
 
 /// What an estimated spread of a population does to a result (docs/methods/several_experiments.md): to chains, when `found` says
 /// that they have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes.

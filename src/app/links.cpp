@@ -21,6 +21,7 @@ class CoupledMasses {
     std::size_t const stride = states.size() / looked_at + 1;
     for (std::size_t i = 0; i < states.size(); i += stride) states_.push_back(states[i]);
     for (std::size_t i = 0; i < masses_.size(); ++i) edges_.push_back(edges_of(i));
+    keep_links();
   }
 
   /// Links of all masses that a mass is coupled with, itself included; marks them as visited.
@@ -83,6 +84,19 @@ class CoupledMasses {
     return held_by;
   }
 
+  /// A link pulls at both its ends alike. What pulls at one alone, as an actuator does that follows another mass, is none, and that
+  /// mass is held by more than its links.
+  void keep_links() {
+    std::vector<std::vector<Other>> const all = edges_;
+    auto const pulls_back = [&](std::size_t i, Other const& other) {
+      return !other || (std::find(all[*other].begin(), all[*other].end(), Other(i)) != all[*other].end() && mass_ratio(i, *other));
+    };
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      std::erase_if(edges_[i], [&](Other const& other) { return !pulls_back(i, other); });
+      by_links_alone_.push_back(edges_[i].size() == all[i].size());
+    }
+  }
+
   /// m_j / m_i from their common link; nothing where the two do not pull at each other alike.
   std::optional<double> mass_ratio(std::size_t i, std::size_t j) const {
     double low = INFINITY, high = -INFINITY, size = 0;
@@ -141,7 +155,7 @@ class CoupledMasses {
   }
 
   std::vector<Link::Held> held_beyond(std::size_t i, Other from, std::vector<std::optional<double>> const& scale) const {
-    if (!scale[i]) return {};
+    if (!scale[i] || !by_links_alone_[i]) return {};
     std::vector<Link::Held> out = {{i, *scale[i]}};
     for (Other const& edge : edges_[i]) {
       if (edge == from) continue;
@@ -157,6 +171,7 @@ class CoupledMasses {
   std::vector<Mass> const& masses_;
   States states_;
   std::vector<std::vector<Other>> edges_;  // of each mass
+  std::vector<bool> by_links_alone_;       // whether they are all that acts on it
 };
 
 }  // namespace
@@ -169,6 +184,7 @@ std::vector<Link> links_of(Accelerations const& accelerations, States const& sta
   for (std::size_t i = 0; i < masses.size(); ++i) {
     if (visited[i] || !masses[i].readable) continue;
     if (masses[i].neighbours.empty()) {
+      visited[i] = true;
       double const scale = masses[i].input ? 1 / std::fabs(accelerations.gain(i)) : 1;
       links.push_back({i, {}, masses[i].input, scale, {{i, scale}}});
       continue;

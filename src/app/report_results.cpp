@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/compare.hpp"
+#include "app/made_from.hpp"
 #include "app/prior_density.hpp"
 #include "app/results.hpp"
 #include "core/diagnostic.hpp"
@@ -34,6 +35,7 @@ Report whole_result(fs::path const& folder) {
                      "run the task again with --force"});
   Report report = read_result(folder);
   for (PriorInfo& prior : report.priors) add_density(prior);
+  if (auto finding = made_from_earlier(folder)) report.findings.push_back(std::move(*finding));
   return report;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/experiments.hpp"
+#include "app/made_from.hpp"
 #include "app/prior_density.hpp"
 #include "core/files.hpp"
 #include "data/digest.hpp"
@@ -123,6 +124,8 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   report.versions = {{"sysid", std::string(SYSID_VERSION)},
                      {"random_numbers", std::string("Philox4x64-10")},
                      {"model_sha256", task_digest(session, task)}};
+  Facts const source = made_from(session, task);
+  report.versions.insert(report.versions.end(), source.begin(), source.end());
   ast::Model const* flat = find_model(session.file.tree, model.name);
   if (flat == nullptr) return report;
   report.model_text = std::string(session.source.text(flat->span));

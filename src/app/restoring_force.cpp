@@ -16,7 +16,8 @@ namespace sysid {
 
 namespace {
 
-constexpr std::size_t most_forces = 3;
+constexpr std::size_t most_forces = 3;  // of earlier records, after which no further one is looked at
+constexpr std::size_t most_links = 12;  // of one record
 
 /// The index of a state's quantity among those of a trajectory; -1: none.
 int quantity_of(std::span<TrajectoryQuantity const> quantities, std::string const& name) {
@@ -154,7 +155,9 @@ void add_restoring_forces(Model const& model, std::span<TrajectoryQuantity const
   Accelerations const accelerations(model, graph, all, parameters, draw);
   std::vector<MeasuredMotion> motions;
   for (Mass const& mass : all) motions.push_back(measured_motion(model, graph, mass, accelerations, states, experiment));
+  std::size_t const before = forces.size();
   for (Link const& link : links_of(accelerations, states)) {
+    if (forces.size() - before == most_links) return;
     ForceModel const of_model(accelerations, link);
     RestoringForce force = named_force(model, all, link, experiment);
     force.model = of_model.along(states, experiment);

@@ -54,7 +54,7 @@ SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate,
                        what_.start, what_.prediction);
   out.data = std::make_unique<ExperimentData const>(std::move(data[experiment]));
   auto const space = parameter_space(without_noise_parameters(out.model()), fit.experiments);
-  LaneArray const declared = spread(candidates_[candidate].draws, counts_[candidate]);
+  LaneArray const declared = spread_with_repeats(candidates_[candidate].draws, counts_[candidate]);
   out.parameters = LaneArray(static_cast<int>(out.model().parameters.size()), declared.width());
   int const fitted = what_.fitted[experiment];
   if (fitted >= 0)

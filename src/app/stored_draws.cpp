@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/experiments.hpp"
@@ -16,84 +13,30 @@
 #include "core/files.hpp"
 #include "likelihood/simulated_parameters.hpp"
 #include "report/csv.hpp"
+#include "report/number_table.hpp"
 #include "report/selection.hpp"
 
 namespace sysid {
-namespace {
-
-// Cells in quotes may hold the separator: an element of a vector in an experiment is "q[1,bench]".
-std::vector<std::string_view> split(std::string_view line, char separator) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    if (line.starts_with('"')) {
-      auto const end = std::min(line.find('"', 1), line.size());
-      parts.push_back(line.substr(1, end - 1));
-      line.remove_prefix(std::min(end + 1, line.size()));
-      if (line.empty()) return parts;
-      line.remove_prefix(1);
-      continue;
-    }
-    auto const end = line.find(separator);
-    parts.push_back(line.substr(0, end));
-    if (end == std::string_view::npos) return parts;
-    line.remove_prefix(end + 1);
-  }
-}
-
-/// Of a whole cell; nothing where it is no number.
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
-UserError damaged(std::filesystem::path const& path, std::size_t draw) {
-  return UserError({Severity::error,
-                    "E6201",
-                    fmt::format("`{}` is damaged: draw {} has fewer numbers than the header names", path.string(), draw),
-                    std::nullopt,
-                    {},
-                    "run the fit again, with --force or another -o"});
-}
-
-}  // namespace
-
 std::vector<std::vector<double>> read_draws_rows(std::filesystem::path const& path, std::vector<std::string> const& own,
                                                  std::vector<std::string> const& parameters) {
-  std::string const text = read_file(path);
-  std::vector<std::vector<double>> rows;
-  std::vector<std::size_t> columns;
-  std::size_t width = 0;  // of the header
-  for (std::string_view const line : split(text, '\n')) {
-    if (line.empty() || line.front() == '#') continue;
-    auto const cells = split(line, ',');
-    if (columns.empty()) {
-      auto const find = [&](std::string const& name, std::size_t from) {
-        auto const place =
-            std::find(cells.begin() + std::min(std::ssize(cells), static_cast<std::ptrdiff_t>(from)), cells.end(), name);
-        if (place == cells.end())
-          throw UserError({Severity::error,
-                           "E6201",
-                           fmt::format("`{}` has no column `{}`: it is of another model", path.string(), name),
-                           std::nullopt,
-                           {},
-                           "run the fit again, with --force or another -o"});
-        return static_cast<std::size_t>(place - cells.begin());
-      };
-      width = cells.size();
-      for (std::string const& name : own) columns.push_back(find(name, 0));
-      // A parameter may have the name of one of the sampler's own.
-      for (std::string const& name : parameters) columns.push_back(find(stan_name(name), own.size()));
-      continue;
-    }
-    std::vector<double> values;
-    for (std::size_t const column : columns) {
-      std::optional<double> const value = column < cells.size() ? number(cells[column]) : std::nullopt;
-      if (cells.size() != width || !value) throw damaged(path, rows.size() + 1);
-      values.push_back(*value);
-    }
-    rows.push_back(std::move(values));
-  }
+  NumberTable const table = read_number_table(path);
+  std::vector<std::vector<double> const*> columns;
+  auto const add = [&](std::string const& name, std::size_t from) {
+    columns.push_back(table.find(name, from));
+    if (columns.back() == nullptr)
+      throw UserError({Severity::error,
+                       "E6201",
+                       fmt::format("`{}` has no column `{}`: it is of another model", path.string(), name),
+                       std::nullopt,
+                       {},
+                       "run the fit again, with --force or another -o"});
+  };
+  for (std::string const& name : own) add(name, 0);
+  // A parameter may have the name of one of the sampler's own.
+  for (std::string const& name : parameters) add(stan_name(name), own.size());
+  std::vector<std::vector<double>> rows(table.rows());
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::vector<double> const* column : columns) rows[r].push_back((*column)[r]);
   return rows;
 }
 

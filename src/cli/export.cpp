@@ -54,7 +54,7 @@ ExitCode stan(Messages const& messages, Session& session, ResultsFolder const* r
 }
 
 /// Of results, with the model that they were made from where it is needed.
-ExitCode results(Messages const& messages, ExportOptions const& options) {
+ExitCode export_results(Messages const& messages, ExportOptions const& options) {
   ResultsFolder const found = find_results(options.what);
   if (!options.stan) require_exportable(found, options.run.force);
   if (!options.stan && options.draws == 0) {
@@ -78,7 +78,7 @@ ExitCode results(Messages const& messages, ExportOptions const& options) {
 ExitCode work(Messages const& messages, ExportOptions const& options) {
   if (options.latex) return latex(messages, options.what);
   if (!options.stan || std::filesystem::is_directory(options.what)) {
-    if (!options.output) return results(messages, options);
+    if (!options.output) return export_results(messages, options);
     messages.complain("what is made of results goes into their folders", "leave -o out");
     return ExitCode::usage;
   }

@@ -25,10 +25,10 @@ ExitCode unknown(Messages const& messages, std::string const& what, char const* 
 
 Work declare_list(CLI::App& verb) {
   auto const table = std::make_shared<std::string>();
-  verb.add_option("TABLE", *table, "functions, distributions, kernels, backends, discovery, solvers or modules")
-      ->required()
-      ->check(CLI::IsMember({"functions", "distributions", "kernels", "backends", "discovery", "solvers", "modules"}));
-  return [table](Messages const&) { return print(list(*table)); };
+  std::vector<std::string> topics;
+  for (ListRow const& row : lists()) topics.emplace_back(row.name);
+  verb.add_option("TABLE", *table, list_topics())->required()->check(CLI::IsMember(topics));
+  return [table](Messages const&) { return print(find_list(*table)->text()); };
 }
 
 Work declare_explain(CLI::App& verb) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/made_from.hpp"
 #include "app/results.hpp"
 #include "core/files.hpp"
 #include "exchange/inference_data.hpp"
@@ -39,12 +40,17 @@ int task_of_kind(Session& session, StoredResult const& stored, char const* kind)
   return index;
 }
 
-/// Predictions from the draws of a task that lie beside it, in the order of the file.
-std::vector<StoredPrediction> predictions_of(Session const& session, int source) {
+/// Predictions from the draws of a task that lie beside it, in the order of the file. Those of earlier draws are left out, with a
+/// sentence in `left_out`.
+std::vector<StoredPrediction> predictions_of(Session const& session, int source, std::vector<std::string>& left_out) {
   std::vector<StoredPrediction> found;
   for (Task const& task : session.file.tasks) {
     auto const* what = std::get_if<PredictTask>(&task.what);
     if (what == nullptr || what->fit != source || !complete(session.result_folder(task))) continue;
+    if (auto const earlier = made_from_earlier(session.result_folder(task))) {
+      left_out.push_back(fmt::format("{}: {}", task.name, earlier->message));
+      continue;
+    }
     found.push_back({task, *what, read_stored_result(session.result_folder(task)).seed()});
   }
   return found;
@@ -63,7 +69,7 @@ Export fit_export(StoredResult const& stored, Session* session, int draws) {
   if (session == nullptr) return file;
   int const task = task_of_kind<FitTask>(*session, stored, "fit");
   add_simulated(*session, task, stored, draws, file.data);
-  std::vector<StoredPrediction> const predictions = predictions_of(*session, task);
+  std::vector<StoredPrediction> const predictions = predictions_of(*session, task, file.data.left_out);
   if (!predictions.empty() && !renamed(stored, file.data)) add_predictions(*session, predictions, file.data);
   return file;
 }
@@ -73,9 +79,12 @@ std::vector<Export> selection_exports(StoredResult const& stored, Session* sessi
   if (session != nullptr) {
     int const task = task_of_kind<SelectTask>(*session, stored, "selection");
     add_candidate_data(*session, task, candidates);
-    std::vector<StoredPrediction> const predictions = predictions_of(*session, task);
-    for (CandidateData& each : candidates)
+    std::vector<std::string> left_out;
+    std::vector<StoredPrediction> const predictions = predictions_of(*session, task, left_out);
+    for (CandidateData& each : candidates) {
+      each.data.left_out.insert(each.data.left_out.end(), left_out.begin(), left_out.end());
       if (!predictions.empty() && !renamed(stored, each.data)) add_predictions(*session, predictions, each.place, each.data);
+    }
   }
   std::vector<Export> files;
   for (CandidateData& each : candidates) files.push_back({candidate_path(stored, each.name), std::move(each.data)});

@@ -14,10 +14,13 @@ std::vector<double> Draws::column(std::size_t name) const {
 }
 
 LaneArray spread(Draws const& draws, int count) {
+  return spread_with_repeats(draws, std::min<int>(count, static_cast<int>(draws.total())));
+}
+
+LaneArray spread_with_repeats(Draws const& draws, int count) {
   std::vector<std::vector<double> const*> pooled;
   for (Chain const& chain : draws.chains)
     for (auto const& values : chain.values) pooled.push_back(&values);
-  count = std::min<int>(count, static_cast<int>(pooled.size()));
   LaneArray columns(draws.parameter_count, count);
   for (int w = 0; w < count; ++w) {
     auto const pick = static_cast<std::size_t>((2LL * w + 1) * static_cast<long long>(pooled.size()) / (2LL * count));

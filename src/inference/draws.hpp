@@ -33,5 +33,7 @@ struct Draws {
 
 /// Up to `count` draws spread evenly over all chains, never random: parameters only, as columns [parameter_count x <= count].
 LaneArray spread(Draws const& draws, int count);
+/// The same of exactly `count`, some of them repeated where there are fewer draws: what stands for a share of a mixture.
+LaneArray spread_with_repeats(Draws const& draws, int count);
 
 }  // namespace sysid

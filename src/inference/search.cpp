@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/elementary.hpp"
 #include "inference/descent.hpp"
@@ -81,12 +82,24 @@ std::string describe(Target const& target, Mode const& mode) {
   return parameters.size() > 6 ? text + ", ..." : text;
 }
 
-// move [P]: of declared parameters.
-Finding flat_direction(Target const& target, std::span<double const> move) {
+// Whether a parameter is known to a twentieth of the range of its prior, over decades in logarithms. Near a bound the unconstrained
+// coordinate is flat, which the parameter is not.
+bool is_known(ParameterInfo const& parameter, double value, double sd) {
+  constexpr double part = 0.05;
+  if (!std::isfinite(parameter.lower) || !std::isfinite(parameter.upper)) return false;
+  if (parameter.lower > 0 && parameter.upper >= 10 * parameter.lower)
+    return sd / value < part * elementary::log(parameter.upper / parameter.lower);
+  return sd < part * (parameter.upper - parameter.lower);
+}
+
+// move [P]: of declared parameters. Nothing where all that take part are known.
+std::optional<Finding> flat_direction(Target const& target, Mode const& mode, std::span<double const> move) {
   std::vector<std::string> names, moves;
+  bool known = true;
   for (std::size_t p = 0; p < move.size(); ++p) {
     ParameterInfo const& parameter = target.parameters()[p];
     if (move[p] == 0) continue;
+    known = known && is_known(parameter, mode.declared[p], mode.sd[p]);
     if (parameter.coefficient) {  // an unknown function stands for all its coefficients
       std::string const function = parameter.name.substr(0, parameter.name.find('['));
       if (std::find(names.begin(), names.end(), function) == names.end()) names.push_back(function);
@@ -95,15 +108,16 @@ Finding flat_direction(Target const& target, std::span<double const> move) {
     names.push_back(parameter.name);
     moves.push_back(fmt::format("{} by {:+.2g}{}", parameter.name, move[p], parameter.unit.empty() ? "" : " " + parameter.unit));
   }
+  if (known) return std::nullopt;
   if (names.size() == 1)
-    return {Severity::warning, "flat_direction",
-            fmt::format("the data leave {} undetermined: its width is the prior's", names.front()),
-            "fix it to a value, give it a narrower prior, or measure what tells it"};
+    return Finding{Severity::warning, "flat_direction",
+                   fmt::format("the data leave {} undetermined: its width is the prior's", names.front()),
+                   "fix it to a value, give it a narrower prior, or measure what tells it"};
   if (moves.empty())
-    return {Severity::warning, "flat_direction",
-            fmt::format("the data leave a combination of {} undetermined: its width is the prior's", listed(names)),
-            "fix an amplitude or a length, or measure what tells the functions apart"};
-  return {
+    return Finding{Severity::warning, "flat_direction",
+                   fmt::format("the data leave a combination of {} undetermined: its width is the prior's", listed(names)),
+                   "fix an amplitude or a length, or measure what tells the functions apart"};
+  return Finding{
       Severity::warning, "flat_direction",
       fmt::format("the data leave a combination of {} undetermined: moving {} together changes next to nothing, and its width is "
                   "the prior's",
@@ -123,7 +137,8 @@ void add_findings(Objective const& objective, SearchResult& result) {
   }
   auto const parameters = static_cast<std::size_t>(objective.dimension());
   for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters)
-    result.findings.push_back(flat_direction(objective.target, {modes.front().flat.data() + at, parameters}));
+    if (auto finding = flat_direction(objective.target, modes.front(), {modes.front().flat.data() + at, parameters}))
+      result.findings.push_back(std::move(*finding));
 }
 
 bool has_coefficients(Target const& target) {

@@ -68,6 +68,13 @@ std::string along_time(Quantity const& quantity, PlotSize size) {
                      record != nullptr ? AxisName{record->axis, record->unit} : AxisName{"row", ""}, axis_of(quantity), size);
 }
 
+/// Draws one after another.
+std::string along_draws(Quantity const& quantity, PlotSize size) {
+  std::vector<Curve> curves;
+  curves.push_back({numbers_up_to(quantity.values.size()), quantity.all_shown(), true});
+  return plot_curves(curves, {quantity.chains.size() > 1 ? "draw, chain after chain" : "draw", ""}, axis_of(quantity), size);
+}
+
 }  // namespace
 
 bool Workbench::answer(ast::Expression const& tree, std::string const& text) {
@@ -155,11 +162,7 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
             what.span, fmt::format("`{}` is one number", quantity->label),
             quantity->kind == Quantity::Kind::draws ? "fit with mh for draws, or plot(residual(CHANNEL)), plot(FIT)" : examples);
       if (trace)
-        drawn = quantity->kind == Quantity::Kind::rows
-                    ? along_time(*quantity, plot_size_)
-                    : plot_curves({{numbers_up_to(quantity->values.size()), quantity->all_shown(), true}},
-                                  {quantity->chains.size() > 1 ? "draw, chain after chain" : "draw", ""}, axis_of(*quantity),
-                                  plot_size_);
+        drawn = quantity->kind == Quantity::Kind::rows ? along_time(*quantity, plot_size_) : along_draws(*quantity, plot_size_);
       else if (histogram || quantity->kind == Quantity::Kind::draws)
         drawn = plot_histogram(quantity->all_shown(), axis_of(*quantity), plot_size_);
       else

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "report/number.hpp"
 
@@ -84,10 +85,18 @@ class Canvas {
 
 std::string titled(AxisName const& axis) { return axis.unit.empty() ? axis.name : fmt::format("{} [{}]", axis.name, axis.unit); }
 
+/// Both ends of an axis, with as many digits as tell them apart.
+std::pair<std::string, std::string> ends_of(Range range) {
+  for (int digits = 4;; ++digits) {
+    std::string low = significant(range.low, digits), high = significant(range.high, digits);
+    if (low != high || digits == 12) return {std::move(low), std::move(high)};
+  }
+}
+
 /// Rows of a plot with the ends of both axes.
 std::string framed(std::vector<std::string> const& rows, Range x, Range y, AxisName const& x_axis, AxisName const& y_axis,
                    int columns) {
-  std::string const high = significant(y.high, 4), low = significant(y.low, 4);
+  auto const [low, high] = ends_of(y);
   std::size_t const width = std::max(high.size(), low.size());
   std::string out = fmt::format("{:>{}}  {}\n", "", width, titled(y_axis));
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -98,7 +107,8 @@ std::string framed(std::vector<std::string> const& rows, Range x, Range y, AxisN
   std::string rule;
   for (int c = 0; c < columns; ++c) rule += "\u2500";
   out += fmt::format("{:>{}} \u2514{}\n", "", width, rule);
-  std::string const left = significant(x.low, 4), right = significant(x.high, 4), title = titled(x_axis);
+  auto const [left, right] = ends_of(x);
+  std::string const title = titled(x_axis);
   int const gap = columns - static_cast<int>(left.size() + right.size()) - text_width(title);
   int const before = std::max(1, gap / 2);
   return out + fmt::format("{:>{}}  {}{:{}}{}{:{}}{}\n", "", width, left, "", before, title, "", std::max(1, gap - before), right);

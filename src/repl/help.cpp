@@ -116,8 +116,6 @@ constexpr KeywordRow keyword_rows[] = {
     {"refit", "refit = no", "whether a discovery fits what it finds again by simulation"},
 };
 
-constexpr std::string_view topics[] = {"functions", "distributions", "kernels", "backends", "discovery", "solvers", "modules"};
-
 std::string entry_of(KeywordRow const& row) { return fmt::format("{}\n  {}\n", row.usage, row.summary); }
 
 struct Lines {
@@ -136,8 +134,8 @@ bool begins_with_word(std::string_view line, std::string_view word) {
 }
 
 /// The lines about a word in what `list` prints: its own with those below it, or its line as a setting with the owner's.
-std::string from_list(std::string_view topic, std::string_view word) {
-  std::string const text = list(std::string(topic));
+std::string from_list(ListRow const& topic, std::string_view word) {
+  std::string const text = topic.text();
   std::string found, owner;
   bool inside = false;
   Lines lines{text};
@@ -156,8 +154,8 @@ std::string from_list(std::string_view topic, std::string_view word) {
   return found;
 }
 
-void add_words(std::string_view topic, std::vector<std::string>& words) {
-  std::string const text = list(std::string(topic));
+void add_words(ListRow const& topic, std::vector<std::string>& words) {
+  std::string const text = topic.text();
   Lines lines{text};
   for (std::string_view line; lines.next(line);) {
     if (line.empty() || line.starts_with("   ")) continue;
@@ -189,7 +187,7 @@ std::optional<std::string> help_on(std::string const& word) {
           "  what a fit or prediction makes of a record\n");
   for (KeywordRow const& row : keyword_rows)
     if (row.word == word) add(entry_of(row));
-  for (std::string_view const topic : topics) add(from_list(topic, word));
+  for (ListRow const& topic : lists()) add(from_list(topic, word));
   if (auto const page = module_page(word)) add(*page);
   if (text.empty())
     if (auto const section = explain(word)) add(*section);
@@ -217,7 +215,7 @@ std::vector<std::string> const& words_with_help() {
     for (auto const rows : {statistics(), series_functions()})
       for (PromptFunction const& row : rows) words.emplace_back(row.name);
     for (KeywordRow const& row : keyword_rows) words.emplace_back(row.word);
-    for (std::string_view const topic : topics) add_words(topic, words);
+    for (ListRow const& topic : lists()) add_words(topic, words);
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     return words;

@@ -10,6 +10,7 @@
 #include "check/scope.hpp"
 #include "check/walk.hpp"
 #include "inference/convergence.hpp"
+#include "repl/workbench.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 
@@ -315,14 +316,17 @@ bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
       return true;
     }
     std::string const path = path_of(*reference);
+    std::vector<std::string> names = known_names();
+    for (CommandRow const& row : commands()) names.emplace_back(row.name);  // a command misspelt reads like a quantity
+    std::string const near = did_you_mean(path, names);
     if (results_.empty())
       refuse(tree.span, fmt::format("there is no `{}`: no task has been run yet", path),
-             "expressions at the prompt are over results; run a fit first");
+             !near.empty() ? near : "expressions at the prompt are over results; run a fit first");
     else if (result(path) != nullptr)
       refuse(tree.span, fmt::format("`{}` is a task, not a number", path),
              fmt::format("`{}.NAME` is one of its quantities, `show {}` all of it", path, path));
     else
-      refuse(tree.span, fmt::format("no result has a `{}`", path), did_you_mean(path, known_names()));
+      refuse(tree.span, fmt::format("no result has a `{}`", path), near);
     return false;
   }
   bool sound = true;

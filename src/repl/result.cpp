@@ -4,73 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
+#include "report/number_table.hpp"
 
 namespace sysid::repl {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double number(std::string_view text) {
-  double value = std::nan("");
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (char const c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
-  return cells;
-}
-
-/// A table of the program's own: comments in the head alone, one header, numbers.
-struct Table {
-  std::map<std::string, std::string> head;  // "experiment" of `# experiment = bench`
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-
-  std::vector<double> const* find(std::string const& name) const {
-    auto const place = std::find(names.begin(), names.end(), name);
-    return place == names.end() ? nullptr : &columns[static_cast<std::size_t>(place - names.begin())];
-  }
-};
-
-Table read_table(std::filesystem::path const& path) {
-  std::string const text = read_file(path);
-  Table table;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t const end = std::min(text.find('\n', at), text.size());
-    std::string_view const line = std::string_view(text).substr(at, end - at);
-    at = end + 1;
-    if (line.starts_with("# ")) {
-      auto const equals = line.find(" = ");
-      if (equals != std::string_view::npos) table.head[std::string(line.substr(2, equals - 2))] = line.substr(equals + 3);
-    } else if (table.names.empty()) {
-      table.names = cells_of(line);
-      table.columns.resize(table.names.size());
-    } else if (!line.empty()) {
-      std::size_t from = 0;
-      for (std::vector<double>& column : table.columns) {
-        std::size_t const comma = std::min(line.find(',', from), line.size());
-        column.push_back(from <= line.size() ? number(line.substr(from, comma - from)) : std::nan(""));
-        from = comma + 1;
-      }
-    }
-  }
-  return table;
-}
 
 /// "y [m], y' [m/s]" by name.
 std::map<std::string, std::string> units_of(std::string const& text) {
@@ -92,14 +34,13 @@ std::map<std::string, std::string> units_of(std::string const& text) {
 }
 
 RecordSeries read_record(std::filesystem::path const& path) {
-  Table const table = read_table(path);
+  NumberTable const table = read_number_table(path);
   RecordSeries record;
   auto const of_head = [&](std::string const& key) {
     auto const place = table.head.find(key);
     return place == table.head.end() ? std::string() : place->second;
   };
   record.experiment = of_head("experiment");
-  if (table.names.empty()) return record;
   record.axis = table.names.front();
   if (record.axis != "t") record.unit.clear();
   record.time = table.columns.front();
@@ -150,7 +91,7 @@ Result read_result(std::filesystem::path const& folder, std::string const& task,
   }
   constexpr std::size_t of_sampler = 4;  // columns before the user's
   for (int k = 1; verb == "fit" && std::filesystem::exists(folder / fmt::format("draws_{}.csv", k)); ++k) {
-    Table const table = read_table(folder / fmt::format("draws_{}.csv", k));
+    NumberTable const table = read_number_table(folder / fmt::format("draws_{}.csv", k));
     if (table.columns.size() != result.draws.size() + of_sampler) continue;
     result.chains.push_back(table.columns.front().size());
     for (std::size_t c = 0; c < result.draws.size(); ++c) {

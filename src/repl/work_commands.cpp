@@ -24,11 +24,10 @@ bool Workbench::command(CommandRow const& row, std::string const& arguments) {
 }
 
 bool Workbench::list(Arguments topic) {
-  constexpr std::string_view topics[] = {"functions", "distributions", "kernels", "backends", "discovery", "solvers", "modules"};
   if (!topic.empty()) {
-    if (std::find(std::begin(topics), std::end(topics), topic) == std::end(topics))
-      return refuse(fmt::format("there is no list of {}", topic), fmt::format("topics are {}", fmt::join(topics, ", ")));
-    voices_.answers << sysid::list(topic) << std::flush;
+    ListRow const* const row = find_list(topic);
+    if (row == nullptr) return refuse(fmt::format("there is no list of {}", topic), "topics are " + list_topics());
+    voices_.answers << row->text() << std::flush;
     return true;
   }
   if (work_.items.empty()) {

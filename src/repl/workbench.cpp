@@ -9,17 +9,12 @@
 #include "app/experiments.hpp"
 #include "app/pipeline.hpp"
 #include "repl/change.hpp"
+#include "repl/words.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid::repl {
 namespace {
-
-std::string stripped(std::string_view text) {
-  auto const first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
-}
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
   for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);

@@ -15,6 +15,11 @@
 namespace sysid {
 namespace {
 
+std::string checks_text(bool pass, int warnings) {
+  if (!pass) return "doubtful";
+  return warnings == 0 ? "pass" : fmt::format("pass, {} {}", warnings, warnings == 1 ? "warning" : "warnings");
+}
+
 /// To a tenth, and never below zero by rounding alone.
 std::string difference_text(double difference) { return fmt::format("{:.1f}", std::fabs(difference) < 0.05 ? 0 : difference); }
 
@@ -28,7 +33,7 @@ ReportTable fits_table(Comparison const& comparison) {
     table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
                           fit.log_evidence ? fmt::format("{:.1f}", *fit.log_evidence) : "-",
                           fit.log_evidence ? difference_text(*fit.log_evidence - best) : "-",
-                          fit.probability ? fmt::format("{:.3f}", *fit.probability) : "-", fit.pass ? "pass" : "doubtful"});
+                          fit.probability ? fmt::format("{:.3f}", *fit.probability) : "-", checks_text(fit.pass, fit.warnings)});
     std::string note;
     if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);
     if (fit.rough) note = fmt::format("{}: its evidence is rough, {:+.1f} along the axes of its mode", fit.name, *fit.rough);
@@ -44,7 +49,13 @@ ReportTable predictions_table(std::span<ComparedPrediction const> predictions) {
   table.header = {"prediction", "model", "from", "nmse [%]", "coverage_95", "checks"};
   for (ComparedPrediction const& each : predictions)
     table.rows.push_back({each.name, each.model, each.kind, significant(each.nmse, 4),
-                          each.coverage ? significant(*each.coverage, 4) : "-", each.pass ? "pass" : "doubtful"});
+                          each.coverage ? significant(*each.coverage, 4) : "-", checks_text(each.pass, each.warnings)});
+  // Models without a past predict in one way only.
+  if (std::all_of(predictions.begin(), predictions.end(), [](ComparedPrediction const& each) { return each.kind.empty(); })) {
+    constexpr std::ptrdiff_t kind = 2;
+    table.header.erase(table.header.begin() + kind);
+    for (auto& row : table.rows) row.erase(row.begin() + kind);
+  }
   return table;
 }
 
@@ -71,13 +82,15 @@ std::string comparison_text(Comparison const& comparison) {
     text += fmt::format("{}{}\n\n{}", text.empty() ? "" : "\n", table.title, align_columns(rows, 3));
     if (!table.caption.empty()) text += "\n" + table.caption + "\n";
   }
+  if (!comparison.notes.empty()) text += "\n";
+  for (std::string const& note : comparison.notes) text += note + "\n";
   return text;
 }
 
 std::string comparison_json(Comparison const& comparison) {
   using Json = nlohmann::ordered_json;
   auto const number = [](std::optional<double> const& value) { return value ? Json(*value) : Json(nullptr); };
-  Json out = {{"data", comparison.data}, {"fits", Json::array()}, {"predictions", Json::array()}};
+  Json out = {{"data", comparison.data}, {"fits", Json::array()}, {"predictions", Json::array()}, {"notes", comparison.notes}};
   for (ComparedFit const& fit : comparison.fits) {
     Json entry = {{"name", fit.name},
                   {"model", fit.model},
@@ -86,7 +99,8 @@ std::string comparison_json(Comparison const& comparison) {
                   {"log_evidence", number(fit.log_evidence)},
                   {"rough", number(fit.rough)},
                   {"probability", number(fit.probability)},
-                  {"pass", fit.pass}};
+                  {"pass", fit.pass},
+                  {"warnings", fit.warnings}};
     if (!fit.log_evidence) entry["reason"] = fit.without;
     out["fits"].push_back(std::move(entry));
   }
@@ -99,6 +113,7 @@ std::string comparison_json(Comparison const& comparison) {
                                   {"nmse", each.nmse},
                                   {"coverage_95", number(each.coverage)},
                                   {"pass", each.pass},
+                                  {"warnings", each.warnings},
                                   {"samples_sha256", each.samples}});
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

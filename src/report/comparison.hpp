@@ -19,6 +19,7 @@ struct ComparedFit {
   std::optional<double> probability;   // under equal odds of the models before the data
   std::string without;                 // why it has no evidence
   bool pass = true;                    // its checks
+  int warnings = 0;                    // among their findings
 };
 
 /// The errors of a prediction on one channel of a record.
@@ -30,6 +31,7 @@ struct ComparedPrediction {
   double nmse = 0;   // [%]
   std::optional<double> coverage;
   bool pass = true;
+  int warnings = 0;
   std::string samples;  // digest of what is predicted
 };
 
@@ -37,6 +39,7 @@ struct Comparison {
   std::string data;  // of the fits: "flume.train, rows 101..500 (400)"
   std::vector<ComparedFit> fits;
   std::vector<ComparedPrediction> predictions;  // of the same samples one after another
+  std::vector<std::string> notes;               // lines below the tables
 };
 
 /// The fits, whose log Bayes factors are against the best of them, then the predictions, those of the same samples together. A

@@ -13,7 +13,7 @@ namespace {
 
 using namespace plot;
 
-constexpr std::size_t shown_inputs = 3;
+constexpr std::size_t most_crossed = 3;
 constexpr int most_lags = 60;
 /// Of fewer the correlations say nothing.
 constexpr std::ptrdiff_t least_residuals = 20;
@@ -88,7 +88,7 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
     else
       ++constant;
   }
-  std::size_t const left_out = crossed.size() > shown_inputs ? crossed.size() - shown_inputs : 0;
+  std::size_t const left_out = crossed.size() > most_crossed ? crossed.size() - most_crossed : 0;
   crossed.resize(crossed.size() - left_out);
 
   int const width = column_width, each = 118, below = 44, height = below + each * (1 + static_cast<int>(crossed.size()));
@@ -115,7 +115,7 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
       "them, too; a pattern is dynamics the model lacks.",
       quantity.name, crossed.empty() ? "" : ", and below it their correlation with what the input was as many samples before");
   if (!crossed.empty()) out.caption += " Bars outside the lower band are what the input does and the model does not follow.";
-  if (left_out > 0) out.caption += fmt::format(" Shown are the first {} of {} inputs.", shown_inputs, shown_inputs + left_out);
+  if (left_out > 0) out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + left_out);
   if (constant > 0) out.caption += " An input that does not vary has no correlation.";
   return out;
 }

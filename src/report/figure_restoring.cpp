@@ -13,7 +13,7 @@ namespace {
 using namespace plot;
 
 /// So many samples still show single loops.
-constexpr std::size_t shown_samples = 500;
+constexpr std::size_t loop_samples = 500;
 constexpr int shown_turns = 24;
 /// So many points leave the surface to be seen.
 constexpr std::size_t shown_points = 400;
@@ -33,7 +33,7 @@ std::pair<std::size_t, std::size_t> window(RestoringForce::Path const& path) {
   std::size_t first = largest, last = largest + 1;
   int turns = 0;
   auto const turns_at = [&](std::size_t i) { return path.velocity[i - 1] * path.velocity[i] < 0 ? 1 : 0; };
-  while (last - first < shown_samples && turns < shown_turns && (first > 0 || last < displacement.size())) {
+  while (last - first < loop_samples && turns < shown_turns && (first > 0 || last < displacement.size())) {
     if (last < displacement.size()) turns += turns_at(last++);
     if (first > 0) turns += turns_at(first--);
   }

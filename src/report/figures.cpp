@@ -45,8 +45,7 @@ std::vector<Figure> figures(Report const& report) {
     if (!force.surface.empty()) out.push_back(surface_figure(force));
   }
   if (std::size_t const records = records_of(report.forces); records > 0 && records < report.predictions.size())
-    out.back().caption +=
-        fmt::format(" Restoring forces are shown along the first {} of {} records.", records, report.predictions.size());
+    out.back().caption += fmt::format(" Restoring forces are shown along {} of {} records.", records, report.predictions.size());
   if (report.discovery)
     for (std::size_t e = 0; e < report.discovery->equations.size(); ++e) {
       if (!report.discovery->equations[e].terms.empty()) out.push_back(inclusion_figure(*report.discovery, e));

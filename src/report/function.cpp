@@ -53,8 +53,10 @@ Figure function_figure(FunctionReport const& function) {
   Figure out;
   out.name = "function_" + identifier(function.name);
   out.title = fmt::format("The function {} that was found", function.name);
-  out.caption = fmt::format("The function and the band that holds it with 90 %, given what was fitted{}.",
-                            count == 1 ? "" : ", along each input with the others in the middle");
+  out.caption = fmt::format(
+      "The function and the band that holds it with 90 %, given the draws of the other parameters, of an optimum their one "
+      "value{}.",
+      count == 1 ? "" : ", along each input with the others in the middle");
   out.script = preamble(out.name, width, height);
   std::pair<double, double> values{0, 0};
   for (auto const& cut : function.cuts)

@@ -50,12 +50,17 @@ std::string run_title(std::size_t tasks) { return fmt::format("A run of {} task{
 /// The models and predictions of a run side by side; empty where none can be compared.
 std::string together(RunReport const& run) {
   std::string out;
-  for (ReportTable const& table : run.comparisons) out += table_html(table, 3);
-  if (!run.comparisons.empty() || !run.apart.empty())
-    out += paragraph(run.apart + (run.comparisons.empty() ? ""
-                                                          : "Log Bayes factors are against the best; a difference of 5 is strong. "
-                                                            "Evidences are densities of the samples, so that fits to the same ones "
-                                                            "are compared and no others."),
+  bool evidences = false;
+  for (ReportTable const& table : run.comparisons) {
+    bool const fits = table.header.front() == "fit";
+    evidences = evidences || fits;
+    out += table_html(table, fits ? 3 : 2);
+  }
+  if (evidences || !run.apart.empty())
+    out += paragraph(run.apart + (!evidences ? ""
+                                             : "Log Bayes factors are against the best; a difference of 5 is strong. "
+                                               "Evidences are densities of the samples, so that fits to the same ones "
+                                               "are compared and no others."),
                      "note");
   return out;
 }

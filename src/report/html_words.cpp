@@ -41,12 +41,13 @@ std::string error_words(Worst const& nmse) {
 }
 
 std::string coverage_words(Worst const& coverage, double expected) {
-  double const off = coverage.value - expected;
+  // Five in a hundred may be missing where 95 % are expected, one in a hundred where 99.7 % are: chance goes by the root.
+  double const off = coverage.value - expected, short_of = std::sqrt(0.05 * (1 - expected));
   return fmt::format("{} % of the scored samples lie inside{}, where {} % should: {}.", number(100 * coverage.value),
                      coverage.where, number(100 * expected),
-                     off < -0.05   ? "the bands are too narrow for these data"
-                     : off > 0.035 ? "the bands are wider than need be"
-                                   : "the bands are as wide as they say");
+                     off < -short_of ? "the bands are too narrow for these data"
+                     : off > 0.035   ? "the bands are wider than need be"
+                                     : "the bands are as wide as they say");
 }
 
 /// The check knows how much of it is chance. fitted: the noise is a parameter, which takes the size that the residuals leave.

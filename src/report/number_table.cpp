@@ -44,6 +44,11 @@ UserError damaged(std::filesystem::path const& path, std::string const& what) {
 
 }  // namespace
 
+std::vector<double> const* NumberTable::find(std::string_view name, std::size_t from) const {
+  auto const place = std::find(names.begin() + static_cast<std::ptrdiff_t>(std::min(from, names.size())), names.end(), name);
+  return place == names.end() ? nullptr : &columns[static_cast<std::size_t>(place - names.begin())];
+}
+
 NumberTable read_number_table(std::filesystem::path const& path) {
   std::string const text = read_file(path);
   std::string_view rest = text;
@@ -53,6 +58,9 @@ NumberTable read_number_table(std::filesystem::path const& path) {
     if (end == rest.npos) throw damaged(path, fmt::format("line {} is cut short", number));
     std::string_view line = rest.substr(0, end);
     rest.remove_prefix(end + 1);
+    if (line.starts_with("# "))
+      if (std::size_t const equals = line.find(" = "); equals != line.npos)
+        table.head.emplace(line.substr(2, equals - 2), line.substr(equals + 3));
     if (line.empty() || line.front() == '#') continue;
     if (table.names.empty()) {
       while (!line.empty()) table.names.push_back(take_cell(line));

@@ -84,7 +84,7 @@ class Relations {
     for (ast::Name const& input : inputs) {
       ast::Reference reference;
       reference.name = input;
-      call.arguments.push_back({{}, std::nullopt, ast::Expression{{}, std::move(reference)}});
+      call.arguments.emplace_back().value.node = std::move(reference);
     }
     return formula_.call(call);
   }

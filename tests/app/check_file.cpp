@@ -17,7 +17,7 @@ using namespace sysid;
 
 namespace {
 
-std::filesystem::path const golden = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/check";
+std::filesystem::path const golden_pages = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/check";
 
 // The task that makes the shipped record, which has no values for parameters that a test adds.
 std::string truth_task() {
@@ -166,7 +166,7 @@ TEST_CASE("the page of shipped models is the recorded one, and JSON holds the sa
     CAPTURE(name);
     CheckResult const result = checked(models / (std::string(name) + ".sysid"), shipped(std::string(name) + ".sysid"));
     std::string const page = without(check_text(result.page), models.string() + "/");
-    auto const record = golden / (std::filesystem::path(name).filename().string() + ".txt");
+    auto const record = golden_pages / (std::filesystem::path(name).filename().string() + ".txt");
     if (bless) write_file(record, page);
     CHECK(page == read_file(record));
     nlohmann::json const object = nlohmann::json::parse(check_json(result.page, ""));

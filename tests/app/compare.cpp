@@ -15,7 +15,7 @@ using json = nlohmann::json;
 
 namespace {
 
-std::string record() {
+std::string compared_record() {
   Stream stream({.seed = 7, .purpose = Purpose::test, .index = 0, .step = 0});
   std::ostringstream text;
   text << "t,x,y\n";
@@ -56,7 +56,7 @@ model longer {
 data points { file "points.csv"; time t [s]; input x = x; measure y = y; split train = rows 5..80, head = rows 1..80, test = rows 81..120 }
 )";
 
-CaseRun runs(std::string const& tasks) { return CaseRun(models + tasks, {{"points.csv", record()}}); }
+CaseRun runs(std::string const& tasks) { return CaseRun(models + tasks, {{"points.csv", compared_record()}}); }
 
 }  // namespace
 

@@ -16,7 +16,7 @@ using namespace sysid;
 
 namespace {
 
-std::string const oscillator = R"(
+std::string const drawn_oscillator = R"(
 model spring {
   input   x [N]
   state   y [mm]
@@ -74,7 +74,7 @@ double error(std::string const& script, std::string const& rows, std::function<d
 }  // namespace
 
 TEST_CASE("the restoring force of a spring is the one it was made with, by the model and by the data") {
-  CaseRun const run(with(oscillator, "NOISE", "1"), {});
+  CaseRun const run(with(drawn_oscillator, "NOISE", "1"), {});
   std::string const script = run.file("best/figures/loop_bench_y.gnuplot");
   for (char const* label : {"'restoring force [N]'", "'y [mm]'", "'y'' [mm/s]'"})
     REQUIRE_MESSAGE(script.find(label) != std::string::npos, label);
@@ -88,7 +88,7 @@ TEST_CASE("the restoring force of a spring is the one it was made with, by the m
 }
 
 TEST_CASE("a spring on a moving ground pulls back, too: the sign of its input is turned") {
-  std::string text = with(oscillator, "NOISE", "1");
+  std::string text = with(drawn_oscillator, "NOISE", "1");
   for (std::size_t at = 0; (at = text.find("= x\n", at)) != std::string::npos; at += 5) text.replace(at, 4, "= -x\n");
   REQUIRE(text.find("= -x\n") != std::string::npos);
   CaseRun const run(text, {});
@@ -108,7 +108,7 @@ TEST_CASE("a spring on a moving ground pulls back, too: the sign of its input is
 
 TEST_CASE("figures are drawn anew from the folder of their results") {
   REQUIRE(can_draw(FigureFormat::pdf));
-  CaseRun const run(with(oscillator, "NOISE", "1"), {});
+  CaseRun const run(with(drawn_oscillator, "NOISE", "1"), {});
   std::filesystem::path const results = run.folder.path() / "results", figures = results / "best/figures";
   redraw_figures(results, {FigureFormat::text, FigureFormat::pdf});
   CHECK(std::filesystem::exists(figures / "loop_bench_y.txt"));
@@ -118,7 +118,7 @@ TEST_CASE("figures are drawn anew from the folder of their results") {
 }
 
 TEST_CASE("data that are noise once they are differentiated twice are left out") {
-  CaseRun const run(with(oscillator, "NOISE", "60"), {});
+  CaseRun const run(with(drawn_oscillator, "NOISE", "60"), {});
   std::string const script = run.file("best/figures/loop_bench_y.gnuplot");
   CHECK(script.find("$displacement_data") == std::string::npos);
   CHECK(script.find("$displacement_model") != std::string::npos);
@@ -156,7 +156,7 @@ best = fit decay to bench with map, seed = 1
 }
 
 TEST_CASE("a hysteresis has loops and no surface") {
-  std::string hysteresis = with(oscillator, "NOISE", "1");
+  std::string hysteresis = with(drawn_oscillator, "NOISE", "1");
   hysteresis = with(hysteresis, "state   y [mm]", "state   y [mm], z [N]");
   hysteresis = with(hysteresis, "y' = 0", "y' = 0, z = 0");
   hysteresis = with(hysteresis, "  m*y'' + c*y' + k*y + k3*y^3 = x", "  m*y'' + c*y' + z = x\n  z' = k*y' - k3/area*abs(y')*z");
@@ -168,7 +168,7 @@ TEST_CASE("a hysteresis has loops and no surface") {
 }
 
 TEST_CASE("a model of first order has no restoring force") {
-  std::string first = with(oscillator, "NOISE", "1");
+  std::string first = with(drawn_oscillator, "NOISE", "1");
   first = with(first, "initial y = 0, y' = 0", "initial y = 0");
   first = with(first, "  parameter m  [kg]     ~ log_uniform(0.1, 10)\n", "");
   first = with(first, "m = 1, ", "");
@@ -182,7 +182,7 @@ namespace {
 
 /// The spring with a second mass of the same size on it, pushed at that; ground: what holds the second to the ground.
 std::string chain(std::string const& ground) {
-  std::string text = with(oscillator, "NOISE", "1");
+  std::string text = with(drawn_oscillator, "NOISE", "1");
   text = with(text, "state   y [mm]", "state   y [mm], w [mm]");
   text = with(text, "y' = 0", "y' = 0, w = 0, w' = 0");
   text =
@@ -209,6 +209,29 @@ TEST_CASE("each spring between coupled masses has its force, over its elongation
   CHECK(test::broken_promises(run.folder.path() / "results") == "");
 }
 
+TEST_CASE("what pulls at one mass alone is no link: an actuator that follows, a mass carried along, in any order of the states") {
+  // w reads y, which does not read w: y has the force of its spring, w none by the data.
+  std::string text = chain("");
+  text = with(text, " - k*(w - y) - c*(w' - y') = 0 [N]", " = x");
+  CaseRun const carried(text, {});
+  CaseRun const other_order(with(text, "state   y [mm], w [mm]", "state   w [mm], y [mm]"), {});
+  auto const loops = [](CaseRun const& run) {
+    std::set<std::string> names;
+    for (auto const& entry : std::filesystem::directory_iterator(run.folder.path() / "results/best/figures"))
+      if (entry.path().filename().string().starts_with("loop_")) names.insert(entry.path().filename().string());
+    return names;
+  };
+  CHECK(loops(carried).contains("loop_bench_y.gnuplot"));
+  CHECK(loops(other_order) == loops(carried));
+  // A ring in one sense: w reads v directly, v reads y, y reads w; v follows w in turn.
+  std::string ring = with(chain(" + 0.1*k*(w - v)"), "state   y [mm], w [mm]", "state   v [mm], y [mm], w [mm]");
+  ring = with(ring, "y' = 0, w", "y' = 0, v = 0, v' = 0, w");
+  ring = with(ring, " = 0 [N]\n", " + k*(y - v) = 0 [N]\n  m*v'' + c*v' + k*(v - y) = 0 [N]\n");
+  CaseRun const actuated(ring, {});
+  CHECK(actuated.result.exit <= 1);
+  CHECK(loops(actuated).contains("loop_bench_w_y.gnuplot"));
+}
+
 TEST_CASE("where both masses are held by the ground, too, the model alone tells the forces apart") {
   CaseRun const run(chain(" + 2*k*w"), {});
   for (auto const& [name, stiffness] : {std::pair("w_y", 1e4), std::pair("w", 2e4)}) {
@@ -220,7 +243,7 @@ TEST_CASE("where both masses are held by the ground, too, the model alone tells 
 }
 
 TEST_CASE("an accelerometer shows the force without any differentiation") {
-  std::string text = with(oscillator, "NOISE", "1");
+  std::string text = with(drawn_oscillator, "NOISE", "1");
   text = with(text, "observe displacement ~ normal(y, sd = sigma)", "observe felt ~ normal(y'', sd = 1e6*sigma/area)");
   text = with(text, "  parameter sigma", "  parameter area [s^2] = 1\n  parameter sigma");
   text = with(text, "measure displacement = displacement [mm]", "measure felt = felt [mm/s^2]");

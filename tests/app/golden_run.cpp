@@ -15,8 +15,8 @@ using json = nlohmann::json;
 
 namespace {
 
-std::filesystem::path const models = std::filesystem::path(SYSID_SOURCE_DIR) / "models";
-std::filesystem::path const golden = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/run";
+std::filesystem::path const shipped_models = std::filesystem::path(SYSID_SOURCE_DIR) / "models";
+std::filesystem::path const golden_runs = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/run";
 
 // Where two summaries differ, as "posterior.parameters.m.mean"; empty when nowhere.
 std::string difference(json const& expected, json const& found, std::string const& path) {
@@ -48,7 +48,7 @@ std::string difference(json const& expected, json const& found, std::string cons
 TEST_CASE("every shipped model runs to its recorded summary and exit code") {
   bool const bless = std::getenv("SYSID_BLESS") != nullptr;
   int count = 0;
-  for (auto const& entry : std::filesystem::recursive_directory_iterator(models)) {
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(shipped_models)) {
     if (entry.path().extension() != ".sysid") continue;
     ++count;
     CAPTURE(entry.path().string());
@@ -64,12 +64,13 @@ TEST_CASE("every shipped model runs to its recorded summary and exit code") {
       found[task.path().filename().string()] = json::parse(read_file(task.path() / "summary.json"));
     }
     // The version is a banner; paths in messages are those of this checkout.
-    std::string text = without(found.dump(1), models.string() + "/");
+    std::string text = without(found.dump(1), shipped_models.string() + "/");
     found = json::parse(text);
     for (auto& [name, summary] : found.items())
       if (summary.is_object())
         for (char const* key : {"versions", "kept_draws"}) summary.erase(key);  // these are summaries once more, of fewer draws
-    auto const record = golden / (entry.path().parent_path().filename().string() + "_" + entry.path().stem().string() + ".json");
+    auto const record =
+        golden_runs / (entry.path().parent_path().filename().string() + "_" + entry.path().stem().string() + ".json");
     if (bless) write_file(record, found.dump(1) + "\n");
     REQUIRE(std::filesystem::exists(record));
     std::string const where = difference(json::parse(read_file(record)), found, "");

@@ -12,7 +12,7 @@ using json = nlohmann::json;
 
 namespace {
 
-json finding(json const& summary, std::string const& code) {
+json finding_in(json const& summary, std::string const& code) {
   for (json const& each : summary.at("findings"))
     if (each.at("code") == code) return each;
   return nullptr;
@@ -72,7 +72,7 @@ TEST_CASE("trajectories that fail are counted with their place, and from a fifth
   CHECK(failed > 180);
   CHECK(summary.at("ledger").at("solves") == 200);
   CHECK(summary.at("ledger").at("failures").at(0).at("where").get<std::string>().find("y^2") != std::string::npos);
-  json const said = finding(summary, "failed_predictions");
+  json const said = finding_in(summary, "failed_predictions");
   REQUIRE(!said.is_null());
   CHECK(said.at("severity") == "error");
   CHECK(said.at("message").get<std::string>().find(std::to_string(failed) + " of 200 trajectories") == 0);
@@ -84,7 +84,7 @@ TEST_CASE("trajectories that stay finite are no finding") {
   CaseRun const run(growth + "later = predict past on long with draws(200), seed = 1\n", {early, {"long.csv", rows_to(2)}});
   json const summary = run.summary("later");
   CHECK(summary.at("ledger").at("failed") == 0);
-  CHECK(finding(summary, "failed_predictions").is_null());
+  CHECK(finding_in(summary, "failed_predictions").is_null());
   CHECK(summary.at("verdict").at("pass") == true);
 }
 
@@ -106,11 +106,11 @@ again = predict line_fit on bench with draws(200), seed = 1
   REQUIRE(r.size() == 200);  // each is predicted once
   auto const below = std::count_if(r.begin(), r.end(), [](double value) { return value < 0.42; });
   REQUIRE(below > 10);
-  json const said = finding(run.summary("again"), "undefined_in_band");
+  json const said = finding_in(run.summary("again"), "undefined_in_band");
   REQUIRE(!said.is_null());
   CHECK(said.at("severity") == "warning");
   CHECK(said.at("message") == "margin has no value somewhere along " + std::to_string(below) +
                                   " of 200 trajectories, and its band is that of the others");
-  CHECK(finding(run.summary("again"), "failed_predictions").is_null());
-  CHECK_FALSE(finding(run.summary("line_fit"), "undefined_in_band").is_null());
+  CHECK(finding_in(run.summary("again"), "failed_predictions").is_null());
+  CHECK_FALSE(finding_in(run.summary("line_fit"), "undefined_in_band").is_null());
 }

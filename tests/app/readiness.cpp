@@ -8,13 +8,13 @@ using namespace sysid::test;
 
 namespace {
 
-std::string const model =
+std::string const decay_model =
     "model decay {\n  state y\n  initial y = 1\n  parameter k ~ log_uniform(0.1, 10)\n  y' = -k*y\n"
     "  observe size ~ normal(y, sd = 0.1)\n}\n";
 std::string const dish = "data dish {\n  file \"data/growth.csv\"\n  time t [s]\n  measure size = y\n}\n";
 std::string const fit = "posterior = fit decay to dish with mh(samples = 60, burn_in = 20, thin = 1, chains = 2), seed = 1\n";
 
-Answer run(std::string const& text, std::filesystem::path const& output, RunOptions options = {}) {
+Answer run_to(std::string const& text, std::filesystem::path const& output, RunOptions options = {}) {
   WorkingFolder const here(error_examples);
   return answer("example.sysid", text, Depth::run, output, std::move(options));
 }
@@ -26,9 +26,9 @@ TEST_CASE("mistakes in the data of any task are all reported before the first ta
   std::string const missing = "data gone { file \"data/gone.csv\"; time t [s]; measure size = y }\n";
   std::string const beyond = "data cut { file \"data/growth.csv\"; time t [s]; measure size = y; split late = rows 5..9999 }\n";
   Answer const shown =
-      run(model + dish + missing + beyond + fit + "a = predict posterior on gone with draws(5)\n" +
-              "b = predict posterior on cut.late with draws(5)\n" + "c = predict posterior on gone with draws(6)\n",
-          output.path());
+      run_to(decay_model + dish + missing + beyond + fit + "a = predict posterior on gone with draws(5)\n" +
+                 "b = predict posterior on cut.late with draws(5)\n" + "c = predict posterior on gone with draws(6)\n",
+             output.path());
   CHECK(shown.exit == ExitCode::user_error);
   CHECK(count(shown.messages, "error[E4018]") == 1);
   CHECK(count(shown.messages, "error[E4016]") == 1);
@@ -38,25 +38,25 @@ TEST_CASE("mistakes in the data of any task are all reported before the first ta
 TEST_CASE("files that cannot be read are an input error of their own") {
   TemporaryFolder const output;
   std::string const missing = "data dish { file \"data/gone.csv\"; time t [s]; measure size = y }\n";
-  CHECK(run(model + missing + fit, output.path()).exit == ExitCode::io);
+  CHECK(run_to(decay_model + missing + fit, output.path()).exit == ExitCode::io);
 }
 
 TEST_CASE("old results outlive a forced run whose data cannot be read") {
   TemporaryFolder const output;
-  REQUIRE(run(model + dish + fit, output.path()).exit <= ExitCode::doubtful);
+  REQUIRE(run_to(decay_model + dish + fit, output.path()).exit <= ExitCode::doubtful);
   std::string const before = content(output.path() / "posterior" / "draws_1.csv");
   REQUIRE_FALSE(before.empty());
   RunOptions options;
   options.force = true;
   std::string const beyond = "data late { file \"data/growth.csv\"; time t [s]; measure size = y; split end = rows 5..9999 }\n";
-  CHECK(run(model + dish + beyond + fit + "a = predict posterior on late.end with draws(5)\n", output.path(), options).exit ==
-        ExitCode::user_error);
+  CHECK(run_to(decay_model + dish + beyond + fit + "a = predict posterior on late.end with draws(5)\n", output.path(), options)
+            .exit == ExitCode::user_error);
   CHECK(content(output.path() / "posterior" / "draws_1.csv") == before);
 }
 
 TEST_CASE("a file without tasks says which it could have") {
   WorkingFolder const here(error_examples);
-  Source source("example.sysid", model + dish);
+  Source source("example.sysid", decay_model + dish);
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
   REQUIRE(file);
@@ -75,12 +75,12 @@ TEST_CASE("a selection that cannot begin is refused before the first task begins
       "model straight {\n  state y\n  initial y = 1\n  parameter rate [1/day] ~ flat()\n"
       "  parameter sigma ~ half_cauchy(scale = 1)\n  y' = -rate*y\n  observe size ~ normal(y, sd = sigma)\n}\n";
   std::string const select = "choice = select straight to dish with abc_smc(particles = 20), seed = 1\n";
-  Answer const improper = run(model + flat + dish + fit + select, output.path());
+  Answer const improper = run_to(decay_model + flat + dish + fit + select, output.path());
   CHECK(improper.exit == ExitCode::user_error);
   CHECK(count(improper.messages, "error[E6204]") == 1);
   CHECK(count(improper.messages, "`abc_smc` needs priors that can be drawn from; that of `rate` is flat") == 1);
-  Answer const rising =
-      run(model + dish + fit + "choice = select decay to dish with abc_smc(schedule = (10, 20)), seed = 1\n", output.path());
+  Answer const rising = run_to(
+      decay_model + dish + fit + "choice = select decay to dish with abc_smc(schedule = (10, 20)), seed = 1\n", output.path());
   CHECK(rising.exit == ExitCode::user_error);
   CHECK(count(rising.messages, "error[E6203]") == 1);
   CHECK_FALSE(std::filesystem::exists(output.path() / "posterior"));

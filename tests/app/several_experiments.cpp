@@ -16,7 +16,7 @@ using json = nlohmann::json;
 namespace {
 
 // Levels that drift with a shared rate, a start of their own, and a second channel that only the first experiment measures.
-std::string const text = R"(
+std::string const fleet_text = R"(
 model drift {
   input x
   state y
@@ -61,7 +61,9 @@ struct Folder {
     write_file(folder.path() / "two.csv", record(0.5, -0.4, 50, 32));
     options.output = folder.path() / "results";
   }
-  RunResult run(std::vector<std::string> const& verbs = {}) { return run_text(folder.path() / "case.sysid", text, options, verbs); }
+  RunResult run(std::vector<std::string> const& verbs = {}) {
+    return run_text(folder.path() / "case.sysid", fleet_text, options, verbs);
+  }
   std::string file(std::string const& name) const { return read_file(options.output / name); }
   json summary(std::string const& task) const { return json::parse(file(task + "/summary.json")); }
   std::map<std::string, std::string> promised() const {
@@ -115,11 +117,12 @@ TEST_CASE("a fitted experiment is predicted with its own parameters, a new one f
   Folder folder;
   folder.run();
   json const forecast = folder.summary("forecast");
-  REQUIRE(forecast["findings"].size() == 2);
+  REQUIRE(forecast["findings"].size() == 3);
   CHECK(forecast["findings"][0]["code"] == "new_experiment");
   // It is given a gain of 3 where the record was made with 0.5.
-  CHECK(forecast["findings"][1]["code"] == "coverage_low");
-  CHECK(forecast["findings"][1]["message"].get<std::string>().find("level on new lie inside the 95 % band") != std::string::npos);
+  CHECK(forecast["findings"][1]["code"] == "worse_than_the_mean");
+  CHECK(forecast["findings"][2]["code"] == "coverage_low");
+  CHECK(forecast["findings"][2]["message"].get<std::string>().find("level on new lie inside the 95 % band") != std::string::npos);
   CHECK(forecast["findings"][0]["message"] == "`new` was not fitted: `start` is drawn from the prior given the shared parameters");
   // The second record's level is known where it was fitted; the new one's start has the population's sd of 1 at least.
   auto const first_band = [&](std::string const& file) {

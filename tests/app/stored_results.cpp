@@ -12,7 +12,7 @@ using namespace sysid::test;
 
 namespace {
 
-std::string text(std::string const& parameter) {
+std::string text_with(std::string const& parameter) {
   return "model decay {\n  state y\n  initial y = 1\n  parameter " + parameter + " ~ log_uniform(0.1, 10)\n  y' = -" + parameter +
          "*y\n  observe size ~ normal(y, sd = 0.1)\n}\n" +
          "data dish {\n  file \"data/growth.csv\"\n  time t [s]\n  measure size = y\n}\n" +
@@ -23,7 +23,7 @@ std::string text(std::string const& parameter) {
 Answer run(std::string const& parameter, std::filesystem::path const& output, std::vector<std::string> const& verbs = {},
            RunOptions options = {}) {
   WorkingFolder const here(error_examples);
-  return answer("example.sysid", text(parameter), Depth::run, output, std::move(options), verbs);
+  return answer("example.sysid", text_with(parameter), Depth::run, output, std::move(options), verbs);
 }
 
 // Interrupts runs ever later, until one has begun to sample.
@@ -96,16 +96,16 @@ TEST_CASE("stored draws of other data, or of other experiments, are not taken up
   auto const run_here = [&](std::string const& file, std::vector<std::string> const& verbs) {
     return answer("example.sysid", file, Depth::run, output.path(), {}, verbs);
   };
-  CHECK(run_here(text("k"), {"fit"}).exit <= ExitCode::doubtful);
-  CHECK(run_here(text("k"), {"predict"}).exit == ExitCode::success);
+  CHECK(run_here(text_with("k"), {"fit"}).exit <= ExitCode::doubtful);
+  CHECK(run_here(text_with("k"), {"predict"}).exit == ExitCode::success);
   std::filesystem::remove_all(output.path() / "forecast");
-  std::string parted = text("k");
+  std::string parted = text_with("k");
   parted.replace(parted.find("  measure"), 0, "  split all = rows 1..4\n");
   parted.replace(parted.find("to dish"), 7, "to dish.all");
   CHECK(run_here(parted, {"predict"})
             .messages.find("error[E6201]: the results in `OUT/posterior` are of another set of experiments") != std::string::npos);
   write("data/growth.csv", csv + "99,1\n");
-  CHECK(run_here(text("k"), {"predict"})
+  CHECK(run_here(text_with("k"), {"predict"})
             .messages.find("error[E6201]: the results in `OUT/posterior` are of another content of `data/growth.csv`") !=
         std::string::npos);
 }

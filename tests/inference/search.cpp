@@ -122,6 +122,16 @@ TEST_CASE("a combination that the data leave alone is reported") {
   CHECK(search(target, Aim::posterior, posterior.context).findings.empty());
 }
 
+TEST_CASE("a sum that alone is measured is reported for bounded priors, too, where one term is known better than the other") {
+  TestTarget const target(
+      {"a", "b"}, {{Prior::uniform, 0, 10}, {Prior::uniform, 0, 10}}, 1, 0,
+      [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] + 0.5 * w[1] - 4) / 1e-5; });
+  Bench bench;
+  SearchResult const result = search(target, Aim::likelihood, bench.context);
+  CHECK(std::any_of(result.findings.begin(), result.findings.end(),
+                    [](Finding const& each) { return each.code == "flat_direction"; }));
+}
+
 TEST_CASE("a parameter that the data leave alone is named by itself") {
   TestTarget const target({"a", "idle"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
                           [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] - 1) / 0.01; });

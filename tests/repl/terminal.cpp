@@ -8,19 +8,19 @@ using namespace sysid;
 
 namespace {
 
-bool has(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+bool shows(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
 TEST_CASE("a prompt, a statement over several lines, an answer, the end") {
   TemporaryFolder folder;
   PseudoTerminal terminal(folder.path());
-  CHECK(has(terminal.until(terminal.prompt), "`help` says what there is"));
+  CHECK(shows(terminal.until(terminal.prompt), "`help` says what there is"));
   terminal.type("function twice(a) =\r");
-  CHECK(has(terminal.until("...> "), "...> "));
-  CHECK_FALSE(has(terminal.enter("2*a"), "error"));
-  CHECK(has(terminal.enter("show"), "function twice(a) = 2*a"));
-  CHECK(has(terminal.enter("mean(k)"), "no task has been run yet"));
+  CHECK(shows(terminal.until("...> "), "...> "));
+  CHECK_FALSE(shows(terminal.enter("2*a"), "error"));
+  CHECK(shows(terminal.enter("show"), "function twice(a) = 2*a"));
+  CHECK(shows(terminal.enter("mean(k)"), "no task has been run yet"));
   terminal.type("\x04");
   CHECK(terminal.ended() == 0);
 }
@@ -32,8 +32,8 @@ TEST_CASE("Ctrl-C takes back a line and what is unfinished, and the prompt goes 
   terminal.type("mean(k\r");
   terminal.until("...> ");
   terminal.type("and more\x03");
-  CHECK(has(terminal.until(terminal.prompt), "^C"));
-  CHECK(has(terminal.enter("help quit"), "ends the session"));
+  CHECK(shows(terminal.until(terminal.prompt), "^C"));
+  CHECK(shows(terminal.enter("help quit"), "ends the session"));
   terminal.type("\x03");
   terminal.until(terminal.prompt);
   terminal.type("quit\r");
@@ -45,9 +45,9 @@ TEST_CASE("Tab completes a word, and shows all that could stand there") {
   PseudoTerminal terminal(folder.path());
   terminal.until(terminal.prompt);
   terminal.type("help log_un\t\r");
-  CHECK(has(terminal.until(terminal.prompt), "log_uniform(lower, upper)"));
+  CHECK(shows(terminal.until(terminal.prompt), "log_uniform(lower, upper)"));
   terminal.type("help log_\t");
-  CHECK(has(terminal.until("log_uniform"), "log_normal"));
+  CHECK(shows(terminal.until("log_uniform"), "log_normal"));
   terminal.type("\x03");
   terminal.until(terminal.prompt);
 }
@@ -62,7 +62,7 @@ TEST_CASE("arrows recall entries, of this session and of the last, a block in on
     terminal.until("...> ");
     terminal.enter("3*a");
     terminal.type("\x1b[A\x1b[A\r");
-    CHECK(has(terminal.until("rows to fit"), "rows to fit"));
+    CHECK(shows(terminal.until("rows to fit"), "rows to fit"));
     terminal.until(terminal.prompt);
     terminal.type("\x04");
     CHECK(terminal.ended() == 0);
@@ -70,7 +70,7 @@ TEST_CASE("arrows recall entries, of this session and of the last, a block in on
   PseudoTerminal terminal(folder.path());
   terminal.until(terminal.prompt);
   terminal.type("\x1b[A\x1b[A");
-  CHECK(has(terminal.until("f(a) = 3*a"), "function f(a) = 3*a"));
+  CHECK(shows(terminal.until("f(a) = 3*a"), "function f(a) = 3*a"));
 }
 
 TEST_CASE("letters of all alphabets can be typed, and edited") {
@@ -79,7 +79,7 @@ TEST_CASE("letters of all alphabets can be typed, and edited") {
   terminal.until(terminal.prompt);
   // Two letters of two bytes, the second taken back.
   terminal.enter("function \u03b1\u03b2\x7f(a) = a");
-  CHECK(has(terminal.enter("show"), "function \u03b1(a) = a"));
+  CHECK(shows(terminal.enter("show"), "function \u03b1(a) = a"));
 }
 
 TEST_CASE("Ctrl-C stops a run and keeps its draws; what is not saved is kept, too") {
@@ -104,9 +104,9 @@ TEST_CASE("Ctrl-C stops a run and keeps its draws; what is not saved is kept, to
   terminal.until("%", 60);
   usleep(1500000);
   terminal.type("\x03");
-  CHECK(has(terminal.until(terminal.prompt, 60), "go on with `resume`"));
-  CHECK(has(terminal.enter("mean(k)"), "[N/m]"));
+  CHECK(shows(terminal.until(terminal.prompt, 60), "go on with `resume`"));
+  CHECK(shows(terminal.enter("mean(k)"), "[N/m]"));
   terminal.type("\x04");
   CHECK(terminal.ended() == 0);
-  CHECK(has(read_file(folder.path() / "state" / "sysid" / "unsaved.sysid"), "model oscillator"));
+  CHECK(shows(read_file(folder.path() / "state" / "sysid" / "unsaved.sysid"), "model oscillator"));
 }

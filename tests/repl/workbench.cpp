@@ -55,7 +55,8 @@ TEST_CASE("fits of a session are compared by their evidence, and what has not be
   REQUIRE(d.enter("refit"));
   REQUIRE_MESSAGE(d.enter("compare"), d.messages());
   CHECK(has(d.answers(), "fitted to bench.train, rows 1..200 (200)"));
-  CHECK(has(d.answers(), "first2"));
+  CHECK(has(d.answers(), "oscillator (first) "));  // the model has changed in between
+  CHECK(has(d.answers(), "oscillator (first2) "));
   CHECK_FALSE(d.enter("compare first, second"));
   CHECK_FALSE(d.enter("compare firs"));
   CHECK(has(d.messages(), "there is no result of `firs`"));
@@ -238,4 +239,24 @@ TEST_CASE("from a pipe nothing is repeated, and the exit code says whether an en
   CHECK(exit("help fit\nmean(k)\nhelp fit\n") == 1);
   CHECK(exit("quit\nmean(k)\n") == 0);
   CHECK(exit("model a {\n") == 1);
+}
+
+TEST_CASE("a command misspelt is told from a quantity, before any run and after one") {
+  Dialogue d;
+  d.begin();
+  CHECK_FALSE(d.enter("qiut"));
+  CHECK(has(d.messages(), "did you mean `quit`?"));
+  REQUIRE(d.enter("first = fit oscillator to bench.train with map"));
+  CHECK_FALSE(d.enter("chek"));
+  CHECK(has(d.messages(), "did you mean `check`?"));
+}
+
+TEST_CASE("a damaged table of draws is named, not read as numbers that are missing") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("first = fit oscillator to bench.train with map"));
+  std::filesystem::path const draws = d.folder() / "results/first/draws_1.csv";
+  std::string const text = read_file(draws);
+  write_file(draws, text.substr(0, text.rfind(',')) + "\n");  // a row that lost its last number
+  CHECK_THROWS_WITH_AS(repl::read_result(draws.parent_path(), "first", "fit"), doctest::Contains("is damaged: line"), UserError);
 }

@@ -22,8 +22,6 @@ namespace {
 using json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
 /// Proposals of one batch: enough to fill lanes and threads, few enough that the last batch of a population wastes little.
 constexpr int least_batch = 256, most_batch = 8192;
 

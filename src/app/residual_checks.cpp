@@ -1,0 +1,259 @@
+// Scores and tests of what a fit leaves, and the words for what they find.
+#include "app/residual_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/elementary.hpp"
+#include "distribution/deviance.hpp"
+#include "inference/outliers.hpp"
+#include "inference/residual_tests.hpp"
+#include "likelihood/output.hpp"
+#include "likelihood/trajectory.hpp"
+
+namespace sysid {
+namespace {
+
+// Residuals of unit size, and how much heavier than normal their tails are: what chi-squared is taken of.
+struct SizedResiduals {
+  std::vector<double> values;
+  double excess_kurtosis = 0;  // mean over the samples
+};
+
+// Pearson's, of counts: the deviance residuals of small counts are not of unit size.
+// arguments: of the channel's noise, at every sample; deviance: one residual per sample, NaN where not scored.
+SizedResiduals pearson(DistributionRow const& noise, std::vector<double> const& measured,
+                       std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance) {
+  SizedResiduals result;
+  double count = 0;
+  for (std::size_t i = 0; i < deviance.size(); ++i) {
+    result.values.push_back(std::nan(""));
+    if (std::isnan(deviance[i]) || !(noise.variance(arguments[i]) > 0)) continue;
+    result.values.back() = (measured[i] - arguments[i][0]) / std::sqrt(noise.variance(arguments[i]));
+    result.excess_kurtosis += noise.excess_kurtosis(arguments[i]);
+    count += 1;
+  }
+  if (count > 0) result.excess_kurtosis /= count;
+  return result;
+}
+
+// Deviance residuals over their size under the noise, which for heavy tails is above 1. It depends on the shape of the noise alone,
+// not on place and width, and a shape that changes along the record is met at a few of its samples.
+SizedResiduals scaled(DistributionRow const& noise, std::vector<std::vector<double>> const& arguments,
+                      std::vector<double> deviance) {
+  constexpr std::size_t looked_at = 4;
+  DevianceMoments moments{0, 0};
+  double count = 0;
+  std::size_t const step = std::max<std::size_t>(1, deviance.size() / looked_at);
+  for (std::size_t i = 0; i < deviance.size(); ++i) {
+    if (std::isnan(deviance[i]) || (count > 0 && i % step != 0) || !noise.refuse(arguments[i]).empty()) continue;
+    DevianceMoments const here = deviance_moments(noise, arguments[i]);
+    moments.mean += here.mean;
+    moments.variance += here.variance;
+    count += 1;
+  }
+  if (count == 0) return {std::move(deviance), 0};
+  moments = {moments.mean / count, moments.variance / count};
+  constexpr double as_normal = 1e-4;
+  if (std::fabs(moments.mean - 1) < as_normal) return {std::move(deviance), 0};
+  for (double& residual : deviance) residual /= std::sqrt(moments.mean);
+  return {std::move(deviance), moments.excess_kurtosis()};
+}
+
+/// nmse [%] from which a fit is no model of its record, whatever its residuals: the error is larger than what there was to explain.
+constexpr double useless = 200;
+/// nmse [%] from which a fit that leaves more than noise explains little, and next to nothing.
+constexpr double little = 50, next_to_nothing = 90;
+
+// A channel over the scored rows of an experiment.
+struct ScoredChannel {
+  ModelTarget const& target;
+  int experiment, channel;
+  std::vector<double> residuals;            // [N] standardised, NaN where not scored
+  std::vector<double> observed, predicted;  // where scored, declared unit
+  SizedResiduals sized;
+
+  Model const& model() const { return target.compiled()->model; }
+  Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
+  Experiment const& data() const { return target.experiments()[static_cast<std::size_t>(experiment)]; }
+  std::string name() const { return described().name + on_experiment(target, experiment); }
+  bool noise_is_estimated() const {
+    return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(), [&](NodeId argument) {
+      return model().graph.depends(argument, [&](Node const& node) {
+        return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
+               model().parameters[static_cast<std::size_t>(node.index)].prior.has_value();
+      });
+    });
+  }
+};
+
+// nmse [%] on the scale on which the noise has one size: by logarithms where it multiplies.
+double unexplained(ScoredChannel const& of) {
+  DistributionRow const& noise = *of.described().noise.row;
+  if (noise.lower == nullptr || noise.discrete) return nmse(of.observed, of.predicted);
+  std::vector<double> observed = of.observed, predicted = of.predicted;
+  for (std::vector<double>* const series : {&observed, &predicted})
+    for (double& value : *series) value = value > 0 ? elementary::log(value) : std::nan("");
+  for (std::size_t i = 0; i < observed.size(); ++i)
+    if (std::isnan(predicted[i])) observed[i] = std::nan("");
+  return nmse(observed, predicted);
+}
+
+// The nmse that a fit exceeds by chance once in a thousand records where the mean explains all there is: of n samples of noise
+// about the right prediction the sums of squares about it and about the mean differ by less than sigma^2 chi-squared(2), of 99.9 %
+// quantile 13.8. Not a number of a channel that did not change, of which nothing is said.
+double as_bad_as_the_mean(ScoredChannel const& of) {
+  constexpr double excess = 13.8;
+  return 100 * (1 + excess / static_cast<double>(of.observed.size()));
+}
+
+// coloured: what the fit leaves is more than noise.
+void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
+  constexpr char const* look = "look at units, signs and columns, at the initial values and the priors, then at the model";
+  double const left = unexplained(of);
+  if (left > as_bad_as_the_mean(of))
+    findings.push_back(
+        {left > useless || coloured ? Severity::error : Severity::warning, "worse_than_the_mean",
+         fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
+                     of.name(), left),
+         fmt::format("the fit explains nothing of this channel: {}", look)});
+  else if (coloured && left > little)
+    findings.push_back({left > next_to_nothing ? Severity::error : Severity::warning, "explains_little",
+                        fmt::format("the fit explains {:.2g} % of the variance of {}, and what it leaves is not noise",
+                                    std::max(0.0, 100 - left), of.name()),
+                        look});
+}
+
+// Rows as the file counts them, with how far they lie off.
+void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& places, Findings& findings) {
+  if (places.empty()) return;
+  constexpr std::size_t most_named = 5;
+  std::vector<std::string> named;
+  for (std::size_t const place : places)
+    if (named.size() < most_named)
+      named.push_back(
+          fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(of.sized.values[place])));
+  if (places.size() > most_named) named.push_back("...");
+  findings.push_back(
+      {Severity::warning, "samples_far_off",
+       fmt::format("{} {} of {} {} far from all others ({})", places.size(), places.size() == 1 ? "sample" : "samples", of.name(),
+                   places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
+       "look at these rows: leave out what is no measurement (an empty cell, `nan`), or state noise with heavy "
+       "tails: `student_t(y, 4, scale = sigma)`"});
+}
+
+void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Findings& findings) {
+  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis);
+  line.scores.push_back({"chi_squared_per_sample", size.per_sample});
+  if (!size.fires()) return;
+  char const* help =
+      "the noise is larger than stated, or the model misses something: estimate the noise, then look at the residuals";
+  if (of.noise_is_estimated())
+    help =
+        "the model misses something, a prior holds it where it cannot fit, or other channels share this noise: look at the "
+        "residuals";
+  else if (size.per_sample < 1)
+    help = "the stated noise is too large: estimate it";
+  if (with_outliers) help = "a few samples far off make the noise look larger: look at these first";
+  findings.push_back(
+      {Severity::error, "noise_size",
+       fmt::format("residuals of {} are not of the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
+                   of.name(), size.per_sample, size.low, size.high),
+       help});
+}
+
+// Of a model that has a past: correlation in time, and with the input's past.
+void judge_memory(ScoredChannel const& of, CorrelationTest const& white, FitLine& line, Findings& findings) {
+  line.scores.push_back({"whiteness_p", white.p_value});
+  if (white.fires())
+    findings.push_back({Severity::warning, "residuals_not_white",
+                        fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
+                                    white.outside, white.correlation.size()),
+                        "the model misses dynamics or the noise is coloured: posterior widths are too small"});
+  std::vector<Quantity> const& inputs = of.model().inputs;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    std::vector<double> input;
+    for (std::size_t k = 0; k < of.data().time.size(); ++k) input.push_back(of.data().inputs[i].sample(static_cast<int>(k)));
+    CorrelationTest const crossed = input_correlation(of.residuals, input);
+    line.scores.push_back(
+        {"input_correlation_p" + (inputs.size() > 1 ? "(" + inputs[i].name + ")" : std::string()), crossed.p_value});
+    if (crossed.fires())
+      findings.push_back(
+          {Severity::warning, "input_in_residuals",
+           fmt::format("past values of input {} still show in the residuals of {} ({} of {} lags outside the 99 % band)",
+                       inputs[i].name, of.name(), crossed.outside, crossed.correlation.size()),
+           "the model misses part of the response to the input"});
+  }
+}
+
+FitLine judge(ScoredChannel const& of, Findings& findings) {
+  FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
+  line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
+  std::optional<CorrelationTest> white;  // rows of any order have no past
+  if (of.model().dynamics != Dynamics::none) white = whiteness(of.residuals);
+  bool const coloured = white && white->fires();
+  // Where the response is missed, it is missed most where it is largest, and a count of one is far from a small mean.
+  bool const discrete = of.described().noise.row->discrete;
+  std::vector<std::size_t> const far = coloured || discrete ? std::vector<std::size_t>() : outliers(of.sized.values);
+  Findings shape;
+  judge_size(of, !far.empty(), line, shape);
+  judge_outliers(of, far, shape);
+  if (white) judge_memory(of, *white, line, shape);
+  judge_share(of, coloured && !discrete, findings);  // deviances of small counts are neither centred nor alike
+  findings.insert(findings.end(), shape.begin(), shape.end());
+  return line;
+}
+
+// values: [D x 1] declared; residuals: all rows of the target.
+void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals, FitCheck& check) {
+  Model const& model = target.compiled()->model;
+  Experiment const& experiment = target.experiments()[static_cast<std::size_t>(e)];
+  Trajectory const trajectory(target.compiled(), experiment, target.options().solver, target.options().start_rows,
+                              target.options().execution);
+  LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
+  target.space()->select(target.space()->values_of_declared(values), e, parameters);
+  Trajectory::Result const predicted = trajectory.run(parameters, {});
+  for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {
+    auto const channel = static_cast<std::size_t>(c);
+    if (experiment.measured[channel].empty()) continue;
+    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}};
+    for (std::size_t r = 0; r < target.residual_places().size(); ++r) {
+      auto const [of_experiment, at_channel, sample] = target.residual_places()[r];
+      if (of_experiment != e || at_channel != c || sample < 0) continue;
+      auto const i = static_cast<std::size_t>(sample);
+      of.residuals[i] = residuals(static_cast<int>(r), 0);
+      of.observed.push_back(model.channels[channel].from_si(experiment.measured[channel][i]));
+      of.predicted.push_back(predicted.values[channel][0][i]);
+    }
+    if (of.observed.empty()) continue;
+    DistributionRow const& noise = *model.channels[channel].noise.row;
+    std::vector<std::vector<double>> const arguments = trajectory.noise_arguments(parameters, c);
+    of.sized = noise.discrete ? pearson(noise, experiment.measured[channel], arguments, of.residuals)
+                              : scaled(noise, arguments, of.residuals);
+    check.lines.push_back(judge(of, check.findings));
+  }
+}
+
+}  // namespace
+
+std::string on_experiment(ModelTarget const& target, int experiment) {
+  if (target.experiments().size() == 1) return {};
+  return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
+}
+
+FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared) {
+  FitCheck check;
+  int const dimension = target.dimension();
+  LaneArray values(dimension, 1), theta(dimension, 1), residuals(target.residual_count(), 1);
+  for (int p = 0; p < dimension; ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
+  target.unconstrain(values, theta);
+  Ledger ledger;
+  target.residuals(theta, residuals, ledger);
+  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) check_experiment(target, e, values, residuals, check);
+  return check;
+}
+
+}  // namespace sysid

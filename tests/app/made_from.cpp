@@ -1,0 +1,49 @@
+// A fit that is run again leaves its former prediction behind, and the page and the table say so.
+#include "app/made_from.hpp"
+
+#include <doctest/doctest.h>
+
+#include "answer.hpp"
+#include "app/compare.hpp"
+#include "app/report_results.hpp"
+#include "app/running.hpp"
+#include "report/comparison.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+TEST_CASE("a prediction of draws that have been replaced is told, and one made again is not") {
+  TemporaryFolder folder;
+  auto const results = folder.path() / "results";
+  write_file(folder.path() / "growth.csv", content(error_examples / "data/growth.csv"));
+  std::string const text =
+      "model decay {\n state y\n initial y = 1\n parameter k ~ log_uniform(0.1, 10)\n y' = -k*y\n observe size ~ normal(y, sd = "
+      "0.1)\n}\n"
+      "data dish { file \"growth.csv\"; time t [s]; measure size = y }\n"
+      "posterior = fit decay to dish with mh(samples = 200, burn_in = 50, thin = 1, chains = 2)\n"
+      "forecast = predict posterior on dish with draws(10), seed = 1\n";
+  auto const run = [&](std::vector<std::string> const& verbs, std::uint64_t seed) {
+    RunOptions options;
+    options.output = results;
+    options.force = true;
+    options.seed = seed;
+    run_text(folder.path() / "dish.sysid", text, options, verbs);
+  };
+  auto const told = [&] {
+    bool const finding = made_from_earlier(results / "forecast").has_value();
+    CHECK((content(report_results(results / "forecast", std::nullopt, false)).find("made_from_earlier") != std::string::npos) ==
+          finding);
+    CHECK((comparison_text(compare({results})).find("from an earlier `posterior`") != std::string::npos) == finding);
+    return finding;
+  };
+  run({"fit", "predict"}, 1);
+  CHECK_FALSE(told());
+  run({"fit"}, 1);  // the same again
+  CHECK_FALSE(told());
+  run({"fit"}, 2);
+  CHECK(told());
+  run({"predict"}, 2);
+  CHECK_FALSE(told());
+  std::filesystem::remove_all(results / "posterior");
+  CHECK_FALSE(made_from_earlier(results / "forecast").has_value());
+}

@@ -1,0 +1,110 @@
+// What a fit says of records that it cannot explain: of structure that it leaves, of single samples far off, of noise whose prior
+// is too narrow, and of priors that predict another size.
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/running.hpp"
+#include "core/random.hpp"
+
+using namespace sysid;
+using nlohmann::json;
+
+namespace {
+
+// The findings of a fit by `map` to rows 101 to 400 of `value(row, stream)`, 0.1 s apart; rows count from 1.
+template <class Value>
+json findings_of_late_rows(std::string const& statements, Value const& value) {
+  TemporaryFolder folder;
+  Stream stream({1, Purpose::test, 0, 0});
+  std::string table = "t,y\n";
+  for (int row = 1; row <= 400; ++row) table += fmt::format("{},{}\n", 0.1 * row, value(row, stream));
+  write_file(folder.path() / "record.csv", table);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "m.sysid",
+           "model m {\n " + statements +
+               "\n}\ndata record { file \"record.csv\"; time t [s]; measure z = y [m]; split late = rows 101..400 }\n"
+               "posterior = fit m to record.late with map, seed = 1\n",
+           options);
+  return json::parse(read_file(options.output / "posterior/summary.json")).at("findings");
+}
+
+json const* find(json const& findings, std::string const& code) {
+  for (json const& finding : findings)
+    if (finding.at("code") == code) return &finding;
+  return nullptr;
+}
+
+std::string const decay =
+    "state y [m]\n parameter y0 [m] ~ normal(0, sd = 3)\n initial y = y0\n parameter k [1/s] ~ log_uniform(0.01, 10)\n"
+    " parameter s [m] ~ log_uniform(0.001, 10)\n y' = -k*y\n observe z ~ normal(y, sd = s)";
+
+}  // namespace
+
+TEST_CASE("a fit that explains next to nothing and leaves more than noise fails, however wide its noise") {
+  json const findings =
+      findings_of_late_rows(decay, [](int row, Stream& stream) { return std::sin(0.2 * row) + 0.05 * stream.normal(); });
+  json const* const found = find(findings, "explains_little");
+  REQUIRE(found != nullptr);
+  CHECK(found->at("severity") == "error");
+}
+
+TEST_CASE("noise larger than the response is no fault of the fit") {
+  json const findings =
+      findings_of_late_rows(decay, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + 3 * stream.normal(); });
+  CHECK(find(findings, "explains_little") == nullptr);
+  CHECK(find(findings, "samples_far_off") == nullptr);
+}
+
+TEST_CASE("samples far off are named by their rows in the file") {
+  auto const value = [](int row, Stream& stream) {
+    return row == 250 ? 999 : 2 * std::exp(-0.05 * (row - 101)) + 0.01 * stream.normal();
+  };
+  SUBCASE("where the noise is estimated") {
+    json const findings = findings_of_late_rows(decay, value);
+    json const* const found = find(findings, "samples_far_off");
+    REQUIRE(found != nullptr);
+    CHECK(found->at("message").get<std::string>().find("(row 250, ") != std::string::npos);
+  }
+  SUBCASE("where noise of another size is the error, which then asks for them first") {
+    std::string stated = decay;
+    stated.replace(stated.find("log_uniform(0.001, 10)"), 22, "log_uniform(0.001, 1)");
+    json const findings = findings_of_late_rows(stated, value);
+    REQUIRE(find(findings, "samples_far_off") != nullptr);
+    REQUIRE(find(findings, "noise_size") != nullptr);
+    CHECK(find(findings, "noise_size")->at("help").get<std::string>().find("look at these first") != std::string::npos);
+  }
+}
+
+TEST_CASE("an estimated noise that does not reach the residuals is not advised to be estimated") {
+  std::string narrow = decay;
+  narrow.replace(narrow.find("log_uniform(0.001, 10)"), 22, "log_uniform(0.001, 0.1)");
+  json const findings = findings_of_late_rows(
+      narrow, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + 0.3 * stream.normal(); });
+  REQUIRE(find(findings, "noise_size") != nullptr);
+  CHECK(find(findings, "noise_size")->at("help").get<std::string>().starts_with("the model misses something, a prior holds it"));
+}
+
+TEST_CASE("a fit says when its prior predicts another size than was measured") {
+  // Millimetres in a column that is declared in metres.
+  std::string near = decay;
+  near.replace(near.find("normal(0, sd = 3)"), 17, "normal(0.003, sd = 0.001)");
+  json const findings = findings_of_late_rows(
+      near, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + 0.01 * stream.normal(); });
+  CHECK(find(findings, "prior_far_from_data") != nullptr);
+  CHECK(find(findings_of_late_rows(
+                 decay, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + stream.normal() / 100; }),
+             "prior_far_from_data") == nullptr);
+}
+
+TEST_CASE("a response that is missed where it is largest has no outliers") {
+  // A burst of three rows, one in a hundred of those fitted, that a decay cannot follow.
+  json const findings = findings_of_late_rows(
+      decay, [](int row, Stream& stream) { return (row >= 250 && row <= 252 ? 5.0 : 0.0) + 0.05 * stream.normal(); });
+  CHECK(find(findings, "samples_far_off") == nullptr);
+  CHECK(find(findings, "residuals_not_white") != nullptr);
+}
