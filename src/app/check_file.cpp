@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/experiments.hpp"
+#include "app/placeholders.hpp"
 #include "app/readiness.hpp"
 #include "syntax/parse.hpp"
 
@@ -32,8 +33,11 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
   }
   Model const& model = *task.model;
   std::vector<ExperimentData> data = load_experiments(session, there, model, task.start, task.prediction);
-  for (ExperimentData const& each : data)
+  for (ExperimentData const& each : data) {
     page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
+    Findings const found = find_placeholders(each.experiment, model);
+    page.findings.insert(page.findings.end(), found.begin(), found.end());
+  }
   if (!complete) return std::nullopt;
   return data;
 }

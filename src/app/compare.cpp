@@ -30,10 +30,13 @@ struct Result {
   json summary;
 
   bool is(std::string_view verb) const { return summary.value("what", std::string()).starts_with(std::string(verb) + " "); }
+  std::optional<Finding> earlier;  // that it was made from a fit which has been run again
+
   int warnings() const {
     json const findings = summary.value("findings", json::array());
-    return static_cast<int>(
-        std::count_if(findings.begin(), findings.end(), [](json const& each) { return each.value("severity", "") == "warning"; }));
+    return static_cast<int>(std::count_if(findings.begin(), findings.end(),
+                                          [](json const& each) { return each.value("severity", "") == "warning"; })) +
+           (earlier ? 1 : 0);
   }
   bool pass() const { return !summary.contains("verdict") || summary["verdict"].value("pass", true); }
   std::string model() const { return summary.value("model", std::string()); }
@@ -45,7 +48,7 @@ UserError refused(std::string message, std::string help) {
 
 Result read_result(fs::path const& folder) {
   Result result{folder, folder.lexically_normal().filename().string(),
-                json::parse(read_file(folder / "summary.json"), nullptr, false)};
+                json::parse(read_file(folder / "summary.json"), nullptr, false), made_from_earlier(folder)};
   if (result.name.empty()) result.name = folder.lexically_normal().parent_path().filename().string();
   bool const whole = result.summary.is_object() && result.summary.contains("what") && result.summary["what"].is_string() &&
                      result.summary.value("data", json::array()).is_array();
@@ -229,8 +232,7 @@ Comparison compare(std::vector<fs::path> const& folders) {
   for (Result const& each : results) {
     if (each.is("predict")) {
       add_predictions(each, comparison.predictions);
-      if (auto const finding = made_from_earlier(each.folder))
-        comparison.notes.push_back(fmt::format("{}: {}: {}", each.name, finding->message, finding->help));
+      if (each.earlier) comparison.notes.push_back(fmt::format("{}: {}: {}", each.name, each.earlier->message, each.earlier->help));
     } else {
       fits.push_back(each);
       require_same_samples(fits.front(), each);

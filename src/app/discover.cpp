@@ -15,6 +15,7 @@
 #include "app/kept_aside.hpp"
 #include "app/left_out.hpp"
 #include "app/pipeline.hpp"
+#include "app/provenance.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
@@ -95,7 +96,7 @@ class Discover {
     report.versions = {{"sysid", std::string(SYSID_VERSION)},
                        {"random_numbers", std::string("Philox4x64-10")},
                        {"model_sha256", task_digest(session_, task_)}};
-    for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, dictionary_.measured));
+    for (ExperimentData const& each : data_) add_data(session_.file, each, dictionary_.measured, report);
     DiscoveryReport discovery = described(found, selector);
     add_findings(found, report.findings);
     if (judgement) {

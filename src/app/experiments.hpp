@@ -63,16 +63,6 @@ std::string data_names(CheckedFile const& file, std::vector<ExperimentUse> const
 /// own.
 std::vector<PriorInfo> priors_of(ParameterSpace const& space, std::vector<PriorInfo> const& of_model);
 
-/// The rows that are scored, counted from 1 as in the file: "101..500, 601..700".
-std::string scored_rows(Experiment const& experiment);
-
-/// SHA-256 of the measured samples that a likelihood reads: channels by name, each sample with its row, in the channel's declared
-/// unit. Equal digests mean densities of the same numbers, which alone can be compared.
-std::string samples_digest(Experiment const& experiment, Model const& model);
-
-/// Provenance for reports.
-DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Model const& model);
-
 /// Which rule is in force and what it comes to: "as_written: from measured samples".
 std::string prediction_text(Model const& model, PredictionRule rule);
 

@@ -17,6 +17,7 @@
 #include "app/function_ranges.hpp"
 #include "app/preparation.hpp"
 #include "app/process_fit.hpp"
+#include "app/provenance.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/residual_checks.hpp"
@@ -132,9 +133,9 @@ class Fit {
     Report report = begin_report(
         session_, task_, what_.model,
         fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
-    for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, model_));
     report.priors = priors_of(*space_, report.priors);
     report.findings = result.findings;
+    for (ExperimentData const& each : data_) add_data(session_.file, each, model_, report);
     if (!result.search_told)
       report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };

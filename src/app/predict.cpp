@@ -11,6 +11,7 @@
 #include "app/function_ranges.hpp"
 #include "app/posterior_trajectories.hpp"
 #include "app/process_fit.hpp"
+#include "app/provenance.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/restoring_force.hpp"
@@ -46,7 +47,7 @@ class Predict {
            fmt::format("`{}` is an optimum, not a posterior: the bands leave out how well parameters are known", fit_task_.name),
            "fit with mh for bands that hold it"});
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
-      report.data.push_back(describe_data(session_.file, data_[static_cast<std::size_t>(e)], model_));
+      add_data(session_.file, data_[static_cast<std::size_t>(e)], model_, report);
       predict(e, report);
     }
     report.settings = {{"draws", static_cast<std::int64_t>(trajectories_.wanted())},

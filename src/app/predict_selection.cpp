@@ -3,6 +3,7 @@
 
 #include "app/bands.hpp"
 #include "app/function_ranges.hpp"
+#include "app/provenance.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/restoring_force.hpp"
@@ -53,7 +54,7 @@ class PredictSelection {
     SelectionTrajectories::Along leading = trajectories_.along(lead, e);
     add_restoring_forces(leading.model(), leading.trajectory->quantities(), leading.result, leading.parameters,
                          leading.data->experiment, report.forces);
-    report.data.push_back(describe_data(session_.file, *leading.data, leading.model()));
+    add_data(session_.file, *leading.data, leading.model(), report);
     add_ranges(lead, leading, report);
     int const leading_failed = leading.result.failed();
     std::vector<int> const& counts = trajectories_.counts();

@@ -18,6 +18,7 @@
 #include "app/process_draws.hpp"
 #include "app/process_functions.hpp"
 #include "app/process_scores.hpp"
+#include "app/provenance.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
@@ -114,10 +115,10 @@ class ProcessFit {
     Report report = begin_report(
         session_, task_, what_.model,
         fmt::format("fit {} to {} with {}", model.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
-    for (ExperimentData const& each : data_) report.data.push_back(describe_data(session_.file, each, model));
     auto const all = parameter_space(model, what_.experiments);
     report.priors = priors_of(*all, report.priors);
     report.findings = result.findings;
+    for (ExperimentData const& each : data_) add_data(session_.file, each, model, report);
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     if (!result.search_told) add(preparation_.findings);
     if (interrupted) report.findings.push_back(interrupted_finding());

@@ -1,6 +1,8 @@
 // Cuts through conditional processes, one draw of the hyper-parameters after the other.
 #include "app/process_functions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -76,10 +78,16 @@ std::optional<Cuts> cuts_over_draws(ProcessTarget const& target, ParameterSpace 
   return cuts;
 }
 
+/// Inputs of a list of lags share a name: "u[2]" is the one two samples back.
+std::string label_of(Process const& process, std::size_t input) {
+  std::string const& name = process.inputs[input].name;
+  return process.lags[input] < 0 ? name : fmt::format("{}[{}]", name, process.lags[input]);
+}
+
 FunctionReport report_of(Process const& process, Cuts const& cuts) {
   FunctionReport report{process.name, process.unit_text(), {}, {}, {}, {}};
   for (std::size_t d = 0; d < process.inputs.size(); ++d) {
-    report.inputs.emplace_back(process.inputs[d].name, process.inputs[d].unit_text());
+    report.inputs.emplace_back(label_of(process, d), process.inputs[d].unit_text());
     report.visits.push_back(visits_of(cuts.inputs, static_cast<Eigen::Index>(d)));
     report.cuts.emplace_back();
     for (int i = 0; i < along_a_cut; ++i) {

@@ -5,6 +5,7 @@
 #include "app/coverage.hpp"
 #include "app/process_draws.hpp"
 #include "app/process_trajectories.hpp"
+#include "app/provenance.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
 #include "app/solver_record.hpp"
@@ -51,7 +52,7 @@ class ProcessPredict {
   void predict(int e, Report& report) const {
     ExperimentData const& data = trajectories_.data()[static_cast<std::size_t>(e)];
     bool const several = trajectories_.data().size() > 1;
-    report.data.push_back(describe_data(session_.file, data, trajectories_.model()));
+    add_data(session_.file, data, trajectories_.model(), report);
     ProcessForecast const forecast = trajectories_.forecast(e);
     LaneArray const own = trajectories_.parameters(e);
     Trajectory::Result const result = trajectories_.run(e, forecast, own);

@@ -11,6 +11,7 @@
 #include "app/fit_target.hpp"
 #include "app/function_ranges.hpp"
 #include "app/polish.hpp"
+#include "app/provenance.hpp"
 #include "app/readiness.hpp"
 #include "app/reporting.hpp"
 #include "app/resolved.hpp"
@@ -143,9 +144,9 @@ class Select {
     Report report = begin_report(
         session_, task_, leading.fit->model,
         fmt::format("select {} to {} with {}", set_.name, data_names(session_.file, first.fit->experiments), what_.backend), seed_);
-    for (ExperimentData const& each : first.data) report.data.push_back(describe_data(session_.file, each, first.compiled->model));
     report.priors = priors_of(*leading.space, report.priors);
     report.findings = selection.result.findings;
+    for (ExperimentData const& each : first.data) add_data(session_.file, each, first.compiled->model, report);
     std::vector<CandidatePosterior> posteriors;
     if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
       auto found = candidate_posteriors(session_, candidates_, selection.result, seed_);

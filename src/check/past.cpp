@@ -48,7 +48,7 @@ std::optional<int> Scope::lag_count(ast::Expression const& tree) {
   return std::nullopt;
 }
 
-std::optional<std::vector<Typed>> Scope::lag_calls(ast::Call const& call) {
+std::optional<Scope::Lags> Scope::lag_calls(ast::Call const& call) {
   if (!samples_.discrete) {
     diagnostics_.add(errors::lag_without_discrete_time(call));
     return std::nullopt;
@@ -78,11 +78,11 @@ std::optional<std::vector<Typed>> Scope::lag_calls(ast::Call const& call) {
     diagnostics_.add(errors::lag_count(count.span));
     return std::nullopt;
   }
-  std::vector<Typed> lags;
+  Lags lags{*first, {}};
   for (int k = *first; k <= *last; ++k) {
-    lags.push_back(settled(*value));
-    lags.back().node = lagged(graph_, value->node, k);
-    lags.back().span = call.span;
+    lags.values.push_back(settled(*value));
+    lags.values.back().node = lagged(graph_, value->node, k);
+    lags.values.back().span = call.span;
   }
   return lags;
 }
@@ -138,11 +138,11 @@ std::optional<Typed> Scope::past_call(ast::Call const& call) {
   if (what != "lag" && what != "lags") return channel_call(call);
   auto const lags = lag_calls(call);
   if (!lags) return std::nullopt;
-  if (what == "lags" && lags->size() > 1) {
+  if (what == "lags" && lags->values.size() > 1) {
     diagnostics_.add(errors::lags_out_of_place(call));
     return std::nullopt;
   }
-  return lags->front();
+  return lags->values.front();
 }
 
 }  // namespace sysid

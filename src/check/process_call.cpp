@@ -74,10 +74,13 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
       return std::nullopt;
     }
     std::vector<Typed> values;
+    int lag = -1;
     auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
     if (inner != nullptr && (*inner)->function.text == "lags" && is_past_call(**inner)) {
-      auto lags = lag_calls(**inner);
-      if (lags) values = std::move(*lags);
+      if (auto lags = lag_calls(**inner)) {
+        values = std::move(lags->values);
+        lag = lags->first;
+      }
     } else if (auto const value = expression(argument.value)) {
       values.push_back(settled(*value));
     }
@@ -87,6 +90,7 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
       columns.back().push_back(static_cast<int>(process.inputs.size()));
       process.inputs.push_back({definition.inputs[i].text, known_unit(value), argument.span});
       process.arguments.push_back(value.node);
+      process.lags.push_back(lag < 0 ? -1 : lag++);
       given.push_back(value);
       units.push_back(known_unit(value));
       if (units.back()) units.back() = difference(*units.back());

@@ -126,7 +126,11 @@ class Scope {
   // past.cpp
   bool is_past_call(ast::Call const& call) const;
   std::optional<Typed> past_call(ast::Call const& call);
-  std::optional<std::vector<Typed>> lag_calls(ast::Call const& call);
+  struct Lags {
+    int first;
+    std::vector<Typed> values;  // first, first + 1, ...
+  };
+  std::optional<Lags> lag_calls(ast::Call const& call);
   std::optional<int> lag_count(ast::Expression const& tree);
   std::optional<Typed> channel_call(ast::Call const& call);
   std::optional<Typed> change_call(ast::Call const& call);

@@ -153,8 +153,9 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
       auto const lags = lag_calls(**inner);
       good = good && lags;
       counted = counted && lags;
-      count += lags ? lags->size() : 0;
-      for (std::size_t i = 0; lags && i < lags->size(); ++i) arguments.push_back({settled((*lags)[i]), &argument.value});
+      if (!lags) continue;
+      count += lags->values.size();
+      for (Typed const& lag : lags->values) arguments.push_back({settled(lag), &argument.value});
       continue;
     }
     auto const* range = std::get_if<ast::Box<ast::Binary>>(&argument.value.node);

@@ -20,7 +20,7 @@ Verdict judge(Findings const& findings) {
         fmt::format("do not use these numbers yet: {} failed", errors == 1 ? "a check" : fmt::format("{} checks", errors));
   else if (warnings > 0)
     verdict.text =
-        fmt::format("the checks pass, with {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+        fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
   else
     verdict.text = "the checks pass";
   for (Severity const severity : {Severity::error, Severity::warning, Severity::note}) {

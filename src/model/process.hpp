@@ -35,6 +35,7 @@ struct Process : Quantity {
   std::vector<Covariance> covariance;
   std::vector<ProcessCondition> conditions;
   std::vector<NodeId> arguments;  // one for each input, SI
+  std::vector<int> lags;          // likewise: how many samples back it is read; -1: it is no element of `lags(...)`
   int channel = -1;               // whose centre has it as an addend
 };
 

@@ -15,6 +15,15 @@ namespace sysid::repl {
 
 namespace {
 
+// "linear = fit circuit to record with map": settings would not fit beside the scores, and `show` has them.
+std::string without_settings(std::string task) {
+  std::size_t const with = task.find(" with ");
+  if (with == std::string::npos) return task;
+  std::size_t const end = task.find_first_of("(,", with);
+  if (end != std::string::npos) task.erase(end);
+  return task;
+}
+
 std::string score(std::optional<double> value) { return value ? significant(*value, 4) : std::string(); }
 
 }  // namespace
@@ -45,12 +54,11 @@ bool Workbench::list(Arguments topic) {
                                 : ""});
   }
   if (!rows.empty()) voices_.answers << align_columns(rows, 3);
-  std::vector<std::vector<std::string>> tasks = {{"task", "", "nmse", "rmse"}};
+  std::vector<std::vector<std::string>> tasks = {{"task", "", "nmse [%]", "rmse"}};
   for (WorkItem const& item : work_.items) {
     if (item.kind != ItemKind::task) continue;
     Result const* result = find_result(item.name);
-    std::string const task = in_one_line(item.text);
-    tasks.push_back({task,
+    tasks.push_back({without_settings(in_one_line(item.text)),
                      result == nullptr                  ? "not run"
                      : interrupted_.contains(item.name) ? "stopped"
                                                         : "done",

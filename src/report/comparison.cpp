@@ -17,7 +17,7 @@ namespace {
 
 std::string checks_text(bool pass, int warnings) {
   if (!pass) return "doubtful";
-  return warnings == 0 ? "pass" : fmt::format("pass, {} {}", warnings, warnings == 1 ? "warning" : "warnings");
+  return warnings == 0 ? "pass" : fmt::format("{} {}", warnings, warnings == 1 ? "warning" : "warnings");
 }
 
 /// To a tenth, and never below zero by rounding alone.

@@ -59,8 +59,8 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   double const point_size = time.size() > 100 ? 0.24 : 0.5;
   std::vector<Key> keys;
   if (has_data) keys.push_back({Key::points, data, "measured"});
-  keys.push_back({Key::line, model, has_band ? "posterior mean" : "model"});
-  if (has_band) keys.push_back({Key::area, response_band, "95 % of the response"});
+  keys.push_back({Key::line, model, has_band ? "mean" : "model"});
+  if (has_band) keys.push_back({Key::area, response_band, "95 %"});
   if (has_noise) keys.push_back({Key::area, noise_band, "95 % with noise"});
   int const width = column_width, left = 70, right = width - 14;
   int const legend_rows = legend_height(keys, 10, right);

@@ -111,8 +111,9 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
         correlation_panel(crossed[k], "with " + crossed[k].label, place(k + 1 == crossed.size()), lags, width, height, contrast);
   out.script += "unset multiplot\n";
   out.caption = fmt::format(
-      "Autocorrelation of the residuals of {}{}. Of white residuals 99 % stay inside the band, by which the checks of a fit judge "
-      "them, too; a pattern is dynamics the model lacks.",
+      "Autocorrelation of the residuals of {}{}. Of white residuals 99 % stay inside the band; a pattern is dynamics the model "
+      "lacks. Residuals are about the mean of the draws; the checks of a fit take those of its best mode, over the size of the "
+      "noise.",
       quantity.name, crossed.empty() ? "" : ", and below it their correlation with what the input was as many samples before");
   if (!crossed.empty()) out.caption += " Bars outside the lower band are what the input does and the model does not follow.";
   if (left_out > 0) out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + left_out);

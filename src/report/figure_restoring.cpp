@@ -164,7 +164,10 @@ Figure surface_figure(RestoringForce const& force) {
   // gnuplot leaves this axis without its label in the view above; there is room below its numbers.
   out.script += fmt::format("set label 301 {} at screen 0.98,0.1 right textcolor rgb '{}'\n",
                             quote(axis_label(force.velocity, force.velocity_unit, y)), ink);
-  out.script += label('z', axis_label(force_name(force), force.force_unit, z), "rotate by 90 offset 1,0");
+  // Characters do not turn: there the label lies above its axis.
+  std::string const up = axis_label(force_name(force), force.force_unit, z);
+  out.script += fmt::format("if (format eq 'text') set label 302 {} at screen 0.02,0.62 left; else {}", quote(up),
+                            label('z', up, "rotate by 90 offset 1,0"));
   out.script += fmt::format(
       "splot $mesh using 1:2:3 with lines lw 0.8 lc rgb '{}'{}\nunset multiplot\n", model,
       points.empty() ? "" : fmt::format(", $points using 1:2:3 with points pt 7 ps 0.2 lc rgb '{}'", has_data ? data : contrast));

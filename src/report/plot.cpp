@@ -34,6 +34,8 @@ std::string shortened(std::string_view text, double pixels) {
     return fmt::format("{}…{}{}", name.substr(0, begins.empty() ? 0 : begins[head]),
                        tail == 0 ? "" : name.substr(begins[begins.size() - tail]), unit);
   };
+  // A name that is short already says more than its unit.
+  if (!unit.empty() && begins.size() <= 8 && text_pixels(name) + text_pixels(" […]") <= pixels) return fmt::format("{} […]", name);
   while (head > 2 && text_pixels(left()) > pixels) --head;
   return left();
 }
@@ -234,8 +236,11 @@ std::string panel(Panel const& asked, int width, int height) {
   if (p.y_label.empty())
     out += "unset label 99\n";
   else
-    out += fmt::format("set label 99 {} at screen {:.5f},{:.5f} center rotate by 90 textcolor rgb '{}'\n", quote(p.y_label),
-                       (p.left - p.y_label_distance) / width, (p.bottom + p.top) / 2 / height, ink);
+    out += fmt::format(
+        "if (format eq 'text') set label 99 {0} at screen {1:.5f},{2:.5f} left norotate offset 2,0.5; else "
+        "set label 99 {0} at screen {3:.5f},{4:.5f} center rotate by 90 offset 0,0 textcolor rgb '{5}'\n",
+        quote(p.y_label), p.left / width, p.top / height, (p.left - p.y_label_distance) / width, (p.bottom + p.top) / 2 / height,
+        ink);
   out += fmt::format("set title {} offset 0,-0.7 textcolor rgb '{}'\n", quote(p.title), muted);
   return out;
 }

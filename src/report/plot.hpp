@@ -68,7 +68,7 @@ std::string axis_label(std::string_view name, std::string_view unit, Axis const&
 
 /// About how many pixels a text is wide.
 double text_pixels(std::string_view text);
-/// A text that is wider ends in "…", before its unit in brackets when it has one.
+/// A text that is wider loses its middle, its unit in brackets stays; of a short name the unit becomes "[…]".
 std::string shortened(std::string_view text, double pixels);
 
 /// Smallest and largest finite value; {0, 1} when there is none.

@@ -39,8 +39,9 @@ std::string summary_table(Report const& report) {
 std::string scores_line(FitLine const& line) {
   std::string out;
   for (Score const& score : line.scores) {
+    std::string const unit = score.name.starts_with("nmse") ? "%" : score.name == "rmse" ? line.unit : "";
     out += fmt::format("{}{} {}", out.empty() ? "" : ", ", score.name, significant(score.value, 4));
-    if (score.name == "rmse" && !line.unit.empty()) out += fmt::format(" [{}]", line.unit);
+    if (!unit.empty()) out += fmt::format(" [{}]", unit);
   }
   return out;
 }

@@ -13,7 +13,7 @@ namespace sysid::testing {
 /// A straight line, exact or with noise of sd 0.1, in 40 rows.
 inline constexpr double slope = 2;
 
-struct Answer {
+struct Printed {
   int exit = 0;
   nlohmann::json summary;
   std::string out;
@@ -42,7 +42,7 @@ class Line {
   }
 
   /// Runs the task `answer` of models, candidates and task; the data block is `line` with channel d.
-  Answer run(std::string const& text, std::string const& unit = "", std::vector<std::string> const& verbs = {"select"},
+  Printed run(std::string const& text, std::string const& unit = "", std::vector<std::string> const& verbs = {"select"},
              Progress* progress = nullptr) const {
     RunOptions options;
     options.output = folder_.path() / "results";

@@ -11,8 +11,8 @@
 
 using namespace sysid;
 using json = nlohmann::json;
-using testing::Answer;
 using testing::Line;
+using testing::Printed;
 using testing::slope;
 
 namespace {
@@ -30,7 +30,7 @@ TEST_CASE("a model in metres and the same one in millimetres are equally probabl
   Line const line(0.1, 0.5);
   for (std::string const distance : {"", ", distance = rmse", ", distance = abs(residual(d))"}) {
     CAPTURE(distance);
-    Answer const answer =
+    Printed const answer =
         line.run(metres + millimetres + "candidates both { a; b }\nanswer = select both to line with abc_smc(particles = 500)" +
                      distance + ", seed = 1\nforecast = predict answer on line with draws(100), seed = 1",
                  "[m]", {"select", "predict"});
@@ -56,7 +56,7 @@ TEST_CASE("a model in metres and the same one in millimetres are equally probabl
 
 TEST_CASE("channels of two units and two noises make one root mean square") {
   Line const line(0.1, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u [s]; parameter k [m/s] ~ uniform(0, 10); parameter g [m/s] ~ uniform(0, 10)\n"
       "observe d [m] ~ normal(k*u, sd = 0.1)\n observe e [mm] ~ normal(g*u, sd = 0.3 [m]) }\n"
       "data two { file \"line.csv\"; time t [s]; input u = t [s] hold linear; measure d = y [m]; measure e = y [m] }\n"
@@ -80,7 +80,7 @@ TEST_CASE("a prior over six decades does not kill its model") {
   double mean = 0;
   int const seeds = 5;
   for (int seed = 1; seed <= seeds; ++seed) {
-    Answer const answer = line.run(
+    Printed const answer = line.run(
         text + "answer = select all to line with abc_smc(particles = 1000, populations = 6), seed = " + std::to_string(seed));
     CHECK(answer.model("c").at("died_in_population").is_null());
     CHECK(answer.model("c").at("laplace").at("probability").get<double>() == doctest::Approx(0.1435).epsilon(0.02));
@@ -92,7 +92,7 @@ TEST_CASE("a prior over six decades does not kill its model") {
 
 TEST_CASE("a model that chance never proposed is not told dead by distance") {
   Line const line(0.1, 0.5);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
       "model b { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(0, 1); observe d ~ normal(k*u + c, sd = 0.1) }\n"
       "candidates both { a probability 0.9999; b probability 0.0001 }\n"
@@ -106,7 +106,7 @@ TEST_CASE("a model that chance never proposed is not told dead by distance") {
 
 TEST_CASE("a model whose draws all diverge is named, and is not said to have a likelihood") {
   Line const line(0.1, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model lin { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
       "model boom { input u; state q; initial q = 1; parameter growth ~ uniform(1e6, 1e7); parameter b ~ uniform(-2, -1)\n"
       "q' = growth*q^2; observe d ~ normal(q + b*u, sd = 0.1) }\ncandidates s { lin; boom }\n"
@@ -136,7 +136,7 @@ TEST_CASE("a model whose draws all diverge is named, and is not said to have a l
 TEST_CASE("distances beyond the range of numbers are failed simulations: they set no threshold") {
   // The mean of |r| 1e306 over 40 rows leaves the range for slopes above about 4.3, more than half of the prior.
   Line const line(0.0, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
       "answer = select a to line with abc_smc(particles = 200, populations = 5), distance = 1e306*abs(residual(d)), seed = 1");
   CHECK(answer.has("failed_solves"));
@@ -152,7 +152,7 @@ TEST_CASE("distances beyond the range of numbers are failed simulations: they se
 
 TEST_CASE("a distance that is zero at every draw is said to tell nothing") {
   Line const line(0.0, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
       "answer = select a to line with abc_smc(particles = 200), distance = max(abs(residual(d)) - 1000, 0), seed = 1");
   CHECK(answer.has("distances_equal"));
@@ -160,7 +160,7 @@ TEST_CASE("a distance that is zero at every draw is said to tell nothing") {
 
 TEST_CASE("a model that fits exactly brings the threshold to zero, and the figure and the report bear it") {
   Line const line(0.0, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u; parameter k = 2; observe d ~ normal(k*u, sd = 0.1) }\n"
       "model b { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
       "candidates both { a; b }\nanswer = select both to line with abc_smc(particles = 200), seed = 1");
@@ -185,20 +185,20 @@ TEST_CASE("the noise floor is that of the model that needs the least noise, whic
   };
   // y = 2 t over 40 rows of 0.1: population variance 4 * 0.01 * (40^2 - 1)/12, plus the noise's.
   double const floor = 100 * 0.01 / (0.04 * 1599 / 12 + 0.01);
-  Answer const open = run("parameter sigma ~ log_uniform(0.001, 100)", "sigma");
+  Printed const open = run("parameter sigma ~ log_uniform(0.001, 100)", "sigma");
   REQUIRE(open.model("constant").at("probability").get<double>() > 0.5);
   // The variance of 40 samples' noise is known to sqrt(2/40).
   double const found = open.summary.at("populations").at("noise_floor").get<double>();
   CHECK(found == doctest::Approx(floor).epsilon(3 * std::sqrt(2.0 / 40)));
   CHECK(open.has("threshold_above_noise"));
-  Answer const stated = run("parameter g ~ uniform(0, 1); derive h = g", "0.1");
+  Printed const stated = run("parameter g ~ uniform(0, 1); derive h = g", "0.1");
   REQUIRE(stated.model("constant").at("probability").get<double>() > 0.5);
   CHECK(stated.summary.at("populations").at("noise_floor").get<double>() == doctest::Approx(floor).epsilon(0.05));
 }
 
 TEST_CASE("a shared parameter that only the noise reads is listed with its prior and the reason") {
   Line const line(0.1, 0.5);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u; parameter k ~ uniform(0, 10); parameter sigma ~ log_uniform(0.01, 0.5); observe d ~ normal(k*u, sd = "
       "sigma) "
       "}\nmodel b { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(0, 1); parameter sigma ~ log_uniform(0.01, 0.5)\n"
@@ -213,7 +213,7 @@ TEST_CASE("a shared parameter that only the noise reads is listed with its prior
 
 TEST_CASE("a derived quantity that reads the noise is left out, and said") {
   Line const line(0.1, 0.5);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(0, 1); parameter sigma ~ log_uniform(0.01, 0.5)\n"
       "observe d ~ normal(k*u + c, sd = sigma); derive e = k*u/sigma; derive g = 2*k*u }\n"
       "answer = select a to line with abc_smc(particles = 200), seed = 1");
@@ -225,7 +225,7 @@ TEST_CASE("a derived quantity that reads the noise is left out, and said") {
 
 TEST_CASE("a candidate without free parameters takes part from end to end") {
   Line const line(0.1, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model a { input u; parameter k = 2; observe d ~ normal(k*u, sd = 0.1) }\n"
       "model b { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
       "candidates both { a; b }\nanswer = select both to line with abc_smc(particles = 200), seed = 1");
@@ -237,12 +237,12 @@ TEST_CASE("proposals outside of the priors and rates that cannot be reached end 
   Line const line(0.1, 0.0);
   std::string const model =
       "model a { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(-1, 1); observe d ~ normal(k*u + c, sd = 0.1) }\n";
-  Answer const wide =
+  Printed const wide =
       line.run(model +
                "answer = select a to line with abc_smc(particles = 200, kernel_scale = 1e9, coordinates = declared, "
                "simulations = 2000), seed = 1");
   CHECK(wide.has("budget_spent"));
-  Answer const rate = line.run(model + "answer = select a to line with abc_smc(particles = 200, acceptance = 0.3), seed = 1");
+  Printed const rate = line.run(model + "answer = select a to line with abc_smc(particles = 200, acceptance = 0.3), seed = 1");
   CHECK(rate.summary.at("populations").at("stopped_by").get<std::string>().find("0.3") != std::string::npos);
 }
 
@@ -275,11 +275,11 @@ TEST_CASE("without a cross-check nothing is said by likelihood, and with one the
   std::string const text =
       "model a { input u; state q; initial q = 0.5; parameter k ~ uniform(0, 10); q' = k; observe d ~ normal(q, sd = 0.1) }\n"
       "answer = select a to line with abc_smc(particles = 200";
-  Answer const unchecked = line.run(text + ", cross_check = no), seed = 1");
+  Printed const unchecked = line.run(text + ", cross_check = no), seed = 1");
   CHECK_FALSE(unchecked.model("a").contains("laplace"));
   CHECK(unchecked.model("a").at("probability") == 1);
   // A straight line is exact in one step; nothing finer is taken.
-  Answer const checked = line.run(text + "), seed = 1");
+  Printed const checked = line.run(text + "), seed = 1");
   CHECK(checked.model("a").at("laplace").at("solver") == "rk4(substeps = 1)");
   CHECK_FALSE(checked.has("integration_step"));
 }
@@ -291,12 +291,12 @@ TEST_CASE("a step that shapes the likelihood is made finer for it, and one that 
       "model a { input u; state q, v; initial q = 0, v = 0; parameter k ~ uniform(0, 10); parameter w ~ uniform(15, 25)\n"
       "q' = v; v' = w^2*(k*u - q); observe d ~ normal(q, sd = 0.1) }\n"
       "answer = select a to line with abc_smc(particles = 200)";
-  Answer const settled = line.run(model + ", seed = 1");
+  Printed const settled = line.run(model + ", seed = 1");
   CHECK(settled.model("a").at("laplace").at("solver") != "rk4(substeps = 1)");
   CHECK(settled.has("integration_step"));
-  Answer const stated = line.run(model + ", substeps = 1, seed = 1");
+  Printed const stated = line.run(model + ", substeps = 1, seed = 1");
   CHECK(stated.model("a").at("laplace").at("solver") == "rk4(substeps = 1)");
   CHECK(stated.has("integration_step"));
-  Answer const fine = line.run(model + ", substeps = 32, seed = 1");
+  Printed const fine = line.run(model + ", substeps = 32, seed = 1");
   CHECK_FALSE(fine.has("integration_step"));
 }

@@ -11,8 +11,8 @@
 
 using namespace sysid;
 using json = nlohmann::json;
-using testing::Answer;
 using testing::Line;
+using testing::Printed;
 using testing::slope;
 
 namespace {
@@ -65,7 +65,7 @@ class Watch : public Progress {
 
 TEST_CASE("a place that only a coarse solver reaches is no mode: it takes no part in evidence or chains, and settles at once") {
   Line const line(0.1, 0.0);
-  Answer const answer =
+  Printed const answer =
       line.run(signed_slope("either", "uniform(-10, 10)") + signed_slope("upward", "uniform(0, 10)") +
                signed_slope("downward", "uniform(-10, 0)") +
                "candidates all { either; upward; downward }\nanswer = select all to line with abc_smc(particles = 300, "
@@ -90,7 +90,7 @@ TEST_CASE("a place that only a coarse solver reaches is no mode: it takes no par
 
 TEST_CASE("nor does such a place hold up a fit") {
   Line const line(0.1, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       signed_slope("either", "uniform(-10, 10)") + "answer = fit either to line with mh(samples = 4000, burn_in = 1000), seed = 1",
       "", {"fit"});
   CHECK(answer.exit == 0);
@@ -104,9 +104,9 @@ TEST_CASE("nor does such a place hold up a fit") {
 
 TEST_CASE("a climb that was given up is not followed: no finer solver, no chains, and a word about it") {
   Line const line(0.1, 0.0);
-  Answer const answer = line.run(line_and_wave +
-                                 "answer = select both to line with abc_smc(particles = 200, populations = 1, polish = yes, "
-                                 "polish_samples = 2000), seed = 1");
+  Printed const answer = line.run(line_and_wave +
+                                  "answer = select both to line with abc_smc(particles = 200, populations = 1, polish = yes, "
+                                  "polish_samples = 2000), seed = 1");
   REQUIRE(answer.model("wave").at("probability").get<double>() > 0.01);
   REQUIRE(answer.model("wave").at("laplace").contains("given_up"));
   CHECK(answer.model("wave").at("laplace").at("solver") == "rk4(substeps = 1)");
@@ -123,7 +123,7 @@ TEST_CASE("an interruption in the likelihood's part closes the line of progress"
   for (bool const at_its_beginning : {true, false}) {
     CAPTURE(at_its_beginning);
     Watch watch(at_its_beginning);
-    Answer const answer = line.run(text, "", {"select"}, &watch);
+    Printed const answer = line.run(text, "", {"select"}, &watch);
     clear_interrupt();
     REQUIRE(watch.asked);
     CHECK(answer.exit == 75);
@@ -160,7 +160,7 @@ TEST_CASE("each model whose probabilities disagree is named, the largest differe
 
 TEST_CASE("a candidate without parameters has nothing to polish; one whose noise alone is free shows its polished noise") {
   Line const line(0.1, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model fixed { input u; parameter k = 2; observe d ~ normal(k*u, sd = 0.1) }\n"
       "model noisy { input u; parameter k = 2; parameter sigma ~ log_uniform(0.01, 1); observe d ~ normal(k*u, sd = sigma) }\n"
       "model free { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
@@ -180,7 +180,7 @@ TEST_CASE("a candidate without parameters has nothing to polish; one whose noise
 
 TEST_CASE("candidates that all lack parameters are told apart by distance, and by likelihood, without advice on parameters") {
   Line const line(0.1, 0.0);
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model two { input u; parameter k = 2; observe d ~ normal(k*u, sd = 0.1) }\n"
       "model near { input u; parameter k = 2.01; observe d ~ normal(k*u, sd = 0.1) }\n"
       "candidates both { two; near }\n"
@@ -206,7 +206,7 @@ TEST_CASE("candidates that all lack parameters are told apart by distance, and b
 
 TEST_CASE("a threshold that rests on a candidate without parameters is put down to it") {
   Line const line(0.1, 0.0);  // its least squares are at 1.98648
-  Answer const answer = line.run(
+  Printed const answer = line.run(
       "model fixed { input u; parameter k = 1.9865; observe d ~ normal(k*u, sd = 0.1) }\n"
       "model free { input u; parameter k ~ uniform(0, 10); observe d ~ normal(k*u, sd = 0.1) }\n"
       "candidates both { fixed; free }\nanswer = select both to line with abc_smc(particles = 300), seed = 1");

@@ -18,7 +18,7 @@ TEST_CASE("warnings and notes pass but are shown") {
   CHECK(verdict.pass);
   CHECK(verdict.exit_code == 0);
   CHECK(verdict.text ==
-        "the checks pass, with one thing to look at\n  warning[second_mode]: a second mode\n    what to do: look at both\n"
+        "use with care: one thing to look at\n  warning[second_mode]: a second mode\n    what to do: look at both\n"
         "  note[n]: a note\n  more: sysid explain CODE, for each word in brackets");
 }
 

@@ -116,12 +116,12 @@ TEST_CASE("a long record is shown in part and says so") {
 TEST_CASE("one trajectory is no posterior mean and has no band") {
   Report report = example::duffing(40);
   PredictedQuantity& quantity = report.predictions[0].quantities[0];
-  CHECK(fit_figure(report.predictions[0], quantity).script.find("'posterior mean'") != std::string::npos);
+  CHECK(fit_figure(report.predictions[0], quantity).script.find("'mean'") != std::string::npos);
   quantity.noisy = {};
   quantity.response.draws = 1;
   plot::Figure const figure = fit_figure(report.predictions[0], quantity);
-  CHECK(figure.script.find("'posterior mean'") == std::string::npos);
-  CHECK(figure.script.find("'95 % of the response'") == std::string::npos);
+  CHECK(figure.script.find("'mean'") == std::string::npos);
+  CHECK(figure.script.find("'95 %'") == std::string::npos);
   CHECK(figure.script.find("'model'") != std::string::npos);
   CHECK(figure.caption.ends_with("one trajectory has no band."));
 }

@@ -21,11 +21,11 @@ TEST_CASE("the terminal shows aligned columns under the user's names, failures a
         "m   kg     1.00045  0.00063  0.99940  1.00150  1.001       734       890\n"
         "k3  N/m^3  4.986e9  0.033e9  4.932e9  5.040e9  1.002       701       650\n"
         "\n"
-        "displacement on bench.train: nmse 0.01040, chi_squared_per_sample 1.010\n"
+        "displacement on bench.train: nmse 0.01040 [%], chi_squared_per_sample 1.010\n"
         "100000 simulations, 3 failed\n"
         "  3 x non-finite: k3*y^3 at duffing.sysid:12 (first at t = 0.01250 s)\n"
         "\n"
-        "verdict: the checks pass, with one thing to look at\n"
+        "verdict: use with care: one thing to look at\n"
         "  warning[modes]: a second mode holds 2 %\n"
         "    what to do: look at the starts\n"
         "  more: sysid explain modes\n");
@@ -35,12 +35,12 @@ TEST_CASE("each channel of each experiment has one line of scores, with the unit
   Report report = example::duffing(20);
   std::string const one = terminal_summary(report);
   CHECK(one.find("all channels") == std::string::npos);
-  CHECK(one.find("displacement on bench.train: nmse 0.01040, chi_squared_per_sample 1.010, rmse 0.0") != std::string::npos);
+  CHECK(one.find("displacement on bench.train: nmse 0.01040 [%], chi_squared_per_sample 1.010, rmse 0.0") != std::string::npos);
   CHECK(one.find(" [mm], coverage_95") != std::string::npos);
   report.predictions[0].quantities.push_back(report.predictions[0].quantities[0]);
   report.predictions[0].quantities.back().name = "force";
   std::string const two = terminal_summary(report);
-  CHECK(two.find("\ndisplacement on bench.train: nmse 0.01040, chi_squared_per_sample 1.010, rmse 0.0") != std::string::npos);
+  CHECK(two.find("\ndisplacement on bench.train: nmse 0.01040 [%], chi_squared_per_sample 1.010, rmse 0.0") != std::string::npos);
   CHECK(two.find("\nforce on bench.train: nmse") != std::string::npos);
   report.predictions.push_back(report.predictions[0]);
   report.predictions.back().experiment = "hall";
