@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/experiments.hpp"
-#include "app/placeholders.hpp"
+#include "app/provenance.hpp"
 #include "app/readiness.hpp"
 #include "syntax/parse.hpp"
 
@@ -35,8 +35,7 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
   std::vector<ExperimentData> data = load_experiments(session, there, model, task.start, task.prediction);
   for (ExperimentData const& each : data) {
     page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
-    Findings const found = find_placeholders(each.experiment, model);
-    page.findings.insert(page.findings.end(), found.begin(), found.end());
+    look_at_data(session.file, each, model, page.findings);
   }
   if (!complete) return std::nullopt;
   return data;
@@ -60,6 +59,9 @@ void look_ahead_at_candidates(Session& session, Task const& task, SelectTask con
   for (FitTask const& fit : selection.fits)
     data.push_back(load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
                                     fit.prediction));
+  for (std::size_t k = 0; k < data.size(); ++k)
+    for (ExperimentData const& each : data[k])
+      look_at_data(session.file, each, session.file.models[static_cast<std::size_t>(selection.fits[k].model)], page.findings);
   if (refusal(task, selection, session.file.models, data)) return;
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
   for (std::size_t k = 0; k < selection.fits.size(); ++k) {
@@ -106,6 +108,18 @@ TaskPage check_task(Session& session, Task const& task) {
   return page;
 }
 
+/// Several tasks read one record: what is told of it is told once.
+void tell_once(std::vector<TaskPage>& pages) {
+  Findings told;
+  for (TaskPage& page : pages)
+    std::erase_if(page.findings, [&](Finding const& each) {
+      if (each.code != "looks_missing") return false;
+      if (std::find(told.begin(), told.end(), each) != told.end()) return true;
+      told.push_back(each);
+      return false;
+    });
+}
+
 }  // namespace
 
 CheckResult check_file(Session& session) {
@@ -130,6 +144,7 @@ CheckResult check_file(Session& session) {
       result.page.tasks.push_back({task.name, "its data cannot be used", {}, {}, {}});
     }
   }
+  tell_once(result.page.tasks);
   return result;
 }
 

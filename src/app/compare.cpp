@@ -28,10 +28,9 @@ struct Result {
   fs::path folder;
   std::string name;
   json summary;
-
-  bool is(std::string_view verb) const { return summary.value("what", std::string()).starts_with(std::string(verb) + " "); }
   std::optional<Finding> earlier;  // that it was made from a fit which has been run again
 
+  bool is(std::string_view verb) const { return summary.value("what", std::string()).starts_with(std::string(verb) + " "); }
   int warnings() const {
     json const findings = summary.value("findings", json::array());
     return static_cast<int>(std::count_if(findings.begin(), findings.end(),

@@ -90,17 +90,13 @@ class Fit {
     return make_fit_target(session_, what_, compiled_, space_, experiments_of(data_), solver, execution);
   }
 
-  // Before what takes time, so that one need not wait for it.
-  void tell(Findings const& findings) const {
-    for (Finding const& each : findings) session_.notices << fmt::format("{}: warning: {}\n", task_.name, each.message);
-  }
-
   // Search and, unless the user fixed it, the step. False: interrupted.
   bool prepare(RunContext& context) {
     MakeTarget const make = [this](SolverSettings const& solver) { return make_target(solver, session_.interruptible()); };
     preparation_.solver = what_.solver;
     Findings const size = check_prior_size(session_, what_, data_);
-    tell(size);
+    tell_of_data(session_, task_, data_, model_);
+    tell(session_, task_, size);
     if (what_.settle && model_.integrated()) {
       SearchSolver const search = search_solver(make, what_.solver, seed_);
       if (context.stop_requested()) return false;
@@ -122,7 +118,7 @@ class Fit {
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     preparation_.findings.insert(preparation_.findings.end(), size.begin(), size.end());
-    tell(ranges_at(preparation_.modes.front().declared));
+    tell(session_, task_, ranges_at(preparation_.modes.front().declared));
     return !what_.settle || settle(session_, task_, make, backend_.aim, what_.solver, preparation_, search_context);
   }
 

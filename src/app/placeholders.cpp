@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "report/number.hpp"
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace sysid {
 namespace {
@@ -28,61 +29,82 @@ bool is_placeholder(double value) {
   return written.size() >= 3 && written.find_first_not_of('9') == std::string::npos;
 }
 
-// The rows of `values` (NaN: missing) at which its number farthest from the rest stands, where that is a placeholder.
-std::vector<std::size_t> placeholder_rows(std::vector<double> const& values) {
+struct Suspect {
+  double value;
+  std::vector<std::size_t> rows;
+};
+
+// Placeholders among `values` (NaN: missing) that are far from all values that are none.
+std::vector<Suspect> suspects(std::vector<double> const& values) {
   constexpr double far = 10;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (double const value : values)
-    if (!std::isnan(value)) low = std::min(low, value), high = std::max(high, value);
-  for (double const suspect : {high, low}) {
-    if (!is_placeholder(suspect)) continue;
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    std::vector<std::size_t> rows;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] == suspect) rows.push_back(i);
-      if (std::isnan(values[i]) || values[i] == suspect) continue;
+  std::vector<Suspect> found;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    if (!is_placeholder(values[i])) {
       least = std::min(least, values[i]);
       most = std::max(most, values[i]);
+      continue;
     }
-    // Where all others are one number nothing tells what is far.
-    if (most > least && std::fabs(suspect - (least + most) / 2) > far * (most - least) / 2) return rows;
+    auto same = std::find_if(found.begin(), found.end(), [&](Suspect const& each) { return each.value == values[i]; });
+    if (same == found.end()) same = found.insert(found.end(), {values[i], {}});
+    same->rows.push_back(i);
   }
-  return {};
+  // Where all others are one number nothing tells what is far.
+  std::erase_if(found, [&](Suspect const& each) {
+    return !(most > least) || std::fabs(each.value - (least + most) / 2) <= far * (most - least) / 2;
+  });
+  return found;
 }
 
-Finding finding(Experiment const& experiment, std::string const& name, std::string const& unit, double value,
-                std::vector<std::size_t> const& rows, bool input) {
+Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, Suspect const& suspect, bool input) {
   constexpr std::size_t most_named = 5;
   std::vector<int> named;
-  for (std::size_t const row : rows)
-    if (named.size() < most_named) named.push_back(experiment.first_row + static_cast<int>(row));
+  for (std::size_t const row : suspect.rows)
+    if (named.size() < most_named) named.push_back(data.experiment.first_row + static_cast<int>(row));
+  std::size_t const more = suspect.rows.size() - named.size();
   return {Severity::warning, "looks_missing",
-          fmt::format("{} is {}{} in {} {}{} of {}, far from all its other samples: is it a missing value?", name, shortest(value),
-                      unit.empty() || unit == "-" ? "" : " " + unit, rows.size() == 1 ? "row" : "rows", fmt::join(named, ", "),
-                      rows.size() > most_named ? fmt::format(" and {} more", rows.size() - most_named) : "", experiment.name),
-          input ? "an input acts at every row: fill the gap, or begin behind it; a zero or a held value is a guess, too"
-                : "leave the cell empty or write `nan`: the row is then not scored"};
+          fmt::format("column `{}` of {} is {:.12g}{} in {} {}{}, far from all its other numbers: a missing value?", column.column,
+                      data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit,
+                      suspect.rows.size() == 1 ? "row" : "rows", fmt::join(named, ", "),
+                      more > 0 ? fmt::format(" and {} more", more) : ""),
+          input
+              ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a blow that left the "
+                "range of the recorder is larger than that"
+              : "leave the cell empty or write `nan`: the row is then not scored"};
 }
 
 }  // namespace
 
-Findings find_placeholders(Experiment const& experiment, Model const& model) {
+Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  Experiment const& experiment = data.experiment;
   Findings findings;
-  auto const look = [&](std::string const& name, std::string const& unit, std::vector<double> const& values, bool input) {
-    std::vector<std::size_t> const rows = placeholder_rows(values);
-    if (!rows.empty()) findings.push_back(finding(experiment, name, unit, values[rows.front()], rows, input));
+  auto const look = [&](ColumnUse const& column, Quantity const& quantity, std::vector<double> values, bool input) {
+    std::string unit = quantity.unit_text();
+    for (double& value : values) value = quantity.from_si(value);
+    if (column.unit && quantity.unit) {
+      unit = column.unit->text;
+      for (double& value : values) value = convert(value, *quantity.unit, *column.unit);
+    }
+    for (Suspect const& suspect : suspects(values)) findings.push_back(finding(data, column, unit, suspect, input));
   };
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    std::vector<double> values;
-    for (int row = 0; row < experiment.inputs[i].rows(); ++row)
-      values.push_back(model.inputs[i].from_si(experiment.inputs[i].sample(row)));
-    look(model.inputs[i].name, model.inputs[i].unit_text(), values, true);
-  }
-  for (std::size_t c = 0; c < model.channels.size(); ++c) {
-    std::vector<double> values;
-    for (double const value : experiment.measured[c]) values.push_back(model.channels[c].from_si(value));
-    look(model.channels[c].name, model.channels[c].unit_text(), values, false);
-  }
+  for (DataInputUse const& column : block.inputs)
+    for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+      if (model.inputs[i].name != column.input) continue;
+      std::vector<double> values;
+      for (int row = 0; row < experiment.inputs[i].rows(); ++row) values.push_back(experiment.inputs[i].sample(row));
+      look(column, model.inputs[i], std::move(values), true);
+    }
+  bool const goes_on = model.dynamics == Dynamics::discrete;
+  for (DataMeasureUse const& column : block.measured)
+    for (std::size_t c = 0; c < model.channels.size(); ++c) {
+      if (model.channels[c].name != column.channel) continue;
+      std::vector<double> values = experiment.measured[c];
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (!goes_on && experiment.scored[i] == 0) values[i] = std::nan("");
+      look(column, model.channels[c], std::move(values), false);
+    }
   return findings;
 }
 

@@ -64,6 +64,7 @@ class ProcessFit {
       if (stored->contains("state")) context.resume = stored->at("state");
       session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
     } else {
+      tell_of_data(session_, task_, data_, model_->model());
       RunContext searching{
           seed_, session_.progress, preparation_.ledger, context.interrupted, {}, context.checkpoint_interval, {}, {}, {}};
       if (!prepare(searching)) return stop_early(session_, task_, checkpoint_);

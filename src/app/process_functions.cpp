@@ -78,10 +78,10 @@ std::optional<Cuts> cuts_over_draws(ProcessTarget const& target, ParameterSpace 
   return cuts;
 }
 
-/// Inputs of a list of lags share a name: "u[2]" is the one two samples back.
+/// Inputs of a list of lags share a name: "u lag 2" is the one two samples back.
 std::string label_of(Process const& process, std::size_t input) {
   std::string const& name = process.inputs[input].name;
-  return process.lags[input] < 0 ? name : fmt::format("{}[{}]", name, process.lags[input]);
+  return process.lags[input] < 0 ? name : fmt::format("{} lag {}", name, process.lags[input]);
 }
 
 FunctionReport report_of(Process const& process, Cuts const& cuts) {

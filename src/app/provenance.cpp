@@ -94,10 +94,22 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
 
 }  // namespace
 
+void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {
+  for (Finding& each : find_placeholders(file, data, model))
+    if (std::find(findings.begin(), findings.end(), each) == findings.end()) findings.push_back(std::move(each));
+}
+
 void add_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Report& report) {
   report.data.push_back(describe_data(file, data, model));
-  Findings const found = find_placeholders(data.experiment, model);
-  report.findings.insert(report.findings.end(), found.begin(), found.end());
+  look_at_data(file, data, model, report.findings);
+}
+
+void tell_of_data(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model) {
+  for (ExperimentData const& each : data) tell(session, task, find_placeholders(session.file, each, model));
+}
+
+void tell(Session& session, Task const& task, Findings const& findings) {
+  for (Finding const& each : findings) session.notices << fmt::format("{}: warning: {}\n", task.name, each.message);
 }
 
 }  // namespace sysid

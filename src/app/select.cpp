@@ -65,7 +65,10 @@ class Select {
                        checkpoint_.stored(),
                        {},
                        {}};
-    if (context.resume) session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+    if (context.resume)
+      session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+    else
+      tell_of_data(session_, task_, candidates_.front().data, candidates_.front().compiled->model);
     SelectionResult result = selector.run(target, what_.settings, context);
     if (result.failure)
       throw UserError({Severity::error,
@@ -147,6 +150,9 @@ class Select {
     report.priors = priors_of(*leading.space, report.priors);
     report.findings = selection.result.findings;
     for (ExperimentData const& each : first.data) add_data(session_.file, each, first.compiled->model, report);
+    for (Candidate const& candidate : candidates_)
+      for (ExperimentData const& each : candidate.data)
+        look_at_data(session_.file, each, candidate.compiled->model, report.findings);
     std::vector<CandidatePosterior> posteriors;
     if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
       auto found = candidate_posteriors(session_, candidates_, selection.result, seed_);

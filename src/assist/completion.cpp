@@ -76,13 +76,12 @@ class Completer : private Offer {
   }
   void model() {
     std::string_view const first = place().first();
-    bool const declares = place().before.size() > 1 || place().block.empty();
     if (place().before.empty()) {
       keywords(words::model_statements);
       return expression();
     }
     if (!words::contains(words::model_statements, first) ||
-        (declares && place().before[1].kind == TokenKind::symbol))  // an equation about something called `input`
+        (place().before.size() > 1 && place().before[1].kind == TokenKind::symbol))  // an equation about something called `input`
       return expression();
     if (first == "part") return part();
     if (place().has("~")) {

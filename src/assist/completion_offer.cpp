@@ -101,12 +101,10 @@ int Offer::subject() const {
   return -1;
 }
 
-void Offer::of_subject(SymbolKind kind, SymbolKind other) {
+void Offer::of_subject(SymbolKind kind, std::optional<SymbolKind> or_kind) {
   if (!reading_) return;
   int const owner = subject();
-  symbols([&](Symbol const& each) {
-    return (each.kind == kind || (each.kind == other && other != SymbolKind::word)) && (owner < 0 || each.owner == owner);
-  });
+  symbols([&](Symbol const& each) { return (each.kind == kind || each.kind == or_kind) && (owner < 0 || each.owner == owner); });
 }
 
 void Offer::members() {

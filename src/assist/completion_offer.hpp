@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -18,7 +19,7 @@ namespace sysid::assist {
 /// Each call adds to the list; a label that is there already is not added again.
 class Offer {
  public:
-  /// All three are borrowed.
+  /// path and place are borrowed.
   Offer(std::string const& path, std::string const& text, CompletionPlace const& place, UnsavedText const& unsaved)
       : path_(path), place_(place), reading_(read(path, text, unsaved)) {}
 
@@ -42,7 +43,7 @@ class Offer {
   /// In the file itself, not in its modules.
   void own(SymbolKind kind);
   /// Of the model or dictionary that the task is about; where it is not known, of all.
-  void of_subject(SymbolKind kind, SymbolKind other = SymbolKind::word);
+  void of_subject(SymbolKind kind, std::optional<SymbolKind> or_kind = std::nullopt);
   /// Behind `bench.`, or behind the path of a part.
   void members();
   void states_and_parts();

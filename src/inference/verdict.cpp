@@ -19,8 +19,7 @@ Verdict judge(Findings const& findings) {
     verdict.text =
         fmt::format("do not use these numbers yet: {} failed", errors == 1 ? "a check" : fmt::format("{} checks", errors));
   else if (warnings > 0)
-    verdict.text =
-        fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+    verdict.text = fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
   else
     verdict.text = "the checks pass";
   for (Severity const severity : {Severity::error, Severity::warning, Severity::note}) {

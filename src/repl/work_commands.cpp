@@ -15,12 +15,15 @@ namespace sysid::repl {
 
 namespace {
 
-// "linear = fit circuit to record with map": settings would not fit beside the scores, and `show` has them.
+// "linear = fit circuit to record with map": settings would not fit beside the scores, and `show` has them. An option that stands
+// before the back end goes with all that follows.
 std::string without_settings(std::string task) {
-  std::size_t const with = task.find(" with ");
-  if (with == std::string::npos) return task;
-  std::size_t const end = task.find_first_of("(,", with);
-  if (end != std::string::npos) task.erase(end);
+  constexpr std::string_view with = " with ";
+  std::size_t const begin = task.find(with);
+  if (begin == std::string::npos) return task;
+  std::size_t const end = std::min(task.find_first_of("(,= ", begin + with.size()), task.size());
+  bool const option = end < task.size() && task[task.find_first_not_of(' ', end)] == '=';
+  task.erase(option || task.find("predict ") < begin ? begin : end);
   return task;
 }
 

@@ -20,6 +20,17 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
 }
 
+/// A command misspelt before its arguments, `colums x.csv`, reads like a product without its sign: the help is the command's name.
+void suggest_command(Diagnostics& diagnostics, std::string const& entry) {
+  std::vector<Diagnostic> all = diagnostics.all();
+  if (all.front().code != "E1105") return;
+  std::vector<std::string> names;
+  for (CommandRow const& row : commands()) names.emplace_back(row.name);
+  std::string const word = entry.substr(0, std::min(entry.find(' '), entry.size()));
+  if (std::string near = did_you_mean(word, names); !near.empty()) all.front().help = std::move(near);
+  diagnostics.replace(std::move(all));
+}
+
 }  // namespace
 
 std::string at_the_prompt(std::string text) {
@@ -124,6 +135,7 @@ bool Workbench::enter_parts(std::string const& entry) {
   Diagnostics diagnostics;
   auto const parts = parts_of(entry, diagnostics);
   if (!diagnostics.all().empty()) {
+    suggest_command(diagnostics, stripped(entry));
     show(diagnostics, entry);
     return false;
   }

@@ -60,8 +60,8 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   std::vector<Key> keys;
   if (has_data) keys.push_back({Key::points, data, "measured"});
   keys.push_back({Key::line, model, has_band ? "mean" : "model"});
-  if (has_band) keys.push_back({Key::area, response_band, "95 %"});
-  if (has_noise) keys.push_back({Key::area, noise_band, "95 % with noise"});
+  if (has_band) keys.push_back({Key::area, response_band, "95 % band"});
+  if (has_noise) keys.push_back({Key::area, noise_band, "with noise"});
   int const width = column_width, left = 70, right = width - 14;
   int const legend_rows = legend_height(keys, 10, right);
   int const height = (has_data ? 330 : 200) + legend_rows;
@@ -124,10 +124,12 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   out.script += "unset multiplot\n";
 
   if (has_data)
-    out.caption = fmt::format("Measured and modelled {}. The residuals below should scatter without pattern; {}", quantity.name,
-                              has_noise  ? "about one in twenty lies outside the light band, which includes the noise."
-                              : has_band ? "the band is that of the response, without noise."
-                                         : "one trajectory has no band.");
+    out.caption = fmt::format(
+        "Measured and modelled {}. The residuals below should scatter without pattern; {}", quantity.name,
+        has_noise
+            ? "about one in twenty lies outside the light band, which includes the noise; the darker one is that of the response."
+        : has_band ? "the band is that of the response, without noise."
+                   : "one trajectory has no band.");
   else
     out.caption =
         fmt::format("The model's account of {}, which is not measured{}.", quantity.name, has_band ? ", with its 95 % band" : "");

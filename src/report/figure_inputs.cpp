@@ -60,9 +60,9 @@ Figure input_figure(Prediction const& prediction, PredictedQuantity const& quant
     if (!series->empty()) extent = cover(extent, range(*series));
   Axis const y = axis(extent.first, extent.second, 5, 0.04);
   std::vector<Key> keys = {{Key::points, data, "measured"}, {curve ? Key::line : Key::points, model, has_band ? "mean" : "model"}};
-  if (curve && has_band) keys.push_back({Key::area, response_band, "95 %"});
-  if (has_noise) keys.push_back({Key::area, noise_band, "95 % with noise"});
-  if (!curve && has_band && !has_noise) keys.push_back({Key::area, response_band, "95 %"});
+  if (curve && has_band) keys.push_back({Key::area, response_band, "95 % band"});
+  if (has_noise) keys.push_back({Key::area, noise_band, curve && has_band ? "with noise" : "95 % with noise"});
+  if (!curve && has_band && !has_noise) keys.push_back({Key::area, response_band, "95 % band"});
   int const width = column_width, legend_rows = legend_height(keys, 10, width - 14), height = 246 + legend_rows;
   Figure out;
   out.topic = Topic::fit;

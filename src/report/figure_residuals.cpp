@@ -112,9 +112,11 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
   out.script += "unset multiplot\n";
   out.caption = fmt::format(
       "Autocorrelation of the residuals of {}{}. Of white residuals 99 % stay inside the band; a pattern is dynamics the model "
-      "lacks. Residuals are about the mean of the draws; the checks of a fit take those of its best mode, over the size of the "
-      "noise.",
+      "lacks.",
       quantity.name, crossed.empty() ? "" : ", and below it their correlation with what the input was as many samples before");
+  if (quantity.response.draws != 1)
+    out.caption +=
+        " Residuals are about the mean of the draws; the checks of a fit take those of its best mode, over the size of the noise.";
   if (!crossed.empty()) out.caption += " Bars outside the lower band are what the input does and the model does not follow.";
   if (left_out > 0) out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + left_out);
   if (constant > 0) out.caption += " An input that does not vary has no correlation.";

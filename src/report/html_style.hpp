@@ -100,7 +100,7 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   body { max-width: none; padding: 0; }
   nav, .skip { display: none; }
   a { color: inherit; text-decoration: none; }
-  /* Of one column two stand on a page. */
+  /* Of one column (480: a test holds it to plot::column_width) two stand on a page. */
   figure { margin: 0.6rem 0 1.2rem; } figure > svg[viewBox^="0 0 480 "] { width: 120mm; }
   figure, .scroll, tr, .headline, dt, dd { break-inside: avoid; }
   h2, h3, h4, caption, thead { break-after: avoid; }

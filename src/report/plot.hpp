@@ -68,7 +68,7 @@ std::string axis_label(std::string_view name, std::string_view unit, Axis const&
 
 /// About how many pixels a text is wide.
 double text_pixels(std::string_view text);
-/// A text that is wider loses its middle, its unit in brackets stays; of a short name the unit becomes "[…]".
+/// A text that is wider loses the middle of its name; where that does not do, its unit, but for the power of ten: "k3 [10³ …]".
 std::string shortened(std::string_view text, double pixels);
 
 /// Smallest and largest finite value; {0, 1} when there is none.

@@ -180,14 +180,14 @@ TEST_CASE("a model of first order has no restoring force") {
 
 namespace {
 
-/// The spring with a second mass of the same size on it, pushed at that; ground: what holds the second to the ground.
+/// The spring with a second mass of twice the size on it, pushed at that; ground: what holds the second to the ground.
 std::string chain(std::string const& ground) {
   std::string text = with(drawn_oscillator, "NOISE", "1");
   text = with(text, "state   y [mm]", "state   y [mm], w [mm]");
   text = with(text, "y' = 0", "y' = 0, w = 0, w' = 0");
-  text =
-      with(text, "  m*y'' + c*y' + k*y + k3*y^3 = x",
-           "  m*y'' + c*y' + k*y + k3*y^3 - k*(w - y) - c*(w' - y') = 0 [N]\n  m*w'' + c*(w' - y') + k*(w - y)" + ground + " = x");
+  text = with(
+      text, "  m*y'' + c*y' + k*y + k3*y^3 = x",
+      "  m*y'' + c*y' + k*y + k3*y^3 - k*(w - y) - c*(w' - y') = 0 [N]\n  2*m*w'' + c*(w' - y') + k*(w - y)" + ground + " = x");
   text = with(text, "normal(y, sd = sigma)", "normal(y, sd = sigma)\n  observe outer ~ normal(w, sd = sigma)");
   return with(text, "displacement [mm]\n", "displacement [mm]\n  measure outer = outer [mm]\n");
 }

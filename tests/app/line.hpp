@@ -43,7 +43,7 @@ class Line {
 
   /// Runs the task `answer` of models, candidates and task; the data block is `line` with channel d.
   Printed run(std::string const& text, std::string const& unit = "", std::vector<std::string> const& verbs = {"select"},
-             Progress* progress = nullptr) const {
+              Progress* progress = nullptr) const {
     RunOptions options;
     options.output = folder_.path() / "results";
     options.force = true;

@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "answer.hpp"
 #include "app/compare.hpp"
 #include "app/report_results.hpp"
@@ -33,7 +36,12 @@ TEST_CASE("a prediction of draws that have been replaced is told, and one made a
     bool const finding = made_from_earlier(results / "forecast").has_value();
     CHECK((content(report_results(results / "forecast", std::nullopt, false)).find("made_from_earlier") != std::string::npos) ==
           finding);
-    CHECK((comparison_text(compare({results})).find("from an earlier `posterior`") != std::string::npos) == finding);
+    std::string const compared = comparison_text(compare({results}));
+    CHECK((compared.find("from an earlier `posterior`") != std::string::npos) == finding);
+    auto const written = nlohmann::json::parse(read_file(results / "forecast/summary.json")).at("findings");
+    auto const warnings =
+        std::count_if(written.begin(), written.end(), [](auto const& each) { return each["severity"] == "warning"; });
+    CHECK(compare({results}).predictions.front().warnings == warnings + (finding ? 1 : 0));
     return finding;
   };
   run({"fit", "predict"}, 1);

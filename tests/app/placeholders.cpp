@@ -35,34 +35,57 @@ std::string const text =
     "posterior = fit m to record.middle with map, seed = 1\n";
 
 template <class Change>
-std::vector<std::string> told(Change const& change) {
+std::vector<std::string> told(Change const& change, std::string const& file = text) {
   TemporaryFolder folder;
   write_file(folder.path() / "record.csv", table(change));
-  return messages(checked(folder.path() / "m.sysid", text), "looks_missing");
+  return messages(checked(folder.path() / "m.sysid", file), "looks_missing");
+}
+
+std::string replaced(std::string all, std::string const& from, std::string const& to) {
+  return all.replace(all.find(from), from.size(), to);
 }
 
 }  // namespace
 
-TEST_CASE("a 9999 in an input and in a channel is named with its rows, in declared units, as is the end of a converter's range") {
+TEST_CASE("a 9999 in an input and in a channel is named as it stands in the file, as is the end of a converter's range") {
   auto const input = told([](int row, double& force, double&) {
     if (row == 150) force = 9999;
   });
   REQUIRE(input.size() == 1);
-  CHECK(input[0] == "u is 9.999 N in row 150 of record.middle, far from all its other samples: is it a missing value?");
+  CHECK(input[0] == "column `force` of record is 9999 mN in row 150, far from all its other numbers: a missing value?");
   auto const channel = told([](int row, double&, double& level) {
     if (row > 180) level = -999;
   });
   REQUIRE(channel.size() == 1);
-  CHECK(
-      channel[0] ==
-      "z is -0.999 m in rows 181, 182, 183, 184, 185 and 5 more of record.middle, far from all its other samples: is it a missing "
-      "value?");
+  CHECK(channel[0] ==
+        "column `level` of record is -999 mm in rows 181, 182, 183, 184, 185 and 5 more, far from all its other numbers: a missing "
+        "value?");
   CHECK(told([](int row, double& force, double& level) {
           if (row == 120) force = -32768, level = 65535;
         }).size() == 2);
 }
 
-TEST_CASE("nines within the range, impulses, other spikes and rows behind those of the task are left alone") {
+TEST_CASE("two placeholders in one column do not hide each other") {
+  auto const both = told([](int row, double&, double& level) {
+    if (row == 150) level = -999;
+    if (row == 151) level = 9999;
+  });
+  REQUIRE(both.size() == 2);
+  CHECK(both[0].find("-999 mm in row 150,") != std::string::npos);
+  CHECK(both[1].find("9999 mm in row 151,") != std::string::npos);
+}
+
+TEST_CASE("numbers are judged as they were written, whatever unit the model has") {
+  auto const feet = told(
+      [](int row, double&, double& level) {
+        if (row == 150) level = 9999;
+      },
+      replaced(text, "level [mm]", "level [ft]"));
+  REQUIRE(feet.size() == 1);
+  CHECK(feet[0].find("is 9999 ft in row 150,") != std::string::npos);
+}
+
+TEST_CASE("nines within the range, impulses, other spikes and rows that the task does not read are left alone") {
   CHECK(told([](int, double&, double&) {}).empty());
   CHECK(told([](int row, double& force, double& level) {
           force *= 60;
@@ -77,15 +100,25 @@ TEST_CASE("nines within the range, impulses, other spikes and rows behind those 
   CHECK(told([](int row, double& force, double&) {
           if (row == 195) force = 9999;
         }).empty());
+  // Simulation begins at row 1: its input acts, what was measured there is not scored.
+  CHECK(told([](int row, double&, double& level) {
+          if (row == 50) level = 9999;
+        }).empty());
+  CHECK(told([](int row, double& force, double&) {
+          if (row == 50) force = 9999;
+        }).size() == 1);
 }
 
-TEST_CASE("a fit says so, too") {
+TEST_CASE("a fit says so before it begins and in its verdict, and check once for all tasks of a record") {
   TemporaryFolder folder;
   write_file(folder.path() / "record.csv", table([](int row, double& force, double&) {
                if (row == 150) force = 9999;
              }));
   RunOptions options;
   options.output = folder.path() / "results";
-  CHECK(run_text(folder.path() / "m.sysid", text, options).out.find("warning[looks_missing]: u is 9.999 N in row 150") !=
-        std::string::npos);
+  RunResult const fitted = run_text(folder.path() / "m.sysid", text, options);
+  CHECK(fitted.out.find("warning[looks_missing]: column `force` of record is 9999 mN in row 150") != std::string::npos);
+  CHECK(fitted.notices.find("posterior: warning: column `force` of record is 9999 mN in row 150") != std::string::npos);
+  std::string const twice = text + "again = fit m to record.middle with map, seed = 2\n";
+  CHECK(messages(checked(folder.path() / "m.sysid", twice), "looks_missing").size() == 1);
 }

@@ -246,6 +246,8 @@ TEST_CASE("a command misspelt is told from a quantity, before any run and after 
   d.begin();
   CHECK_FALSE(d.enter("qiut"));
   CHECK(has(d.messages(), "did you mean `quit`?"));
+  CHECK_FALSE(d.enter("colums bench.csv"));
+  CHECK(has(d.messages(), "did you mean `columns`?"));
   REQUIRE(d.enter("first = fit oscillator to bench.train with map"));
   CHECK_FALSE(d.enter("chek"));
   CHECK(has(d.messages(), "did you mean `check`?"));

@@ -121,7 +121,7 @@ TEST_CASE("one trajectory is no posterior mean and has no band") {
   quantity.response.draws = 1;
   plot::Figure const figure = fit_figure(report.predictions[0], quantity);
   CHECK(figure.script.find("'mean'") == std::string::npos);
-  CHECK(figure.script.find("'95 %'") == std::string::npos);
+  CHECK(figure.script.find("'95 % band'") == std::string::npos);
   CHECK(figure.script.find("'model'") != std::string::npos);
   CHECK(figure.caption.ends_with("one trajectory has no band."));
 }

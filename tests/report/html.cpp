@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "example.hpp"
@@ -45,6 +47,10 @@ double contrast(std::string const& a, std::string const& b) {
 }
 
 }  // namespace
+
+TEST_CASE("the style sheet knows the width of a column") {
+  CHECK(report_html(example::duffing(20), {}).find(fmt::format("viewBox^=\"0 0 {} \"", plot::column_width)) != std::string::npos);
+}
 
 TEST_CASE("the rules of a page find what breaks them") {
   Report report = example::duffing(20);

@@ -124,5 +124,7 @@ TEST_CASE("a text that is too wide loses the middle of its name, not its unit no
   CHECK(text_pixels(label) <= 150);
   CHECK(shortened("äöüäöüäöüäöü", 40) == "äö…äöü");
   CHECK(shortened("abcdef", 30) == "abc…");
-  CHECK(shortened("k3 [10³ 1/(V²·s²)]", 80) == "k3 […]");
+  CHECK(shortened("k3 [10³ 1/(V²·s²)]", 80) == "k3 [10³ …]");
+  CHECK(shortened("k3 [1/(V²·s²)]", 60) == "k3 […]");
+  CHECK(shortened("velocity [m/s]", 90) == "veloci… [m/s]");
 }
