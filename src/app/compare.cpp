@@ -155,11 +155,14 @@ ComparedFit compared_fit(Result const& result) {
   return fit;
 }
 
-/// A model, and how its likelihood reads the record: fits that agree in it are of one and the same model.
+/// A model, how its likelihood reads the record, and the inputs that it is given: fits that agree in it are of one and the same
+/// model.
 std::string identity(Result const& result) {
   json const settings = result.summary.value("settings", json::object());
-  return result.summary.value("versions", json::object()).value("model_sha256", "") + settings.value("prediction", "") +
-         settings.value("start_state", "");
+  std::string all = result.summary.value("versions", json::object()).value("model_sha256", "") + settings.value("prediction", "") +
+                    settings.value("start_state", "");
+  for (json const& data : result.summary["data"]) all += data.value("sha256", "") + data.value("notes", json::array()).dump();
+  return all;
 }
 
 /// Models of one name that are not the same, as an equation before and after a change, are told apart by their fits.

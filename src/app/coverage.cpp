@@ -5,14 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/residual_checks.hpp"
+#include "core/files.hpp"
 
 namespace sysid {
 namespace {
 
-constexpr double least_coverage = 0.8;  // of a 95 % band: errors that are correlated in time leave it in stretches
+constexpr double least_coverage = 0.9;  // of a 95 % band: twice as many outside as should be
 
-int measured_samples(Report const& report, FitLine const& line) {
-  int count = 0;
+std::size_t measured_samples(Report const& report, FitLine const& line) {
+  std::size_t count = 0;
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities) {
       if (prediction.experiment != line.experiment || quantity.name != line.channel) continue;
@@ -23,7 +27,7 @@ int measured_samples(Report const& report, FitLine const& line) {
 }
 
 // So few inside a 95 % band that chance will not do it: 3.3 binomial sds and one sample besides.
-bool misses(double coverage, int samples) {
+bool misses(double coverage, double samples) {
   constexpr double expected = 0.95;
   double const short_of = (expected - coverage) * samples;
   return coverage < least_coverage && short_of > 3.3 * std::sqrt(samples * expected * (1 - expected)) + 1;
@@ -33,22 +37,34 @@ bool misses(double coverage, int samples) {
 
 std::string prediction_verdict(Report const& report, bool missed) {
   if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
-  if (report.ledger.failed() > 0) return "some trajectories do not stay finite";
-  if (std::any_of(report.findings.begin(), report.findings.end(),
-                  [](Finding const& each) { return each.code == "worse_than_the_mean"; }))
-    return "all trajectories stay finite, but the mean of the record predicts better";
-  return missed ? "all trajectories stay finite, but the data lie outside their bands" : "all trajectories stay finite";
+  auto const has = [&](char const* code) {
+    return std::any_of(report.findings.begin(), report.findings.end(), [&](Finding const& each) { return each.code == code; });
+  };
+  if (has("from_doubtful_fit")) return "use with care: the fit that this is drawn from has failed its checks";
+  if (report.ledger.failed() > 0) return "use with care: some trajectories do not stay finite";
+  if (has("worse_than_the_mean")) return "use with care: the mean of the record predicts better";
+  if (missed) return "use with care: the data lie outside their bands";
+  auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
+                                      [](Finding const& each) { return each.severity == Severity::warning; });
+  if (warnings > 0)
+    return fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+  return "all trajectories stay finite";
 }
 
-/// nmse [%] of a prediction that is none: an error twice as large as the variance. A free run that has lost its phase has 200 at
-/// most.
-constexpr double useless = 200;
+void add_source(std::filesystem::path const& fit, Report& report) {
+  auto const summary = nlohmann::json::parse(read_file(fit / "summary.json"), nullptr, false);
+  if (!summary.is_object() || !summary.contains("verdict") || !summary["verdict"].is_object()) return;
+  if (summary["verdict"].value("pass", true)) return;
+  report.findings.push_back({Severity::warning, "from_doubtful_fit",
+                             fmt::format("`{}`, whose draws these are, has failed its checks", summary.value("task", "")),
+                             "its verdict says what to do; then predict again"});
+}
 
 bool add_coverage(Report& report, bool fed_back) {
   bool any = false;
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores)
-      if (score.name == "nmse" && score.value > useless)
+      if (score.name == "nmse" && score.value > as_bad_as_the_mean(measured_samples(report, line)))
         report.findings.push_back(
             {Severity::warning, "worse_than_the_mean",
              fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
@@ -56,7 +72,7 @@ bool add_coverage(Report& report, bool fed_back) {
              "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"});
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores) {
-      if (score.name != "coverage_95" || !misses(score.value, measured_samples(report, line))) continue;
+      if (score.name != "coverage_95" || !misses(score.value, static_cast<double>(measured_samples(report, line)))) continue;
       any = true;
       report.findings.push_back(
           {Severity::warning, "coverage_low",

@@ -1,5 +1,7 @@
 // Whether data lie where a prediction says, and what its bands are good for.
 #pragma once
+#include <filesystem>
+
 #include "report/report.hpp"
 
 namespace sysid {
@@ -7,6 +9,9 @@ namespace sysid {
 /// Whether some channel leaves its 95 % band far more often than it should: a warning for each. fed_back: the noise of a sample
 /// shows in later ones, which a free run leaves out.
 bool add_coverage(Report& report, bool fed_back);
+
+/// A warning where the fit whose results are in that folder has failed its checks: `from_doubtful_fit`.
+void add_source(std::filesystem::path const& fit, Report& report);
 
 /// What a prediction's bands allow, from its findings and failures; missed: as `add_coverage` says.
 std::string prediction_verdict(Report const& report, bool missed);

@@ -130,8 +130,9 @@ class Fit {
         session_, task_, what_.model,
         fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
     report.priors = priors_of(*space_, report.priors);
-    report.findings = result.findings;
+    // What is wrong with the record comes before what follows from it.
     for (ExperimentData const& each : data_) add_data(session_.file, each, model_, report);
+    report.findings.insert(report.findings.end(), result.findings.begin(), result.findings.end());
     if (!result.search_told)
       report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
@@ -161,6 +162,7 @@ class Fit {
     if (!interrupted) add(check_hierarchy(model_, result.draws, report.findings));
     add(failure_findings(ledger_));
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
+    name_held(report, report.findings);
     add_derived(*compiled_, *space_, result.draws);
     for (std::size_t c = static_cast<std::size_t>(result.draws.parameter_count); c < result.draws.names.size(); ++c)
       report.summary.push_back(of_column(result.draws, c));

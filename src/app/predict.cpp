@@ -50,6 +50,7 @@ class Predict {
       add_data(session_.file, data_[static_cast<std::size_t>(e)], model_, report);
       predict(e, report);
     }
+    add_source(session_.result_folder(fit_task_), report);
     report.settings = {{"draws", static_cast<std::int64_t>(trajectories_.wanted())},
                        {"redraw", std::string(what_.redraw_each_step ? "step" : "trajectory")},
                        {"start", start_text(what_.start)}};

@@ -39,6 +39,7 @@ class PredictSelection {
                                              data_names(session_.file, what_.candidate_experiments[lead]), what_.draws),
                                  seed_);
     for (std::size_t e = 0; e < what_.candidate_experiments[lead].size(); ++e) predict(e, lead, report);
+    add_source(session_.result_folder(select_task_), report);
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
     if (session_.file.models[static_cast<std::size_t>(select_.fits[lead].model)].integrated())
       add_solver(select_.fits[lead].solver, report.settings);

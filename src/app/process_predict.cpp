@@ -39,6 +39,7 @@ class ProcessPredict {
                        fit_task_.name),
            "fit with mh for bands that hold both"});
     for (int e = 0; e < static_cast<int>(trajectories_.data().size()); ++e) predict(e, report);
+    add_source(session_.result_folder(fit_task_), report);
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
     if (model.integrated()) add_solver(trajectories_.fitted().solver, report.settings);
     if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));

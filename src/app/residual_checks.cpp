@@ -13,6 +13,7 @@
 #include "inference/residual_tests.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
+#include "report/narrowing.hpp"
 
 namespace sysid {
 namespace {
@@ -65,8 +66,8 @@ SizedResiduals scaled(DistributionRow const& noise, std::vector<std::vector<doub
 
 /// nmse [%] from which a fit is no model of its record, whatever its residuals: the error is larger than what there was to explain.
 constexpr double useless = 200;
-/// nmse [%] from which a fit that leaves more than noise explains little, and next to nothing.
-constexpr double little = 50, next_to_nothing = 90;
+/// nmse [%] from which a fit that leaves more than noise explains little, and less than half.
+constexpr double little = 20, less_than_half = 50;
 
 // A channel over the scored rows of an experiment.
 struct ScoredChannel {
@@ -102,26 +103,18 @@ double unexplained(ScoredChannel const& of) {
   return nmse(observed, predicted);
 }
 
-// The nmse that a fit exceeds by chance once in a thousand records where the mean explains all there is: of n samples of noise
-// about the right prediction the sums of squares about it and about the mean differ by less than sigma^2 chi-squared(2), of 99.9 %
-// quantile 13.8. Not a number of a channel that did not change, of which nothing is said.
-double as_bad_as_the_mean(ScoredChannel const& of) {
-  constexpr double excess = 13.8;
-  return 100 * (1 + excess / static_cast<double>(of.observed.size()));
-}
-
 // coloured: what the fit leaves is more than noise.
 void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
   constexpr char const* look = "look at units, signs and columns, at the initial values and the priors, then at the model";
   double const left = unexplained(of);
-  if (left > as_bad_as_the_mean(of))
+  if (left > as_bad_as_the_mean(of.observed.size()))
     findings.push_back(
         {left > useless || coloured ? Severity::error : Severity::warning, "worse_than_the_mean",
          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
                      of.name(), left),
          fmt::format("the fit explains nothing of this channel: {}", look)});
   else if (coloured && left > little)
-    findings.push_back({left > next_to_nothing ? Severity::error : Severity::warning, "explains_little",
+    findings.push_back({left > less_than_half ? Severity::error : Severity::warning, "explains_little",
                         fmt::format("the fit explains {:.2g} % of the variance of {}, and what it leaves is not noise",
                                     std::max(0.0, 100 - left), of.name()),
                         look});
@@ -238,6 +231,25 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
 }
 
 }  // namespace
+
+void name_held(Report const& report, Findings& findings) {
+  std::vector<std::string> held;
+  for (PriorInfo const& prior : report.priors)
+    for (Summary const& summary : report.summary)
+      if (summary.name == prior.name && !summary.coefficient)
+        if (auto const ratio = narrowing(prior, summary); ratio && *ratio < hardly_narrower) held.push_back(summary.name);
+  constexpr std::size_t most_named = 6;
+  if (held.empty() || held.size() > most_named) return;
+  for (Finding& each : findings)
+    if (each.code == "explains_little" || each.code == "worse_than_the_mean" || each.code == "piles_up_at_bound")
+      each.help +=
+          fmt::format("; {} {} as wide as the prior: is it right?", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
+}
+
+double as_bad_as_the_mean(std::size_t samples) {
+  constexpr double excess = 13.8;
+  return 100 * (1 + excess / static_cast<double>(samples));
+}
 
 std::string on_experiment(ModelTarget const& target, int experiment) {
   if (target.experiments().size() == 1) return {};

@@ -35,6 +35,8 @@ std::string reason(int error) {
 }
 
 std::string help_to_read(std::filesystem::path const& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return fmt::format("`{}` is a folder: name a file in it", path.string());
   std::string const guess = did_you_mean(path.string(), files_beside(path));
   return guess.empty() ? "check the path and the permissions" : guess;
 }

@@ -180,12 +180,14 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   StreamKey const key{context.seed, Purpose::start, 0, search_step};
   std::optional<Objective> objective;
   std::vector<Climber> ended;
+  bool begun = false;
   int const passes = has_coefficients(target) ? 1 : most_passes;
   for (int pass = 0; pass < passes && !stop(); ++pass) {
     LaneArray draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
     if (!objective) objective.emplace(make_objective(target, aim, draws));
     begin_without_functions(target, draws);
     std::vector<Climber> starts = choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop);
+    begun = begun || !starts.empty();
     climb(*objective, starts, early_rounds, context.ledger, stop);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
     climb(*objective, last, late_rounds, context.ledger, stop);
@@ -205,6 +207,14 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   }
   if (result.modes.empty()) {
     result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(most_passes * breadth.draws));
+    if (begun) {  // draws are finite, but all climbs from them end where the likelihood does
+      std::string const places = failed_places(context.ledger);
+      result.failure->message = fmt::format("all climbs from draws of the prior end where the model cannot be simulated{}{}",
+                                            places.empty() ? "" : ": ", places);
+      result.failure->help =
+          "look at the units of the data and at the priors: the data pull the parameters out of the range in which the model has a "
+          "solution; or let the solver choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff";
+    }
     return result;
   }
   add_findings(*objective, result);

@@ -85,11 +85,14 @@ class Canvas {
 
 std::string titled(AxisName const& axis) { return axis.unit.empty() ? axis.name : fmt::format("{} [{}]", axis.name, axis.unit); }
 
-/// Both ends of an axis, with as many digits as tell them apart.
+/// Both ends of an axis, with as many digits as place them to half a hundredth of it.
 std::pair<std::string, std::string> ends_of(Range range) {
+  double const near = 0.005 * (range.high - range.low);
   for (int digits = 4;; ++digits) {
     std::string low = significant(range.low, digits), high = significant(range.high, digits);
-    if (low != high || digits == 12) return {std::move(low), std::move(high)};
+    bool const placed = std::fabs(std::strtod(low.c_str(), nullptr) - range.low) <= near &&
+                        std::fabs(std::strtod(high.c_str(), nullptr) - range.high) <= near;
+    if (placed || digits == 12) return {std::move(low), std::move(high)};
   }
 }
 

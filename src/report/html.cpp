@@ -72,7 +72,10 @@ std::string report_html(Report const& report, std::vector<DrawnFigure> const& fi
   std::string contents;
   for (HtmlSection const& each : sections) contents += entry(each.id, each.title);
   std::string const title = title_of(report);
-  return page(fmt::format("{} – {}", report.task, title),
+  // Browsers and readers cut longer ones.
+  constexpr std::size_t most = 70;
+  std::string const name = fmt::format("{} – {}", report.task, title);
+  return page(name.size() > most ? report.task : name,
               fmt::format("<p class=\"task\">{}</p>\n<h1>{}</h1>\n<p class=\"what\">{}</p>\n", escape(report.task), escape(title),
                           escape(report.what)),
               contents, all(sections, 2), report.version);

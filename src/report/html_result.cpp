@@ -9,6 +9,7 @@
 
 #include "core/xml.hpp"
 #include "report/html_words.hpp"
+#include "report/narrowing.hpp"
 #include "report/number.hpp"
 #include "report/typeset.hpp"
 

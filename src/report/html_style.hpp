@@ -56,7 +56,7 @@ nav .what { margin: 0 0.4rem; }
 .equations { font-size: 1.2rem; margin: 0.6rem 0 1.2rem; padding-left: 1.2rem; overflow-x: auto; }
 .equations p { margin: 0.2rem 0; }
 math { font-family: "STIX Two Math", "Cambria Math", "Latin Modern Math", "DejaVu Math TeX Gyre", math; }
-math[display="block"] { width: fit-content; margin: 0.3rem 0; }
+math[display="block"] { width: fit-content; margin: 0.55rem 0; }
 .scroll { overflow-x: auto; margin: 0.9rem 0; }
 table { border-collapse: collapse; border-top: 1.5px solid var(--ink); border-bottom: 1.5px solid var(--ink); font-size: 0.9rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: 0.3rem; }

@@ -29,13 +29,4 @@ std::string ledger_words(Report const& report);
 /// What the posterior has learnt beyond the prior: its narrowest and widest parameters against their priors.
 std::string learning_words(Report const& report);
 
-/// Below, a posterior is called hardly narrower than its prior.
-inline constexpr double hardly_narrower = 1.5;
-
-/// By how much narrower the posterior's 90 % interval is than the prior's; nothing where either is not known.
-std::optional<double> narrowing(PriorInfo const& prior, Summary const& summary);
-
-/// The posterior's 90 % interval; of an optimum that of its normal approximation.
-std::pair<double, double> interval_90(Summary const& summary);
-
 }  // namespace sysid

@@ -34,8 +34,9 @@ std::string shortened(std::string_view text, double pixels) {
     return fmt::format("{}…{}{}", name.substr(0, begins.empty() ? 0 : begins[head]),
                        tail == 0 ? "" : name.substr(begins[begins.size() - tail]), unit);
   };
+  bool const counted = name.find(" − ") != name.npos || name.find(" + ") != name.npos;  // from a number, which has to stay
   while (head > 2 && text_pixels(left()) > pixels) --head;
-  if (text_pixels(left()) <= pixels || unit.empty()) return left();
+  if ((text_pixels(left()) <= pixels && !counted) || unit.empty()) return left();
   // Of a short name nothing would be left: rather less of the unit, but for the power of ten, without which numbers are wrong.
   std::size_t const power = unit.starts_with(" [10") ? unit.find(' ', 1) : std::string_view::npos;
   std::string const rest = power == std::string_view::npos ? " […]" : std::string(unit.substr(0, power)) + " …]";

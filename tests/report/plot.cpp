@@ -126,5 +126,6 @@ TEST_CASE("a text that is too wide loses the middle of its name, not its unit no
   CHECK(shortened("abcdef", 30) == "abc…");
   CHECK(shortened("k3 [10³ 1/(V²·s²)]", 80) == "k3 [10³ …]");
   CHECK(shortened("k3 [1/(V²·s²)]", 60) == "k3 […]");
+  CHECK(shortened("k − 184295 [10³ 1/s²]", 125) == "k − 184295 [10³ …]");
   CHECK(shortened("velocity [m/s]", 90) == "veloci… [m/s]");
 }
