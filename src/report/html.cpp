@@ -74,7 +74,8 @@ std::string report_html(Report const& report, std::vector<DrawnFigure> const& fi
   std::string const title = title_of(report);
   // Browsers and readers cut longer ones.
   constexpr std::size_t most = 70;
-  std::string const name = fmt::format("{} – {}", report.task, title);
+  std::string name = fmt::format("{} – {}", report.task, title);
+  if (name.size() > most) name = fmt::format("{} – {}", report.task, report.model_name);
   return page(name.size() > most ? report.task : name,
               fmt::format("<p class=\"task\">{}</p>\n<h1>{}</h1>\n<p class=\"what\">{}</p>\n", escape(report.task), escape(title),
                           escape(report.what)),

@@ -96,6 +96,18 @@ free = predict b_arx on points.test with draws(20), prediction = free_run, seed 
   CHECK(printed.at("predictions").size() == 3);
 }
 
+TEST_CASE("one model with two inputs for the same samples is weighed as two") {
+  CaseRun const run = runs(R"(
+data self { file "points.csv"; time t [s]; input x = y; measure y = y; split train = rows 5..80 }
+a_input = fit still to points.train with map, seed = 1
+b_self = fit still to self.train with map, seed = 1
+)");
+  Comparison const found = compare({run.folder.path() / "results"});
+  REQUIRE(found.fits.size() == 2);
+  CHECK(*found.fits[0].probability + *found.fits[1].probability == doctest::Approx(1));
+  CHECK((*found.fits[0].probability > *found.fits[1].probability) == (*found.fits[0].log_evidence > *found.fits[1].log_evidence));
+}
+
 TEST_CASE("fits to different samples are refused, also where only the models' own lags make the difference") {
   CaseRun const run = runs(R"(
 train = fit arx to points.train with map, seed = 1

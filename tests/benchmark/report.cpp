@@ -47,7 +47,7 @@ BENCHMARK(write)->UseManualTime()->Unit(benchmark::kSecond);
 
 void report_again(benchmark::State& state) {
   TemporaryFolder const folder;
-  write_result(fitted(), folder.path(), false);
+  write_result(fitted(), folder.path(), {});
   measure(state, [&] { report_results(folder.path(), std::nullopt, state.range(0) != 0); });
 }
 BENCHMARK(report_again)->ArgName("figures")->Arg(1)->Arg(0)->UseManualTime()->Unit(benchmark::kSecond);
