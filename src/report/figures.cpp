@@ -27,6 +27,13 @@ std::size_t records_of(std::vector<RestoringForce> const& forces) {
   return records.size();
 }
 
+/// What nothing measures and what stays where it is has nothing to show.
+bool shows_something(PredictedQuantity const& quantity) {
+  std::vector<double> const& mean = quantity.response.mean;
+  return !mean.empty() &&
+         (!quantity.measured.empty() || std::any_of(mean.begin(), mean.end(), [&](double each) { return each != mean.front(); }));
+}
+
 }  // namespace
 
 std::vector<Figure> figures(Report const& report) {
@@ -34,7 +41,7 @@ std::vector<Figure> figures(Report const& report) {
   if (report.selection) out.push_back(population_figure(*report.selection));
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
-      if (!quantity.response.mean.empty() && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
+      if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
         out.push_back(fit_figure(prediction, quantity));
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)

@@ -32,6 +32,15 @@ TEST_CASE("a fit has its figures in reading order") {
                                                                          "residuals_bench_train_displacement"});
 }
 
+TEST_CASE("a quantity that nothing measures and that never moves has no figure") {
+  Report report = example::duffing(40);
+  auto& quantities = report.predictions[0].quantities;
+  auto const speed = std::find_if(quantities.begin(), quantities.end(), [](auto const& each) { return each.measured.empty(); });
+  REQUIRE(speed != quantities.end());
+  std::fill(speed->response.mean.begin(), speed->response.mean.end(), 0.0);
+  for (std::string const& name : names(figures(report))) CHECK_FALSE(name.starts_with("state_"));
+}
+
 TEST_CASE("without draws or predictions there is no figure, with one parameter no pair, with one chain no ranks") {
   Report report = example::duffing(40);
   report.predictions.clear();
