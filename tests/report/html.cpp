@@ -85,7 +85,8 @@ TEST_CASE("pages keep the rules whatever is in them") {
   for (Summary& summary : optimum.summary) summary.q5 = summary.q95 = summary.rhat = summary.ess_bulk = std::nan("");
   CHECK(test::broken_rules(report_html(optimum, {})) == "");
   Report hostile = example::duffing(20);
-  std::string const bytes("]]>&<\"' \x01\x1b\xff\xc0\xaf\xed\xa0\x80\xf5\x80\x80\x80\0 \xef\xbf\xbf \xe2\x82", 33);
+  static constexpr char raw[] = "]]>&<\"' \x01\x1b\xff\xc0\xaf\xed\xa0\x80\xf5\x80\x80\x80\0 \xef\xbf\xbf \xe2\x82";
+  std::string const bytes(raw, sizeof raw - 1);  // a zero byte among them
   hostile.task = hostile.what = hostile.model_title = hostile.model_text = hostile.command = bytes;
   hostile.equations = {bytes};
   hostile.findings.push_back({Severity::error, bytes, bytes, bytes});
