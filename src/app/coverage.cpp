@@ -9,6 +9,7 @@
 
 #include "app/residual_checks.hpp"
 #include "core/files.hpp"
+#include "inference/verdict.hpp"
 
 namespace sysid {
 namespace {
@@ -46,8 +47,7 @@ std::string prediction_verdict(Report const& report, bool missed) {
   if (missed) return "use with care: the data lie outside their bands";
   auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
                                       [](Finding const& each) { return each.severity == Severity::warning; });
-  if (warnings > 0)
-    return fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+  if (warnings > 0) return with_care(warnings);
   return "all trajectories stay finite";
 }
 
@@ -65,11 +65,9 @@ bool add_coverage(Report& report, bool fed_back) {
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores)
       if (score.name == "nmse" && score.value > as_bad_as_the_mean(measured_samples(report, line)))
-        report.findings.push_back(
-            {Severity::warning, "worse_than_the_mean",
-             fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
-                         line.what(), score.value),
-             "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"});
+        report.findings.push_back(worse_than_the_mean(
+            Severity::warning, line.what(), score.value,
+            "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"));
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores) {
       if (score.name != "coverage_95" || !misses(score.value, static_cast<double>(measured_samples(report, line)))) continue;

@@ -108,11 +108,8 @@ void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
   constexpr char const* look = "look at units, signs and columns, at the initial values and the priors, then at the model";
   double const left = unexplained(of);
   if (left > as_bad_as_the_mean(of.observed.size()))
-    findings.push_back(
-        {left > useless || coloured ? Severity::error : Severity::warning, "worse_than_the_mean",
-         fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
-                     of.name(), left),
-         fmt::format("the fit explains nothing of this channel: {}", look)});
+    findings.push_back(worse_than_the_mean(left > useless || coloured ? Severity::error : Severity::warning, of.name(), left,
+                                           fmt::format("the fit explains nothing of this channel: {}", look)));
   else if (coloured && left > little)
     findings.push_back({left > less_than_half ? Severity::error : Severity::warning, "explains_little",
                         fmt::format("the fit explains {:.2g} % of the variance of {}, and what it leaves is not noise",
@@ -241,9 +238,16 @@ void name_held(Report const& report, Findings& findings) {
   constexpr std::size_t most_named = 6;
   if (held.empty() || held.size() > most_named) return;
   for (Finding& each : findings)
-    if (each.code == "explains_little" || each.code == "worse_than_the_mean" || each.code == "piles_up_at_bound")
+    if (each.code == "explains_little" || each.code == "worse_than_the_mean")
       each.help +=
           fmt::format("; {} {} as wide as the prior: is it right?", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
+}
+
+Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help) {
+  return {severity, "worse_than_the_mean",
+          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
+                      channel, nmse),
+          std::move(help)};
 }
 
 double as_bad_as_the_mean(std::size_t samples) {

@@ -25,6 +25,9 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
 /// they cannot fit.
 void name_held(Report const& report, Findings& findings);
 
+/// `worse_than_the_mean` of a channel, with what to do.
+Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help);
+
 /// The nmse [%] that a prediction exceeds by chance once in a thousand records where the mean explains all there is: of n samples
 /// of noise about the right prediction the sums of squares about it and about the mean differ by less than sigma^2 chi-squared(2),
 /// of 99.9 % quantile 13.8. A channel that did not change has no nmse, which exceeds nothing.

@@ -2,31 +2,17 @@
 #include "cli/messages.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <new>
-#include <string_view>
 
 #include "app/experiments.hpp"
+#include "core/colour.hpp"
 #include "core/files.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid::cli {
-namespace {
-
-bool colour() {
-  auto const variable = [](char const* name) {
-    char const* value = std::getenv(name);
-    return std::string_view(value == nullptr ? "" : value);
-  };
-  return variable("NO_COLOR").empty() && variable("TERM") != "dumb" && isatty(STDERR_FILENO) != 0;
-}
-
-}  // namespace
-
 void Messages::show(Diagnostics const& diagnostics, Source const& source) const {
-  *out << (json ? render_json(diagnostics, source) : render(diagnostics, source, colour()));
+  *out << (json ? render_json(diagnostics, source) : render(diagnostics, source, coloured_messages()));
 }
 
 void Messages::complain(std::string message, std::string help) const {

@@ -7,6 +7,10 @@
 
 namespace sysid {
 
+std::string with_care(std::ptrdiff_t warnings) {
+  return fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+}
+
 Verdict judge(Findings const& findings) {
   auto const count = [&](Severity s) {
     return std::count_if(findings.begin(), findings.end(), [&](Finding const& f) { return f.severity == s; });
@@ -19,7 +23,7 @@ Verdict judge(Findings const& findings) {
     verdict.text =
         fmt::format("do not use these numbers yet: {} failed", errors == 1 ? "a check" : fmt::format("{} checks", errors));
   else if (warnings > 0)
-    verdict.text = fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+    verdict.text = with_care(warnings);
   else
     verdict.text = "the checks pass";
   for (Severity const severity : {Severity::error, Severity::warning, Severity::note}) {

@@ -4,23 +4,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <iostream>
 
+#include "core/colour.hpp"
 #include "core/files.hpp"
 #include "core/progress_terminal.hpp"
 #include "repl/state.hpp"
 
 namespace sysid::repl {
 namespace {
-
-bool colour() {
-  auto const variable = [](char const* name) {
-    char const* value = std::getenv(name);
-    return std::string_view(value == nullptr ? "" : value);
-  };
-  return variable("NO_COLOR").empty() && variable("TERM") != "dumb" && isatty(STDERR_FILENO) != 0;
-}
 
 /// Nobody means to lose an hour's work by Ctrl-D.
 void keep_unsaved(Workbench const& workbench) {
@@ -54,7 +46,7 @@ int read_entries(std::istream& in, Workbench& workbench) {
 
 int run_prompt(RunOptions const& options, std::string const& file) {
   TerminalProgress progress;
-  Workbench workbench(options, progress, {std::cout, std::cerr, colour()});
+  Workbench workbench(options, progress, {std::cout, std::cerr, coloured_messages()});
   bool const terminal = isatty(STDIN_FILENO) != 0;
   bool const loaded = file.empty() || workbench.enter("load \"" + file + "\"");
   if (!terminal) {
