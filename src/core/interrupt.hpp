@@ -1,4 +1,5 @@
-// Ctrl-C and SIGTERM as a flag that long jobs read at safe points; a second signal ends the program at once.
+// Ctrl-C and SIGTERM as a flag that long jobs read at safe points; Ctrl-C pressed again, half a second and more later, ends the
+// program at once.
 #pragma once
 
 namespace sysid {

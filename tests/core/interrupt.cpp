@@ -3,8 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <csignal>
 #include <initializer_list>
+#include <thread>
 
 using namespace sysid;
 
@@ -19,6 +24,36 @@ TEST_CASE("Ctrl-C and SIGTERM raise the flag and the program goes on") {
   clear_interrupt();
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+}
+
+namespace {
+
+// Exit code of a process in which `first` arrives and, some time later, `second`; 0 where it lives on.
+int exit_after(int first, std::chrono::milliseconds pause, int second) {
+  pid_t const child = fork();
+  if (child == 0) {
+    install_interrupt_handlers();
+    clear_interrupt();
+    std::raise(first);
+    std::this_thread::sleep_for(pause);
+    std::raise(second);
+    _exit(interrupt_requested() ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+TEST_CASE("one request that arrives twice is one; only Ctrl-C pressed again later ends the program") {
+  using namespace std::chrono_literals;
+  // What timeout(1) does: to the process and to its group.
+  CHECK(exit_after(SIGTERM, 0ms, SIGTERM) == 0);
+  CHECK(exit_after(SIGINT, 0ms, SIGINT) == 0);
+  CHECK(exit_after(SIGTERM, 600ms, SIGTERM) == 0);
+  CHECK(exit_after(SIGINT, 600ms, SIGINT) == 130);
+  CHECK(exit_after(SIGTERM, 600ms, SIGINT) == 130);
 }
 
 TEST_CASE("a request raises the flag as a signal does") {
