@@ -162,7 +162,13 @@ class Select {
     bool const checked = !interrupted && what_.settings.flag("cross_check"),
                polished = !interrupted && what_.settings.flag("polish");
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
-    if (checked) add_likelihoods(candidates_, posteriors, selection, report.findings);
+    if (checked) {
+      add_likelihoods(candidates_, posteriors, selection, report.findings);
+      auto const lead = static_cast<std::size_t>(selection.leader());
+      FitCheck check = check_candidate(session_, leading, posteriors[lead]);
+      report.fit = std::move(check.lines);
+      add(check.findings);
+    }
     if (!interrupted) {
       add(solver_findings(candidates_, posteriors));
       add(add_noise_floor(session_, candidates_, target, posteriors, selection));

@@ -1,4 +1,4 @@
-// Evidences, noise and integration against what the particles say.
+// Evidences, noise, residuals and integration against what the particles say.
 #include "app/selection_checks.hpp"
 
 #include <fmt/format.h>
@@ -109,6 +109,14 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
                        significant(threshold / lowest->distance, 2), selection.floor_words, significant(lowest->distance, 4)),
            "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or "
            "none of the models is the right one"}};
+}
+
+FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
+  if (posterior.modes.empty() || posterior.given_up) return {};
+  FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.options.execution),
+                                   posterior.modes.front().declared);
+  for (Finding& finding : check.findings) finding.message = fmt::format("`{}`: {}", candidate.what->name, finding.message);
+  return check;
 }
 
 Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver) {

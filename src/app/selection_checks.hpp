@@ -1,9 +1,10 @@
-// What a finished selection is asked: does the likelihood agree, how far is the threshold above the noise, are distances the
-// integrator's.
+// What a finished selection is asked: does the likelihood agree, how far is the threshold above the noise, is noise all that the
+// leading model leaves, are distances the integrator's.
 #pragma once
 #include <vector>
 
 #include "app/candidate_posterior.hpp"
+#include "app/residual_checks.hpp"
 #include "likelihood/model_selection_target.hpp"
 #include "report/selection.hpp"
 
@@ -18,6 +19,10 @@ void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<Candi
 /// that any candidate's mode has found; a place where a climb was given up is none. Normal noise only.
 Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
                          std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection);
+
+/// What a candidate leaves of the record at the likeliest place near its particles, scored and tested as a fit is; findings name
+/// the model. Nothing where the likelihood has no mode there.
+FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior);
 
 /// Particles of a model once more with the next finer solver: their distances must not be those of the integrator.
 Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver);
