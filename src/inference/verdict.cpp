@@ -4,8 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace sysid {
+
+namespace {
+
+// What the other checks say of a part of a run says little of the run.
+bool is_end(Finding const& finding) { return finding.code == "interrupted"; }
+
+}  // namespace
+
+Findings by_weight(Findings findings) {
+  std::stable_sort(findings.begin(), findings.end(), [](Finding const& a, Finding const& b) {
+    return std::pair(!is_end(a), a.severity) < std::pair(!is_end(b), b.severity);
+  });
+  return findings;
+}
 
 std::string with_care(std::ptrdiff_t warnings) {
   return fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
@@ -19,20 +34,21 @@ Verdict judge(Findings const& findings) {
   Verdict verdict;
   verdict.pass = errors == 0;
   verdict.exit_code = verdict.pass ? 0 : 1;
-  if (errors > 0)
+  if (std::any_of(findings.begin(), findings.end(), is_end))
+    verdict.text = "unfinished: the run was interrupted";
+  else if (errors > 0)
     verdict.text =
         fmt::format("do not use these numbers yet: {} failed", errors == 1 ? "a check" : fmt::format("{} checks", errors));
   else if (warnings > 0)
     verdict.text = with_care(warnings);
   else
     verdict.text = "the checks pass";
-  for (Severity const severity : {Severity::error, Severity::warning, Severity::note}) {
-    for (Finding const& finding : findings) {
-      if (finding.severity != severity) continue;
-      char const* const mark = severity == Severity::error ? "failed" : severity == Severity::warning ? "warning" : "note";
-      verdict.text += fmt::format("\n  {}[{}]: {}", mark, finding.code, finding.message);
-      if (!finding.help.empty()) verdict.text += fmt::format("\n    what to do: {}", finding.help);
-    }
+  for (Finding const& finding : by_weight(findings)) {
+    char const* const mark = finding.severity == Severity::error     ? "failed"
+                             : finding.severity == Severity::warning ? "warning"
+                                                                     : "note";
+    verdict.text += fmt::format("\n  {}[{}]: {}", mark, finding.code, finding.message);
+    if (!finding.help.empty()) verdict.text += fmt::format("\n    what to do: {}", finding.help);
   }
   if (findings.empty()) return verdict;
   bool const alike =

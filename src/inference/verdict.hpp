@@ -16,7 +16,10 @@ struct Verdict {
 /// "use with care: 2 things to look at".
 std::string with_care(std::ptrdiff_t warnings);
 
-/// Fails when any finding is an error; warnings and notes are listed after the errors, in the order found.
+/// That the run was interrupted first, then errors, warnings and notes; alike in the order found.
+Findings by_weight(Findings findings);
+
+/// Fails when any finding is an error; all are listed by weight.
 Verdict judge(Findings const& findings);
 
 }  // namespace sysid

@@ -1,5 +1,6 @@
 // Each section with the figures that belong to its numbers.
 #include "report/html_sections.hpp"
+#include "inference/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -20,9 +21,7 @@ std::string verdict_html(Report const& report) {
                                 paragraph(verdict_meaning(report)));
   if (report.findings.empty()) return out;
   out += "<ul>\n";
-  std::vector<Finding> findings = report.findings;
-  std::stable_sort(findings.begin(), findings.end(), [](Finding const& a, Finding const& b) { return a.severity < b.severity; });
-  for (Finding const& finding : findings)
+  for (Finding const& finding : by_weight(report.findings))
     out +=
         fmt::format("<li class=\"{0}\"><b>{1}</b> {2}{3} <span class=\"code\">{4}</span></li>\n", severity_word(finding.severity),
                     finding.severity == Severity::error     ? "Failed:"

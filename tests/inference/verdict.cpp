@@ -36,3 +36,12 @@ TEST_CASE("where all findings have one code the last line can be typed as it sta
   Verdict const verdict = judge({{Severity::warning, "noise_size", "of a", ""}, {Severity::warning, "noise_size", "of b", ""}});
   CHECK(verdict.text.ends_with("\n  warning[noise_size]: of b\n  more: sysid explain noise_size"));
 }
+
+TEST_CASE("a run that was interrupted is unfinished before anything else is said of it") {
+  Verdict const verdict = judge(
+      {{Severity::error, "ess_bulk_low", "too few", ""}, {Severity::warning, "interrupted", "the run was interrupted", "go on"}});
+  CHECK_FALSE(verdict.pass);
+  CHECK(verdict.text ==
+        "unfinished: the run was interrupted\n  warning[interrupted]: the run was interrupted\n    what to do: go on\n"
+        "  failed[ess_bulk_low]: too few\n  more: sysid explain CODE, for each word in brackets");
+}
