@@ -1,10 +1,12 @@
 // check: messages and a page about a file before any sampling.
+#include <unistd.h>
 #include <sstream>
 
 #include "app/check_file.hpp"
 #include "app/session.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "core/wrapped.hpp"
 
 namespace sysid::cli {
 namespace {
@@ -24,7 +26,7 @@ ExitCode fill_page(Messages const& messages, CheckOptions const& options, CheckP
     for (Diagnostics const* each : {&said, static_cast<Diagnostics const*>(&result.diagnostics)})
       for (Diagnostic const& one : each->all()) ++(one.severity == Severity::error ? result.page.errors : result.page.warnings);
     page = std::move(result.page);
-    if (!messages.json) std::cout << check_text(page);
+    if (!messages.json) WrappedOutput(std::cout, STDOUT_FILENO) << check_text(page);
     if (result.diagnostics.has_errors()) return result.unreadable ? ExitCode::io : ExitCode::user_error;
     return grade(page) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   });

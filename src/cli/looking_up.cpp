@@ -1,17 +1,19 @@
 // list, explain, document, version: what the program knows of itself.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "app/explain.hpp"
 #include "app/lists.hpp"
 #include "app/module_page.hpp"
 #include "cli/command.hpp"
 #include "core/instruction_set.hpp"
+#include "core/wrapped.hpp"
 
 namespace sysid::cli {
 namespace {
 
 ExitCode print(std::string const& page) {
-  std::cout << page;
+  WrappedOutput(std::cout, STDOUT_FILENO) << page;
   return ExitCode::success;
 }
 

@@ -2,17 +2,22 @@
 #include "cli/messages.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <new>
 
 #include "app/experiments.hpp"
 #include "core/colour.hpp"
 #include "core/files.hpp"
+#include "core/wrapped.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid::cli {
 void Messages::show(Diagnostics const& diagnostics, Source const& source) const {
-  *out << (json ? render_json(diagnostics, source) : render(diagnostics, source, coloured_messages()));
+  if (json)
+    *out << render_json(diagnostics, source);
+  else
+    WrappedOutput(*out, STDERR_FILENO) << render(diagnostics, source, coloured_messages());
 }
 
 void Messages::complain(std::string message, std::string help) const {

@@ -1,8 +1,10 @@
 // compare, report: what can be made of results that are there.
+#include <unistd.h>
 #include "app/compare.hpp"
 #include "app/report_results.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "core/wrapped.hpp"
 
 namespace sysid::cli {
 
@@ -11,7 +13,10 @@ Work declare_compare(CLI::App& verb) {
   verb.add_option("FOLDER", *folders, "of tasks, or of whole runs")->required();
   return [folders](Messages const& messages) {
     Comparison const comparison = sysid::compare(*folders);
-    std::cout << (messages.json ? comparison_json(comparison) : comparison_text(comparison));
+    if (messages.json)
+      std::cout << comparison_json(comparison);
+    else
+      WrappedOutput(std::cout, STDOUT_FILENO) << comparison_text(comparison);
     return ExitCode::success;
   };
 }

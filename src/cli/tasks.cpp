@@ -1,5 +1,6 @@
 // run, simulate, fit, select, discover, predict: the tasks of a file, or a stage of the compiler instead.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "app/pipeline.hpp"
 #include "cli/command.hpp"
@@ -7,6 +8,7 @@
 #include "core/instruction_set.hpp"
 #include "core/interrupt.hpp"
 #include "core/progress_terminal.hpp"
+#include "core/wrapped.hpp"
 
 namespace sysid::cli {
 namespace {
@@ -71,8 +73,9 @@ ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<s
     std::ostream nowhere(nullptr);
     SilentProgress silent;
     TerminalProgress terminal;
-    return run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal, std::cout,
-                     options.quiet ? nowhere : std::cerr);
+    WrappedOutput out(std::cout, STDOUT_FILENO), notices(std::cerr, STDERR_FILENO);
+    return run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal, out,
+                     options.quiet ? nowhere : notices);
   });
 }
 

@@ -2,12 +2,13 @@
 #include "core/progress_terminal.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+
+#include "core/wrapped.hpp"
 
 namespace sysid {
 
@@ -20,8 +21,7 @@ constexpr int bar_cells = 20;
 TerminalProgress::Means stderr_means() {
   TerminalProgress::Means means;
   means.bar = isatty(STDERR_FILENO) == 1;
-  struct winsize size = {};
-  if (means.bar && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) means.columns = size.ws_col;
+  if (means.bar) means.columns = terminal_columns(STDERR_FILENO);
   means.clock = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
   means.write = [](std::string_view text) {
     // Progress nobody reads is no reason to stop: a failed write is let go.

@@ -9,6 +9,7 @@
 #include "core/colour.hpp"
 #include "core/files.hpp"
 #include "core/progress_terminal.hpp"
+#include "core/wrapped.hpp"
 #include "repl/state.hpp"
 
 namespace sysid::repl {
@@ -46,7 +47,8 @@ int read_entries(std::istream& in, Workbench& workbench) {
 
 int run_prompt(RunOptions const& options, std::string const& file) {
   TerminalProgress progress;
-  Workbench workbench(options, progress, {std::cout, std::cerr, coloured_messages()});
+  WrappedOutput answers(std::cout, STDOUT_FILENO), messages(std::cerr, STDERR_FILENO);
+  Workbench workbench(options, progress, {answers, messages, coloured_messages()});
   bool const terminal = isatty(STDIN_FILENO) != 0;
   bool const loaded = file.empty() || workbench.enter("load \"" + file + "\"");
   if (!terminal) {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <histedit.h>
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <langinfo.h>
@@ -15,6 +14,7 @@
 #include <memory>
 
 #include "core/interrupt.hpp"
+#include "core/wrapped.hpp"
 #include "repl/completion.hpp"
 #include "repl/prompt.hpp"
 #include "repl/state.hpp"
@@ -77,8 +77,8 @@ int next_character(EditLine* line, wchar_t* character) {
 }
 
 int columns() {
-  winsize size = {};
-  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  int const known = terminal_columns(STDOUT_FILENO);
+  return known > 0 ? known : 80;
 }
 
 class Dialogue {
