@@ -155,22 +155,45 @@ ComparedFit compared_fit(Result const& result) {
   return fit;
 }
 
-/// A model, how its likelihood reads the record, and the inputs that it is given: fits that agree in it are of one and the same
-/// model.
-std::string identity(Result const& result) {
+/// A model and how its likelihood reads the record.
+std::string model_identity(Result const& result) {
   json const settings = result.summary.value("settings", json::object());
-  std::string all = result.summary.value("versions", json::object()).value("model_sha256", "") + settings.value("prediction", "") +
-                    settings.value("start_state", "");
+  return result.summary.value("versions", json::object()).value("model_sha256", "") + settings.value("prediction", "") +
+         settings.value("start_state", "");
+}
+
+/// With the inputs that it is given: fits that agree in it are of one and the same model.
+std::string identity(Result const& result) {
+  std::string all = model_identity(result);
   for (json const& data : result.summary["data"]) all += data.value("sha256", "") + data.value("notes", json::array()).dump();
   return all;
 }
 
-/// Models of one name that are not the same, as an equation before and after a change, are told apart by their fits.
-void tell_models_apart(std::vector<Result> const& results, std::vector<ComparedFit>& fits) {
-  std::map<std::string, std::set<std::string>> of_name;
-  for (std::size_t f = 0; f < fits.size(); ++f) of_name[fits[f].model].insert(identity(results[f]));
-  for (ComparedFit& fit : fits)
-    if (of_name[fit.model].size() > 1) fit.model += fmt::format(" ({})", fit.name);
+/// Which fits of models of one name are not of the same, as an equation before and after a change.
+std::vector<std::string> models_of_one_name(std::vector<Result> const& results) {
+  std::vector<std::string> notes;
+  std::set<std::string> told;
+  for (Result const& first : results) {
+    if (!told.insert(first.model()).second) continue;
+    std::vector<std::string> identities, fits;  // one entry each per model of this name
+    bool other_model = false;
+    for (Result const& each : results) {
+      if (each.model() != first.model()) continue;
+      other_model = other_model || model_identity(each) != model_identity(first);
+      std::string const own = identity(each);
+      auto const known = std::find(identities.begin(), identities.end(), own);
+      if (known == identities.end()) {
+        identities.push_back(own);
+        fits.push_back(each.name);
+      } else {
+        fits[static_cast<std::size_t>(known - identities.begin())] += ", " + each.name;
+      }
+    }
+    if (fits.size() > 1)
+      notes.push_back(fmt::format("the fits of `{}` are of different {}: {}", first.model(), other_model ? "models" : "inputs",
+                                  fmt::join(fits, "; ")));
+  }
+  return notes;
 }
 
 void add_probabilities(std::vector<Result> const& results, std::vector<ComparedFit>& fits) {
@@ -243,7 +266,7 @@ Comparison compare(std::vector<fs::path> const& folders) {
   }
   if (!fits.empty()) comparison.data = data_text(fits.front());
   add_probabilities(fits, comparison.fits);
-  tell_models_apart(fits, comparison.fits);
+  for (std::string& note : models_of_one_name(fits)) comparison.notes.push_back(std::move(note));
   return comparison;
 }
 

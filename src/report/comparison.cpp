@@ -59,6 +59,18 @@ ReportTable predictions_table(std::span<ComparedPrediction const> predictions) {
   return table;
 }
 
+/// A header of several words in two rows, its last word below: columns of numbers are no wider than they need.
+std::vector<std::vector<std::string>> stacked(std::vector<std::string> const& header) {
+  std::vector<std::vector<std::string>> rows(2);
+  for (std::string const& label : header) {
+    auto const space = label.find('[') == std::string::npos ? label.rfind(' ') : std::string::npos;
+    rows[0].push_back(space == std::string::npos ? "" : label.substr(0, space));
+    rows[1].push_back(space == std::string::npos ? label : label.substr(space + 1));
+  }
+  if (std::all_of(rows[0].begin(), rows[0].end(), [](std::string const& above) { return above.empty(); })) rows.erase(rows.begin());
+  return rows;
+}
+
 }  // namespace
 
 std::vector<ReportTable> comparison_tables(Comparison const& comparison) {
@@ -77,7 +89,7 @@ std::vector<ReportTable> comparison_tables(Comparison const& comparison) {
 std::string comparison_text(Comparison const& comparison) {
   std::string text;
   for (ReportTable const& table : comparison_tables(comparison)) {
-    std::vector<std::vector<std::string>> rows = {table.header};
+    std::vector<std::vector<std::string>> rows = stacked(table.header);
     rows.insert(rows.end(), table.rows.begin(), table.rows.end());
     text += fmt::format("{}{}\n\n{}", text.empty() ? "" : "\n", table.title, align_columns(rows, 3));
     if (!table.caption.empty()) text += "\n" + table.caption + "\n";

@@ -87,6 +87,7 @@ free = predict b_arx on points.test with draws(20), prediction = free_run, seed 
   CHECK(found.predictions[1].kind == "one step");
   CHECK(found.predictions[0].samples == found.predictions[1].samples);
   CHECK(found.predictions[2].rows == "5..80");
+  CHECK(found.notes.empty());
   CHECK(found.predictions[1].nmse == run.summary("one").at("fit").at("nmse").get<double>());
   std::string const text = comparison_text(found);
   CAPTURE(text);
@@ -106,6 +107,8 @@ b_self = fit still to self.train with map, seed = 1
   REQUIRE(found.fits.size() == 2);
   CHECK(*found.fits[0].probability + *found.fits[1].probability == doctest::Approx(1));
   CHECK((*found.fits[0].probability > *found.fits[1].probability) == (*found.fits[0].log_evidence > *found.fits[1].log_evidence));
+  REQUIRE(found.notes.size() == 1);
+  CHECK(found.notes[0] == "the fits of `still` are of different inputs: a_input; b_self");
 }
 
 TEST_CASE("fits to different samples are refused, also where only the models' own lags make the difference") {
