@@ -6,7 +6,7 @@ namespace sysid {
 
 inline constexpr std::string_view page_style = R"css(:root {
   color-scheme: light dark;
-  --paper: #ffffff; --ink: #1f2933; --muted: #5c6772; --rule: #d5dbe1; --faint: #f4f6f8; --accent: #1b5e9b;
+  --paper: #ffffff; --ink: #1f2933; --muted: #5c6772; --rule: #d5dbe1; --faint: #f4f6f8; --accent: #1b5e9b; --shade: #1f293344;
   --good: #22694b; --doubtful: #875a06; --bad: #a82e26;
   --fig-ink: #1f2933; --fig-muted: #66717d; --fig-rule: #e3e7ec; --fig-paper: none; --fig-model: #1b5e9b; --fig-band: #a9c8e4;
   --fig-noise-band: #dce8f3; --fig-data: #3d4852; --fig-contrast: #b4541a;
@@ -15,7 +15,7 @@ inline constexpr std::string_view page_style = R"css(:root {
 }
 @media screen and (prefers-color-scheme: dark) {
   :root {
-    --paper: #14181d; --ink: #dfe4ea; --muted: #9ca8b4; --rule: #343d47; --faint: #1c2229; --accent: #7db8e8;
+    --paper: #14181d; --ink: #dfe4ea; --muted: #9ca8b4; --rule: #343d47; --faint: #1c2229; --accent: #7db8e8; --shade: #9ca8b466;
     --good: #5cbf92; --doubtful: #dcab4f; --bad: #e8857c;
     --fig-ink: #dfe4ea; --fig-muted: #95a1ad; --fig-rule: #2a323b; --fig-model: #7db8e8; --fig-band: #33597c;
     --fig-noise-band: #20354a; --fig-data: #c3cbd3; --fig-contrast: #ee9a63;
@@ -58,6 +58,13 @@ nav .what { margin: 0 0.4rem; }
 math { font-family: "STIX Two Math", "Cambria Math", "Latin Modern Math", "DejaVu Math TeX Gyre", math; }
 math[display="block"] { width: fit-content; margin: 0.55rem 0; }
 .scroll { overflow-x: auto; margin: 0.9rem 0; }
+/* What goes on beyond an edge casts a shade there: two sheets of paper move with the content and cover it at the ends. */
+.scroll, .equations, figure {
+  background: linear-gradient(to right, var(--paper) 30%, transparent) left / 2rem 100% no-repeat local,
+    linear-gradient(to left, var(--paper) 30%, transparent) right / 2rem 100% no-repeat local,
+    linear-gradient(to right, var(--shade), transparent) left / 0.7rem 100% no-repeat scroll,
+    linear-gradient(to left, var(--shade), transparent) right / 0.7rem 100% no-repeat scroll;
+}
 table { border-collapse: collapse; border-top: 1.5px solid var(--ink); border-bottom: 1.5px solid var(--ink); font-size: 0.9rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: 0.3rem; }
 th, td { padding: 0.28rem 0.9rem 0.28rem 0; text-align: left; vertical-align: baseline; }
@@ -105,7 +112,7 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   figure, .scroll, tr, .headline, dt, dd { break-inside: avoid; }
   h2, h3, h4, caption, thead { break-after: avoid; }
   .whole + .whole { break-before: page; }
-  .scroll, pre, .equations { overflow: visible; }
+  .scroll, pre, .equations { overflow: visible; } .scroll, .equations, figure { background: none; }
   table { font-size: 8.5pt; } th, td { padding-right: 0.7rem; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; }
   .verdict, pre { background: none; border: 1px solid var(--rule); } .verdict { border-left: 5px solid var(--good); }
