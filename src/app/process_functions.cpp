@@ -17,7 +17,6 @@ namespace sysid {
 namespace {
 
 constexpr int most_draws = 20, along_a_cut = 61;
-constexpr double normal_quantile_95 = 1.6448536269514722;
 
 std::vector<double> column_of(Eigen::MatrixXd const& inputs, Eigen::Index column) {
   return {inputs.col(column).begin(), inputs.col(column).end()};
@@ -95,10 +94,7 @@ FunctionReport report_of(Process const& process, Cuts const& cuts) {
       FunctionPoint point;
       for (std::size_t k = 0; k < process.inputs.size(); ++k)
         point.inputs.push_back(process.inputs[k].from_si(cuts.places(row, static_cast<Eigen::Index>(k))));
-      point.mean = process.from_si(cuts.mean[row]);
-      point.sd = process.from_si(std::sqrt(cuts.variance[row]));
-      point.q5 = point.mean - normal_quantile_95 * point.sd;
-      point.q95 = point.mean + normal_quantile_95 * point.sd;
+      point.set_normal(process.from_si(cuts.mean[row]), process.from_si(std::sqrt(cuts.variance[row])));
       report.cuts.back().push_back(point);
       report.grid.push_back(std::move(point));
     }

@@ -16,7 +16,6 @@ namespace sysid {
 namespace {
 
 constexpr int most_draws = 200, along_a_cut = 101;
-constexpr double normal_quantile_95 = 1.6448536269514722;
 constexpr double much = 0.1;  // of the process's variance
 
 /// An expansion as a program of the model's parameters and its inputs.
@@ -52,11 +51,8 @@ class UnknownFunction {
       Eigen::VectorXd slope(dimension);
       for (Eigen::Index p = 0; p < dimension; ++p)
         slope[p] = 0.5 * (found[static_cast<std::size_t>(1 + 2 * p)] - found[static_cast<std::size_t>(2 + 2 * p)]);
-      result.mean = found.front();
       double const variance = slope.dot(parameters.covariance * slope);
-      result.sd = variance < 0 ? 0 : std::sqrt(variance);
-      result.q5 = result.mean - normal_quantile_95 * result.sd;
-      result.q95 = result.mean + normal_quantile_95 * result.sd;
+      result.set_normal(found.front(), variance < 0 ? 0 : std::sqrt(variance));
       return result;
     }
     Eigen::Map<Eigen::ArrayXd const> const all(found.data(), static_cast<Eigen::Index>(found.size()));

@@ -157,18 +157,6 @@ void check_between_samples(DataBlock const& block, Model const* model, Diagnosti
 
 namespace {
 
-/// A block stands in several tasks; what is wrong with it is said once.
-void add_once(Diagnostics& diagnostics, Diagnostic diagnostic) {
-  auto const same = [&](Diagnostic const& other) {
-    return other.code == diagnostic.code && other.primary && other.primary->span == diagnostic.primary->span;
-  };
-  if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(std::move(diagnostic));
-}
-
-}  // namespace
-
-namespace {
-
 void add_declared(ast::Dictionary const& dictionary, DeclaredNames& names) {
   for (ast::DictionaryStatement const& statement : dictionary.statements) {
     if (auto const* input = std::get_if<ast::InputDeclaration>(&statement))
@@ -217,7 +205,7 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
   for (DataInputUse const& bound : block.inputs) {
     if (!declared.all || declared.inputs.contains(bound.input)) continue;
     misnamed = true;
-    add_once(diagnostics, errors::unknown_input(bound.input_span, bound.input, owner, inputs));
+    diagnostics.add_once(errors::unknown_input(bound.input_span, bound.input, owner, inputs));
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     Quantity const& input = model.inputs[i];
@@ -249,7 +237,7 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
     if (channel != model.channels.end())
       compare_units(measured, *channel, "column `" + measured.column + "`");
     else
-      add_once(diagnostics, errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
+      diagnostics.add_once(errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
   }
   if (any) return;
   if (block.measured.empty()) {
@@ -273,16 +261,16 @@ std::vector<std::optional<double>> check_constants(DataBlock const& block, Model
       std::vector<std::string> known;
       for (Parameter const& parameter : model.parameters)
         if (parameter.per_experiment) known.push_back(parameter.name);
-      add_once(diagnostics, errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
+      diagnostics.add_once(errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
       good = false;
     } else if (!place->per_experiment) {
-      add_once(diagnostics, errors::constant_of_shared(constant.span, place->span, place->name));
+      diagnostics.add_once(errors::constant_of_shared(constant.span, place->span, place->name));
       good = false;
     } else if (auto refused =
                    constant.unit && place->unit
                        ? refuse_number(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit)
                        : std::nullopt) {
-      add_once(diagnostics, std::move(*refused));
+      diagnostics.add_once(std::move(*refused));
       good = false;
     } else {
       double const shift = constant.unit && place->unit ? constant.unit->offset - place->unit->offset : 0;

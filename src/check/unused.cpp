@@ -41,13 +41,6 @@ void mark(Model const& model, Roots const& roots, Read& read) {
   }
 }
 
-// A part of several models is said once.
-void add_once(Diagnostics& diagnostics, Diagnostic diagnostic) {
-  for (Diagnostic const& other : diagnostics.all())
-    if (other.code == diagnostic.code && other.primary && other.primary->span == diagnostic.primary->span) return;
-  diagnostics.add(std::move(diagnostic));
-}
-
 }  // namespace
 
 void warn_of_unused(Model const& model, Diagnostics& diagnostics) {
@@ -63,10 +56,10 @@ void warn_of_unused(Model const& model, Diagnostics& diagnostics) {
   }
   for (std::size_t i = 0; i < model.parameters.size(); ++i)
     if (!read.parameters[i] && !model.parameters[i].coefficient)
-      add_once(diagnostics,
-               errors::unused_parameter(model.parameters[i].span, model.parameters[i].name, model.parameters[i].prior.has_value()));
+      diagnostics.add_once(
+          errors::unused_parameter(model.parameters[i].span, model.parameters[i].name, model.parameters[i].prior.has_value()));
   for (std::size_t i = 0; i < model.inputs.size(); ++i)
-    if (!read.inputs[i]) add_once(diagnostics, errors::unused_input(model.inputs[i].span, model.inputs[i].name));
+    if (!read.inputs[i]) diagnostics.add_once(errors::unused_input(model.inputs[i].span, model.inputs[i].name));
 }
 
 }  // namespace sysid

@@ -217,6 +217,13 @@ std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
 
 }  // namespace
 
+void Diagnostics::add_once(Diagnostic diagnostic) {
+  bool const said = std::any_of(all_.begin(), all_.end(), [&](Diagnostic const& other) {
+    return other.code == diagnostic.code && other.primary && diagnostic.primary && other.primary->span == diagnostic.primary->span;
+  });
+  if (!said) add(std::move(diagnostic));
+}
+
 bool Diagnostics::has_errors(std::size_t from) const {
   return std::any_of(all_.begin() + static_cast<std::ptrdiff_t>(std::min(from, all_.size())), all_.end(),
                      [](Diagnostic const& d) { return d.severity == Severity::error; });

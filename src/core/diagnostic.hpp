@@ -31,6 +31,8 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void add(Diagnostic diagnostic) { all_.push_back(std::move(diagnostic)); }
+  /// Unless its code has been said of its place: what stands in several tasks or models is said once.
+  void add_once(Diagnostic diagnostic);
   /// Among those added after the first `from`.
   bool has_errors(std::size_t from = 0) const;
   std::vector<Diagnostic> const& all() const { return all_; }

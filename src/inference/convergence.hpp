@@ -24,6 +24,9 @@ struct Summary {
 };
 Summary summarise(std::string name, std::string unit, ChainValues const& draws);
 
+/// The normal's 95 % quantile: how many sds its central 90 % reach to either side.
+inline constexpr double normal_quantile_95 = 1.6448536269514722;
+
 /// Quantile of type 7 (R's default), draws need not be sorted.
 double quantile(std::vector<double> draws, double probability);
 /// The same of draws that rise and are not empty.

@@ -16,9 +16,8 @@
 namespace sysid {
 namespace {
 
-constexpr double of_weight = 1e-3;  // share of a mode that is followed; all others together change little
-constexpr double nearer = 0.5;      // widths: modes so near have come together
-constexpr int scale_draws = 512;
+constexpr double of_weight = 1e-3;          // share of a mode that is followed; all others together change little
+constexpr double nearer = 0.5;              // widths: modes so near have come together
 constexpr std::uint64_t evidence_step = 4;  // of Purpose::start
 
 /// Modes of the density on the sampler's coordinates, each once.
@@ -105,9 +104,7 @@ Evidence laplace_evidence(Target const& target, Aim aim, std::vector<Mode> const
   if (found.empty()) return {{}, "no mode of the posterior has a finite density", 0, 0};
   auto const best =
       std::max_element(found.begin(), found.end(), [](Mode const& a, Mode const& b) { return a.log_mass < b.log_mass; });
-  LaneArray draws(target.dimension(), scale_draws);
-  target.sample_prior({seed, Purpose::start, 0, evidence_step}, draws);
-  Objective const objective = make_objective(target, Aim::posterior, draws);
+  Objective const objective = make_objective(target, Aim::posterior, seed, evidence_step);
   if (auto const names = names_at_end(objective, *best); !names.empty())
     return {{}, fmt::format("the mode lies at a bound of {}", fmt::join(names, ", ")), 0, 0};
   if (!best->flat.empty())

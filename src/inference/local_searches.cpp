@@ -18,8 +18,7 @@ constexpr std::size_t most_modes = 12;
 constexpr double same_mode = 0.5;  // of the two modes' widths
 
 constexpr int most_rounds = 60;
-constexpr int rounds_apart = 3;   // between two looks at which have met
-constexpr int scale_draws = 512;  // enough to know the prior's widths, which is all that is asked of them
+constexpr int rounds_apart = 3;  // between two looks at which have met
 constexpr std::uint64_t scale_step = 2;
 
 double gap(Objective const& objective, Eigen::VectorXd const& a, Eigen::VectorXd const& b) {
@@ -113,9 +112,7 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
 
 LocalSearches modes_from(Target const& target, Aim aim, ConstLanes starts, double least_log_mass, std::uint64_t seed,
                          Ledger& ledger, std::function<bool()> const& stop) {
-  LaneArray draws(target.dimension(), scale_draws);
-  target.sample_prior({seed, Purpose::start, 0, scale_step}, draws);
-  Objective const objective = make_objective(target, aim, draws);
+  Objective const objective = make_objective(target, aim, seed, scale_step);
   std::vector<double> const density = log_density_in_blocks(objective, starts, ledger, stop);
   std::vector<Climber> climbers;
   for (int w = 0; w < starts.width(); ++w)

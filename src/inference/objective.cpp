@@ -49,6 +49,13 @@ Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws) 
   return objective;
 }
 
+Objective make_objective(Target const& target, Aim aim, std::uint64_t seed, std::uint64_t step) {
+  constexpr int enough = 512;
+  LaneArray draws(target.dimension(), enough);
+  target.sample_prior({seed, Purpose::start, 0, step}, draws);
+  return make_objective(target, aim, draws);
+}
+
 LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points) {
   int const rows = points.empty() ? 0 : static_cast<int>(points.front().size());
   LaneArray lanes(rows, static_cast<int>(points.size()));

@@ -27,6 +27,8 @@ struct Objective {
 
 /// prior_draws [P x N] give the scales.
 Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws);
+/// Scales from as many draws as know the prior's widths, which is all that is asked of them; step: theirs, of Purpose::start.
+Objective make_objective(Target const& target, Aim aim, std::uint64_t seed, std::uint64_t step);
 
 /// The columns of a batch, from vectors.
 LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points);

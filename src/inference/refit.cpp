@@ -13,16 +13,13 @@ namespace sysid {
 namespace {
 
 constexpr int rounds = 60;
-constexpr int scale_draws = 512;  // enough to know the prior's widths, which is all that is asked of them
 constexpr std::uint64_t refit_step = 2;
 
 }  // namespace
 
 std::vector<Mode> refit(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
                         std::function<bool()> const& stop) {
-  LaneArray draws(target.dimension(), scale_draws);
-  target.sample_prior({seed, Purpose::start, 0, refit_step}, draws);
-  Objective const objective = make_objective(target, aim, draws);
+  Objective const objective = make_objective(target, aim, seed, refit_step);
   std::vector<Climber> climbers;
   std::vector<Eigen::VectorXd> points;
   for (Mode const& mode : modes) points.push_back(theta_of(mode));

@@ -5,12 +5,20 @@
 
 #include <algorithm>
 
+#include "inference/convergence.hpp"
 #include "report/csv.hpp"
 #include "report/plot.hpp"
 
 namespace sysid {
 
 using namespace plot;
+
+void FunctionPoint::set_normal(double normal_mean, double normal_sd) {
+  mean = normal_mean;
+  sd = normal_sd;
+  q5 = mean - normal_quantile_95 * sd;
+  q95 = mean + normal_quantile_95 * sd;
+}
 
 std::string function_csv(FunctionReport const& function) {
   std::string out = fmt::format("# {} [{}] of", function.name, function.unit.empty() ? "-" : function.unit);

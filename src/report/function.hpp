@@ -14,6 +14,8 @@ struct Figure;
 struct FunctionPoint {
   std::vector<double> inputs;  // [D]
   double mean, sd, q5, q95;
+
+  void set_normal(double normal_mean, double normal_sd);
 };
 
 struct FunctionReport {

@@ -3,12 +3,13 @@
 
 #include <cmath>
 
+#include "inference/convergence.hpp"
+
 namespace sysid {
 
 std::pair<double, double> interval_90(Summary const& summary) {
   if (std::isfinite(summary.q5) && std::isfinite(summary.q95) && summary.q95 > summary.q5) return {summary.q5, summary.q95};
-  constexpr double half = 1.6448536269514722;  // the normal's 95 % quantile
-  return {summary.mean - half * summary.sd, summary.mean + half * summary.sd};
+  return {summary.mean - normal_quantile_95 * summary.sd, summary.mean + normal_quantile_95 * summary.sd};
 }
 
 std::optional<double> narrowing(PriorInfo const& prior, Summary const& summary) {
