@@ -155,16 +155,13 @@ ComparedFit compared_fit(Result const& result) {
   return fit;
 }
 
-/// A model and how its likelihood reads the record.
-std::string model_identity(Result const& result) {
-  json const settings = result.summary.value("settings", json::object());
-  return result.summary.value("versions", json::object()).value("model_sha256", "") + settings.value("prediction", "") +
-         settings.value("start_state", "");
-}
+std::string model_text(Result const& result) { return result.summary.value("versions", json::object()).value("model_sha256", ""); }
 
-/// With the inputs that it is given: fits that agree in it are of one and the same model.
+/// A model, how its likelihood reads the record, and the inputs that it is given: fits that agree in it are of one and the same
+/// model.
 std::string identity(Result const& result) {
-  std::string all = model_identity(result);
+  json const settings = result.summary.value("settings", json::object());
+  std::string all = model_text(result) + settings.value("prediction", "") + settings.value("start_state", "");
   for (json const& data : result.summary["data"]) all += data.value("sha256", "") + data.value("notes", json::array()).dump();
   return all;
 }
@@ -176,10 +173,10 @@ std::vector<std::string> models_of_one_name(std::vector<Result> const& results) 
   for (Result const& first : results) {
     if (!told.insert(first.model()).second) continue;
     std::vector<std::string> identities, fits;  // one entry each per model of this name
-    bool other_model = false;
+    bool other_text = false;
     for (Result const& each : results) {
       if (each.model() != first.model()) continue;
-      other_model = other_model || model_identity(each) != model_identity(first);
+      other_text = other_text || model_text(each) != model_text(first);
       std::string const own = identity(each);
       auto const known = std::find(identities.begin(), identities.end(), own);
       if (known == identities.end()) {
@@ -190,8 +187,8 @@ std::vector<std::string> models_of_one_name(std::vector<Result> const& results) 
       }
     }
     if (fits.size() > 1)
-      notes.push_back(fmt::format("the fits of `{}` are of different {}: {}", first.model(), other_model ? "models" : "inputs",
-                                  fmt::join(fits, "; ")));
+      notes.push_back(fmt::format("the fits of `{}` are of different {}: {}", first.model(),
+                                  other_text ? "models" : "starts, rules of prediction or inputs", fmt::join(fits, "; ")));
   }
   return notes;
 }

@@ -37,14 +37,18 @@ bool misses(double coverage, double samples) {
 }  // namespace
 
 std::string prediction_verdict(Report const& report, bool missed) {
-  if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
-  auto const has = [&](char const* code) {
-    return std::any_of(report.findings.begin(), report.findings.end(), [&](Finding const& each) { return each.code == code; });
+  auto const has = [&](char const* code, Severity severity) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [&](Finding const& each) { return each.code == code && each.severity == severity; });
   };
-  if (has("from_doubtful_fit")) return "use with care: the fit that this is drawn from has failed its checks";
+  if (has("from_doubtful_fit", Severity::error))
+    return "do not use these bands: the fit that they are drawn from has failed its checks";
+  if (has("worse_than_the_mean", Severity::error)) return "do not use these bands: the mean of the record predicts better";
+  if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
   if (report.ledger.failed() > 0) return "use with care: some trajectories do not stay finite";
-  if (has("worse_than_the_mean")) return "use with care: the mean of the record predicts better";
+  if (has("worse_than_the_mean", Severity::warning)) return "use with care: the mean of the record predicts better";
   if (missed) return "use with care: the data lie outside their bands";
+  if (has("from_doubtful_fit", Severity::warning)) return "use with care, as the fit that this is drawn from";
   auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
                                       [](Finding const& each) { return each.severity == Severity::warning; });
   if (warnings > 0) return with_care(warnings);
@@ -53,11 +57,23 @@ std::string prediction_verdict(Report const& report, bool missed) {
 
 void add_source(std::filesystem::path const& fit, Report& report) {
   auto const summary = nlohmann::json::parse(read_file(fit / "summary.json"), nullptr, false);
-  if (!summary.is_object() || !summary.contains("verdict") || !summary["verdict"].is_object()) return;
-  if (summary["verdict"].value("pass", true)) return;
-  report.findings.push_back({Severity::warning, "from_doubtful_fit",
-                             fmt::format("`{}`, whose draws these are, has failed its checks", summary.value("task", "")),
-                             "its verdict says what to do; then predict again"});
+  if (!summary.is_object() || !summary.contains("findings")) return;
+  std::vector<std::string> failed, doubtful;
+  for (auto const& finding : summary["findings"]) {
+    std::string const severity = finding.value("severity", ""), code = finding.value("code", "");
+    std::vector<std::string>* const codes = severity == "error" ? &failed : severity == "warning" ? &doubtful : nullptr;
+    if (codes != nullptr && std::find(codes->begin(), codes->end(), code) == codes->end()) codes->push_back(code);
+  }
+  std::string const name = summary.value("task", "");
+  if (!failed.empty())
+    report.findings.push_back({Severity::error, "from_doubtful_fit",
+                               fmt::format("`{}`, whose draws these are, has failed its checks: {}", name, fmt::join(failed, ", ")),
+                               "its verdict says what to do; then predict again"});
+  else if (!doubtful.empty())
+    report.findings.push_back(
+        {Severity::warning, "from_doubtful_fit",
+         fmt::format("`{}`, whose draws these are, is to be used with care: {}", name, fmt::join(doubtful, ", ")),
+         "its verdict says what there is to look at"});
 }
 
 bool add_coverage(Report& report, bool fed_back) {
@@ -66,7 +82,7 @@ bool add_coverage(Report& report, bool fed_back) {
     for (Score const& score : line.scores)
       if (score.name == "nmse" && score.value > as_bad_as_the_mean(measured_samples(report, line)))
         report.findings.push_back(worse_than_the_mean(
-            Severity::warning, line.what(), score.value,
+            score.value > useless_nmse ? Severity::error : Severity::warning, line.what(), score.value,
             "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"));
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores) {

@@ -95,7 +95,8 @@ class Discover {
     report.model_text = std::string(session_.source.text(dictionary_.tree.span));
     report.versions = {{"sysid", std::string(SYSID_VERSION)},
                        {"random_numbers", std::string("Philox4x64-10")},
-                       {"model_sha256", task_digest(session_, task_)}};
+                       {"model_sha256", task_digest(session_, task_)},
+                       {"statement_sha256", statement_digest(session_, task_)}};
     for (ExperimentData const& each : data_) add_data(session_.file, each, dictionary_.measured, report);
     DiscoveryReport discovery = described(found, selector);
     add_findings(found, report.findings);

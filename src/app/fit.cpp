@@ -33,6 +33,7 @@
 #include "inference/bound_check.hpp"
 #include "inference/checkpoint.hpp"
 #include "inference/search.hpp"
+#include "inference/verdict.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {
@@ -138,7 +139,7 @@ class Fit {
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     report.summary = summarise(result);
     for (std::size_t p = 0; p < report.summary.size(); ++p) report.summary[p].coefficient = target_->parameters()[p].coefficient;
-    add(check_use(model_));
+    add(check_use(model_, what_.start));
     Ledger extra;
     std::vector<double> const best = result.modes.empty() ? best_draw(result.draws) : result.modes.front().declared;
     if (!interrupted) {
@@ -154,7 +155,7 @@ class Fit {
       if (model_.integrated()) add(step_check(result.draws, extra));
     }
     if (!interrupted && !model_.expansions.empty()) add(look_at_functions(result, best, report));
-    if (interrupted) report.findings.push_back(interrupted_finding());
+    if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
     if (!interrupted) {
       report.evidence = laplace_evidence(*target_, backend_.aim, preparation_.modes, seed_, extra);
       report.noise = noise_parameters(*space_);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/residual_checks.hpp"
+#include "app/resolved.hpp"
 #include "inference/refit.hpp"
 #include "likelihood/output.hpp"
 
@@ -49,17 +50,28 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
                        member->name, member->name)}};
 }
 
-Findings check_use(Model const& model) {
+Findings check_use(Model const& model, StartRule const& start) {
   Findings findings;
-  std::vector<ParameterRole> const roles = parameter_roles(model);
-  for (std::size_t p = 0; p < roles.size(); ++p)
+  bool const own_start = start.kind == StartRule::Kind::record;
+  Model read = model;  // as this fit reads it
+  if (!own_start)
+    for (State& state : read.states) state.initial = read.graph.constant(0);
+  std::vector<ParameterRole> const roles = parameter_roles(read), roles_elsewhere = parameter_roles(model);
+  for (std::size_t p = 0; p < roles.size(); ++p) {
     // Terms that vanish over the whole range of an unknown function are another finding.
-    if (model.parameters[p].prior && !model.parameters[p].coefficient &&
-        (roles[p] == ParameterRole::none || roles[p] == ParameterRole::derived))
-      findings.push_back(
-          {Severity::warning, "unused_parameter",
-           fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", model.parameters[p].name),
-           "remove it, or use it in an equation"});
+    bool const idle = roles[p] == ParameterRole::none || roles[p] == ParameterRole::derived;
+    if (!model.parameters[p].prior || model.parameters[p].coefficient || !idle) continue;
+    std::string const& name = model.parameters[p].name;
+    if (roles_elsewhere[p] == ParameterRole::response)
+      findings.push_back({Severity::warning, "unused_parameter",
+                          fmt::format("{} enters initial values alone, which `start = {}` replaces: its posterior is its prior",
+                                      name, start_text(start)),
+                          "leave the start to the model, `start = record`, or leave the parameter out"});
+    else
+      findings.push_back({Severity::warning, "unused_parameter",
+                          fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", name),
+                          "remove it, or use it in an equation"});
+  }
   return findings;
 }
 

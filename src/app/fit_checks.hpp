@@ -15,7 +15,7 @@ namespace sysid {
 Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found);
 
 /// Parameters with a prior that nothing in the model uses: their posterior is their prior.
-Findings check_use(Model const& model);
+Findings check_use(Model const& model, StartRule const& start);
 
 /// A much better fit with an input of one experiment half a sample earlier or later (more than `0.2` nats per scored sample of that
 /// experiment, and 20 in all) means that the rule between input samples is not the one of the experiment. mode: the best one

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "app/reporting.hpp"
+#include "app/residual_checks.hpp"
 #include "core/files.hpp"
 #include "inference/verdict.hpp"
 #include "likelihood/simulated_parameters.hpp"
@@ -30,11 +31,6 @@ ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& che
   if (!std::filesystem::exists(checkpoint.path())) checkpoint.save({{"preparation", store(preparation)}});
   session.notices << fmt::format("{}: interrupted before its result was checked; --resume goes on from there\n", task.name);
   return ExitCode::interrupted;
-}
-
-Finding interrupted_finding() {
-  return {Severity::warning, "interrupted", "the run was interrupted: these are the draws so far",
-          "go on with --resume; it ends with the bytes of an unbroken run"};
 }
 
 Findings failure_findings(Ledger const& sampling) {
@@ -78,6 +74,8 @@ std::vector<std::string> noise_parameters(ParameterSpace const& space) {
 
 ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpoint const& checkpoint, SolverSettings const& solver,
                       Report report, std::chrono::steady_clock::time_point began, bool interrupted) {
+  if (!interrupted)
+    for (Finding& finding : check_priors(report)) report.findings.push_back(std::move(finding));
   Verdict const verdict = judge(report.findings);
   report.verdict = verdict.text;
   std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;

@@ -23,8 +23,6 @@ ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& ch
 /// from the search's end.
 ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation);
 
-Finding interrupted_finding();
-
 /// Solves that failed while sampling, where they are too many to say nothing of.
 Findings failure_findings(Ledger const& sampling);
 

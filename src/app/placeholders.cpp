@@ -71,7 +71,7 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
           input
               ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a blow that left the "
                 "range of the recorder is larger than that"
-              : "leave the cell empty or write `nan`: the row is then not scored"};
+              : "leave the cell empty or write `NA`: the row is then not scored"};
 }
 
 }  // namespace

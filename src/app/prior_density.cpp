@@ -59,7 +59,8 @@ void add_density(PriorInfo& prior) {
   Support const bounds = support(*graph, use);
   auto const lower = bounds.lower ? graph->constant_value(*bounds.lower) : std::nullopt;
   auto const upper = bounds.upper ? graph->constant_value(*bounds.upper) : std::nullopt;
-  for (auto const& [p, into] : {std::pair(0.05, &prior.q5), std::pair(0.95, &prior.q95)})
+  for (auto const& [p, into] : {std::pair(0.05, &prior.q5), std::pair(0.95, &prior.q95), std::pair(0.0005, &prior.lowest),
+                                std::pair(0.9995, &prior.highest)})
     if (auto const value = quantile_of(*graph, use, numbers.arguments, lower, upper, p)) *into = *value / numbers.scale;
   NodeId const x = graph->leaf(LeafKind::unknown, 0);
   NodeId const root = log_density(*graph, use, x);

@@ -29,6 +29,7 @@
 #include "app/tolerance.hpp"
 #include "inference/bound_check.hpp"
 #include "inference/search.hpp"
+#include "inference/verdict.hpp"
 
 namespace sysid {
 namespace {
@@ -122,9 +123,9 @@ class ProcessFit {
     for (ExperimentData const& each : data_) add_data(session_.file, each, model, report);
     auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
     if (!result.search_told) add(preparation_.findings);
-    if (interrupted) report.findings.push_back(interrupted_finding());
+    if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
     add(failure_findings(ledger_));
-    add(check_use(model));
+    add(check_use(model, what_.start));
     if (!interrupted) add(check_bounds(target_->parameters(), result.draws));
     if (!interrupted && model.integrated()) add(step_check(result.draws));
     std::vector<Summary> const sampled = summarise(result);

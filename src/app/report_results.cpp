@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "app/compare.hpp"
@@ -104,8 +105,13 @@ void add_comparisons(std::vector<StoredTask> const& tasks, RunReport& run) {
   }
   auto const add = [&](std::vector<fs::path> const& folders) {
     if (folders.size() < 2) return;
-    for (ReportTable& table : comparison_tables(compare(folders)))
-      if (table.rows.size() > 1) run.comparisons.push_back(std::move(table));
+    Comparison const comparison = compare(folders);
+    std::vector<ReportTable> tables = comparison_tables(comparison);
+    std::erase_if(tables, [](ReportTable const& table) { return table.rows.size() < 2; });
+    if (tables.empty()) return;
+    std::string& caption = tables.front().caption;
+    for (std::string const& note : comparison.notes) caption += (caption.empty() ? "" : "\n") + note;
+    std::move(tables.begin(), tables.end(), std::back_inserter(run.comparisons));
   };
   for (auto const& [samples, folders] : fits) add(folders);
   add(predictions);

@@ -86,6 +86,28 @@ std::string task_digest(Session const& session, Task const& task) {
   return sha256(all);
 }
 
+std::string statement_digest(Session const& session, Task const& task) {
+  std::string text;
+  for (ast::Item const& item : session.file.tree.items) {
+    if (auto const* statement = std::get_if<ast::Task>(&item); statement != nullptr && statement->verb.span == task.span)
+      text += unparse(ast::File{{*statement}});
+    auto const* data = std::get_if<ast::Data>(&item);
+    if (data == nullptr) continue;
+    for (ExperimentUse const& use : experiments_of(task)) {
+      DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+      if (block.name != data->name.text) continue;
+      ast::Data used = *data;
+      for (ast::DataStatement& each : used.statements)
+        if (auto* split = std::get_if<ast::DataSplit>(&each))
+          std::erase_if(split->parts, [&](ast::SplitPart const& part) {
+            return use.part < 0 || block.parts[static_cast<std::size_t>(use.part)].name != part.name.text;
+          });
+      text += unparse(ast::File{{used}});
+    }
+  }
+  return sha256(text);
+}
+
 void add_repetition(Session const& session, Task const& task, Report& report) {
   report.place = static_cast<int>(&task - session.file.tasks.data());
   RunOptions const& options = session.options;
@@ -123,7 +145,8 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   report.model_title = model.title;
   report.versions = {{"sysid", std::string(SYSID_VERSION)},
                      {"random_numbers", std::string("Philox4x64-10")},
-                     {"model_sha256", task_digest(session, task)}};
+                     {"model_sha256", task_digest(session, task)},
+                     {"statement_sha256", statement_digest(session, task)}};
   Facts const source = made_from(session, task);
   report.versions.insert(report.versions.end(), source.begin(), source.end());
   ast::Model const* flat = find_model(session.file.tree, model.name);
@@ -206,6 +229,8 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
       return refuse("content of `" + block.path + "`");
   }
   if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");
+  if (summary["versions"].value("statement_sha256", "") != statement_digest(session, task))
+    return refuse("statement, or of other rows");
   return std::nullopt;
 }
 

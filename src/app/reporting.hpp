@@ -27,8 +27,12 @@ std::string model_digest(Session const& session, std::string const& model);
 /// Of what a task is about, a model, all candidates or a dictionary: what stored results are compared by.
 std::string task_digest(Session const& session, Task const& task);
 
-/// What is wrong with taking up stored results of a task: they are of another text of what the task is about, of other experiments,
-/// of other contents of their files, or of another seed (when one is stated); nothing when they fit.
+/// Of a task's statement and what the blocks of its data say, other parts of them left out: draws of other rows, or of fewer, are
+/// another task's.
+std::string statement_digest(Session const& session, Task const& task);
+
+/// What is wrong with taking up stored results of a task: they are of another text of what the task is about, of another statement
+/// or other experiments, of other contents of their files, or of another seed (when one is stated); nothing when they fit.
 std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed);
 
 }  // namespace sysid

@@ -9,11 +9,13 @@
 
 #include "core/elementary.hpp"
 #include "distribution/deviance.hpp"
+#include "inference/convergence.hpp"
 #include "inference/outliers.hpp"
 #include "inference/residual_tests.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/narrowing.hpp"
+#include "report/number.hpp"
 
 namespace sysid {
 namespace {
@@ -64,8 +66,6 @@ SizedResiduals scaled(DistributionRow const& noise, std::vector<std::vector<doub
   return {std::move(deviance), moments.excess_kurtosis()};
 }
 
-/// nmse [%] from which a fit is no model of its record, whatever its residuals: the error is larger than what there was to explain.
-constexpr double useless = 200;
 /// nmse [%] from which a fit that leaves more than noise explains little, and less than half.
 constexpr double little = 20, less_than_half = 50;
 
@@ -75,6 +75,7 @@ struct ScoredChannel {
   int experiment, channel;
   std::vector<double> residuals;            // [N] standardised, NaN where not scored
   std::vector<double> observed, predicted;  // where scored, declared unit
+  std::vector<std::size_t> places;          // of these along the experiment
   SizedResiduals sized;
 
   Model const& model() const { return target.compiled()->model; }
@@ -91,11 +92,62 @@ struct ScoredChannel {
   }
 };
 
-// nmse [%] on the scale on which the noise has one size: by logarithms where it multiplies.
-double unexplained(ScoredChannel const& of) {
+bool among(std::vector<std::size_t> const& places, std::size_t place) {
+  return std::find(places.begin(), places.end(), place) != places.end();
+}
+
+std::vector<double> without(std::vector<double> residuals, std::vector<std::size_t> const& places) {
+  for (std::size_t const place : places) residuals[place] = std::nan("");
+  return residuals;
+}
+
+double error_at(ScoredChannel const& of, std::size_t place) {
+  auto const at = std::lower_bound(of.places.begin(), of.places.end(), place);
+  if (at == of.places.end() || *at != place) return 0;
+  auto const i = static_cast<std::size_t>(at - of.places.begin());
+  return std::fabs(of.observed[i] - of.predicted[i]);
+}
+
+// A response that is missed is missed most where it is largest, but never at one sample alone.
+std::vector<std::size_t> alone(ScoredChannel const& of, std::vector<std::size_t> places) {
+  constexpr double larger = 5;  // than its neighbours
+  std::erase_if(places, [&](std::size_t place) {
+    return error_at(of, place) < larger * std::max(place > 0 ? error_at(of, place - 1) : 0.0, error_at(of, place + 1));
+  });
+  return places;
+}
+
+// Single samples that do not belong; none of counts, where one is far from a small mean.
+std::vector<std::size_t> far_off(ScoredChannel const& of) {
+  if (of.described().noise.row->discrete) return {};
+  std::vector<std::size_t> const places = outliers(of.sized.values);
+  bool const noise_besides = of.model().dynamics == Dynamics::none || !whiteness(without(of.residuals, places)).fires();
+  return noise_besides ? places : alone(of, places);
+}
+
+// Single errors far from all others, whatever tails the noise has: of these alone the variance of a record may be.
+std::vector<std::size_t> spikes(ScoredChannel const& of) {
+  std::vector<double> errors(of.data().time.size(), std::nan(""));
+  std::vector<double> sizes;
+  for (std::size_t const place : of.places) sizes.push_back(errors[place] = error_at(of, place));
+  if (sizes.empty()) return {};
+  double const middle = quantile(sizes, 0.5);
+  if (!(middle > 0)) return {};
+  constexpr double sd_of_median = 1.4826;
+  for (double& error : errors) error /= sd_of_median * middle;
+  return alone(of, outliers(errors));
+}
+
+// nmse [%] without `left_out`, on the scale on which the noise has one size: by logarithms where it multiplies.
+double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& left_out) {
   DistributionRow const& noise = *of.described().noise.row;
-  if (noise.lower == nullptr || noise.discrete) return nmse(of.observed, of.predicted);
-  std::vector<double> observed = of.observed, predicted = of.predicted;
+  std::vector<double> observed, predicted;
+  for (std::size_t i = 0; i < of.observed.size(); ++i) {
+    if (among(left_out, of.places[i])) continue;
+    observed.push_back(of.observed[i]);
+    predicted.push_back(of.predicted[i]);
+  }
+  if (noise.lower == nullptr || noise.discrete) return nmse(observed, predicted);
   for (std::vector<double>* const series : {&observed, &predicted})
     for (double& value : *series) value = value > 0 ? elementary::log(value) : std::nan("");
   for (std::size_t i = 0; i < observed.size(); ++i)
@@ -106,9 +158,9 @@ double unexplained(ScoredChannel const& of) {
 // coloured: what the fit leaves is more than noise.
 void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
   constexpr char const* look = "look at units, signs and columns, at the initial values and the priors, then at the model";
-  double const left = unexplained(of);
+  double const left = unexplained(of, spikes(of));
   if (left > as_bad_as_the_mean(of.observed.size()))
-    findings.push_back(worse_than_the_mean(left > useless || coloured ? Severity::error : Severity::warning, of.name(), left,
+    findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.name(), left,
                                            fmt::format("the fit explains nothing of this channel: {}", look)));
   else if (coloured && left > little)
     findings.push_back({left > less_than_half ? Severity::error : Severity::warning, "explains_little",
@@ -131,7 +183,7 @@ void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
       {Severity::warning, "samples_far_off",
        fmt::format("{} {} of {} {} far from all others ({})", places.size(), places.size() == 1 ? "sample" : "samples", of.name(),
                    places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
-       "look at these rows: leave out what is no measurement (an empty cell, `nan`), or state noise with heavy "
+       "look at these rows: leave out what is no measurement (an empty cell), or state noise with heavy "
        "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
@@ -155,8 +207,9 @@ void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Find
        help});
 }
 
-// Of a model that has a past: correlation in time, and with the input's past.
-void judge_memory(ScoredChannel const& of, CorrelationTest const& white, FitLine& line, Findings& findings) {
+// Of a model that has a past: correlation in time, and with the input's past. residuals: without samples far off.
+void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals, CorrelationTest const& white, FitLine& line,
+                  Findings& findings) {
   line.scores.push_back({"whiteness_p", white.p_value});
   if (white.fires())
     findings.push_back({Severity::warning, "residuals_not_white",
@@ -167,7 +220,7 @@ void judge_memory(ScoredChannel const& of, CorrelationTest const& white, FitLine
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     std::vector<double> input;
     for (std::size_t k = 0; k < of.data().time.size(); ++k) input.push_back(of.data().inputs[i].sample(static_cast<int>(k)));
-    CorrelationTest const crossed = input_correlation(of.residuals, input);
+    CorrelationTest const crossed = input_correlation(residuals, input);
     line.scores.push_back(
         {"input_correlation_p" + (inputs.size() > 1 ? "(" + inputs[i].name + ")" : std::string()), crossed.p_value});
     if (crossed.fires())
@@ -182,17 +235,16 @@ void judge_memory(ScoredChannel const& of, CorrelationTest const& white, FitLine
 FitLine judge(ScoredChannel const& of, Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
   line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
+  std::vector<std::size_t> const far = far_off(of);
+  std::vector<double> const residuals = without(of.residuals, far);
   std::optional<CorrelationTest> white;  // rows of any order have no past
-  if (of.model().dynamics != Dynamics::none) white = whiteness(of.residuals);
-  bool const coloured = white && white->fires();
-  // Where the response is missed, it is missed most where it is largest, and a count of one is far from a small mean.
-  bool const discrete = of.described().noise.row->discrete;
-  std::vector<std::size_t> const far = coloured || discrete ? std::vector<std::size_t>() : outliers(of.sized.values);
+  if (of.model().dynamics != Dynamics::none) white = whiteness(residuals);
   Findings shape;
   judge_size(of, !far.empty(), line, shape);
   judge_outliers(of, far, shape);
-  if (white) judge_memory(of, *white, line, shape);
-  judge_share(of, coloured && !discrete, findings);  // deviances of small counts are neither centred nor alike
+  if (white) judge_memory(of, residuals, *white, line, shape);
+  // Deviances of small counts are neither centred nor alike.
+  judge_share(of, white && white->fires() && !of.described().noise.row->discrete, findings);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;
 }
@@ -209,7 +261,7 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
   for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {
     auto const channel = static_cast<std::size_t>(c);
     if (experiment.measured[channel].empty()) continue;
-    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}};
+    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}};
     for (std::size_t r = 0; r < target.residual_places().size(); ++r) {
       auto const [of_experiment, at_channel, sample] = target.residual_places()[r];
       if (of_experiment != e || at_channel != c || sample < 0) continue;
@@ -217,6 +269,7 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
       of.residuals[i] = residuals(static_cast<int>(r), 0);
       of.observed.push_back(model.channels[channel].from_si(experiment.measured[channel][i]));
       of.predicted.push_back(predicted.values[channel][0][i]);
+      of.places.push_back(i);
     }
     if (of.observed.empty()) continue;
     DistributionRow const& noise = *model.channels[channel].noise.row;
@@ -241,6 +294,28 @@ void name_held(Report const& report, Findings& findings) {
     if (each.code == "explains_little" || each.code == "worse_than_the_mean")
       each.help +=
           fmt::format("; {} {} as wide as the prior: is it right?", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
+}
+
+Findings check_priors(Report const& report) {
+  Findings findings;
+  for (PriorInfo const& prior : report.priors)
+    for (Summary const& summary : report.summary) {
+      if (summary.name != prior.name || summary.coefficient || !prior.lowest || !prior.highest) continue;
+      double const place = std::isfinite(summary.median) ? summary.median : summary.mean;
+      bool const below = place < *prior.lowest;
+      if (!below && !(place > *prior.highest)) continue;
+      // A prior that ends there has no tail to be in: that is another finding.
+      constexpr double tail = 0.1;  // of the density where 5 % lie beyond
+      if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95)) continue;
+      std::string const unit = prior.unit.empty() ? "" : " " + prior.unit;
+      findings.push_back(
+          {Severity::warning, "prior_contradicted",
+           fmt::format("{} is at {}{}, and its prior leaves one part in 2000 to what is {} {}{}", prior.name, significant(place, 4),
+                       unit, below ? "below" : "above", significant(below ? *prior.lowest : *prior.highest, 4), unit),
+           "data and prior say different things, and the posterior is a compromise: widen the prior, or find what "
+           "pulls the parameter away"});
+    }
+  return findings;
 }
 
 Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help) {

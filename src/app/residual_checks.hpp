@@ -25,8 +25,14 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
 /// they cannot fit.
 void name_held(Report const& report, Findings& findings);
 
+/// Parameters whose posterior lies where their prior has next to nothing.
+Findings check_priors(Report const& report);
+
 /// `worse_than_the_mean` of a channel, with what to do.
 Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help);
+
+/// nmse [%] from which a model is none of its record, whatever its residuals: the error is larger than what there was to explain.
+inline constexpr double useless_nmse = 200;
 
 /// The nmse [%] that a prediction exceeds by chance once in a thousand records where the mean explains all there is: of n samples
 /// of noise about the right prediction the sums of squares about it and about the mean differ by less than sigma^2 chi-squared(2),

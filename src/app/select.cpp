@@ -182,8 +182,7 @@ class Select {
       interrupted = polish.interrupted;
     }
     if (interrupted)
-      report.findings.push_back({Severity::warning, "interrupted", "the run was interrupted: this is what it had by then",
-                                 "go on with --resume; it ends with the bytes of an unbroken run"});
+      report.findings.push_back(interrupted_finding("this is what it had by then"));
     else if (!selection.result.ran_out)
       report.findings.push_back({Severity::note, "selection_ended", selection.result.stopped_by, ""});
     bool const spread = std::any_of(selection.result.models.begin(), selection.result.models.end(),

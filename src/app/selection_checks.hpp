@@ -20,7 +20,7 @@ void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<Candi
 Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
                          std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection);
 
-/// What a candidate leaves of the record at the likeliest place near its particles, scored and tested as a fit is; findings name
+/// What a candidate leaves of the record at the heaviest mode near its particles, scored and tested as a fit is; findings name
 /// the model. Nothing where the likelihood has no mode there.
 FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior);
 

@@ -71,6 +71,13 @@ namespace {
 /// The folder of a task's complete results; UserError when there are none or they are of another text.
 std::filesystem::path stored_results(Session& session, Task const& task, std::string_view verb) {
   auto folder = session.result_folder(task);
+  if (std::filesystem::exists(folder / "checkpoint.cbor"))
+    throw UserError({Severity::error,
+                     "E6202",
+                     fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
+                     std::nullopt,
+                     {},
+                     fmt::format("go on with it first: sysid {} FILE --resume", verb)});
   if (!complete(folder))
     throw UserError({Severity::error,
                      "E6202",

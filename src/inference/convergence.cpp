@@ -269,6 +269,14 @@ double sorted_quantile(std::vector<double> const& sorted, double probability) {
   return (1 - h) * a + h * b;
 }
 
+double predictive_quantile(std::vector<double> const& sorted, double probability) {
+  auto const last = static_cast<double>(sorted.size()) - 1;
+  double const place = std::clamp(probability * (last + 2) - 1, 0.0, last);
+  auto const below = static_cast<std::size_t>(place);
+  std::size_t const above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
 double quantile(std::vector<double> draws, double probability) {
   if (draws.empty() || std::any_of(draws.begin(), draws.end(), [](double v) { return std::isnan(v); })) return nan;
   std::sort(draws.begin(), draws.end());

@@ -15,6 +15,11 @@ bool is_end(Finding const& finding) { return finding.code == "interrupted"; }
 
 }  // namespace
 
+Finding interrupted_finding(std::string const& what) {
+  return {Severity::error, "interrupted", "the run was interrupted: " + what,
+          "go on with --resume; it ends with the bytes of an unbroken run"};
+}
+
 Findings by_weight(Findings findings) {
   std::stable_sort(findings.begin(), findings.end(), [](Finding const& a, Finding const& b) {
     return std::pair(!is_end(a), a.severity) < std::pair(!is_end(b), b.severity);

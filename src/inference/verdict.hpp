@@ -16,6 +16,9 @@ struct Verdict {
 /// "use with care: 2 things to look at".
 std::string with_care(std::ptrdiff_t warnings);
 
+/// Of a run that was stopped; what: "these are the draws so far".
+Finding interrupted_finding(std::string const& what);
+
 /// That the run was interrupted first, then errors, warnings and notes; alike in the order found.
 Findings by_weight(Findings findings);
 

@@ -41,8 +41,8 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
     std::sort(values.begin(), values.end());
     out.mean.push_back(mean);
     out.sd.push_back(usable.size() > 1 ? std::sqrt(squares / (count - 1)) : 0);
-    out.lower.push_back(quantile(values, 0.025));
-    out.upper.push_back(quantile(values, 0.975));
+    out.lower.push_back(predictive_quantile(values, 0.025));
+    out.upper.push_back(predictive_quantile(values, 0.975));
   }
   return out;
 }

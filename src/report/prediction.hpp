@@ -6,7 +6,7 @@
 
 namespace sysid {
 
-/// Pointwise over draws, each [N]; q2.5 and q97.5 are quantiles of type 7. Empty: there is none.
+/// Pointwise over draws, each [N]; q2.5 and q97.5 are `predictive_quantile`s. Empty: there is none.
 struct Band {
   std::vector<double> mean, sd, lower, upper;
   int draws = 0, left_out = 0;  // of these so many, which it is not of

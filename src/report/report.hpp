@@ -35,10 +35,11 @@ struct PriorNumbers {
 
 struct PriorInfo {
   std::string name, unit;
-  std::string text;                          // "log_uniform(0.1, 10)"
-  std::function<double(double)> density;     // of the declared value; empty when it depends on other parameters
-  std::optional<PriorNumbers> numbers = {};  // the same, stored; empty when it depends on other parameters
-  std::optional<double> q5 = {}, q95 = {};   // declared unit; empty where they are not known
+  std::string text;                                 // "log_uniform(0.1, 10)"
+  std::function<double(double)> density;            // of the declared value; empty when it depends on other parameters
+  std::optional<PriorNumbers> numbers = {};         // the same, stored; empty when it depends on other parameters
+  std::optional<double> q5 = {}, q95 = {};          // declared unit; empty where they are not known
+  std::optional<double> lowest = {}, highest = {};  // one part in 2000 of it lies below, and above
 };
 
 /// A value that a record was made with, as its head states it; in the declared unit of the parameter.

@@ -108,7 +108,7 @@ b_self = fit still to self.train with map, seed = 1
   CHECK(*found.fits[0].probability + *found.fits[1].probability == doctest::Approx(1));
   CHECK((*found.fits[0].probability > *found.fits[1].probability) == (*found.fits[0].log_evidence > *found.fits[1].log_evidence));
   REQUIRE(found.notes.size() == 1);
-  CHECK(found.notes[0] == "the fits of `still` are of different inputs: a_input; b_self");
+  CHECK(found.notes[0] == "the fits of `still` are of different starts, rules of prediction or inputs: a_input; b_self");
 }
 
 TEST_CASE("fits to different samples are refused, also where only the models' own lags make the difference") {

@@ -34,7 +34,7 @@ constexpr SettingRow rows[] = {
     {"simulations", SettingKind::real, "1e8", 1, 1e18, "", "stop after so many in all"},
     {"wall_time", SettingKind::real, "0", 0, infinity, "", "stop after so many seconds, which no seed repeats; 0: no limit"},
     {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after so many"},
-    {"cross_check", SettingKind::flag, "true", 0, 0, "", "set Laplace's model probabilities from the likelihood beside these"},
+    {"cross_check", SettingKind::flag, "true", 0, 0, "", "set Laplace's model probabilities beside these, and test what the best model leaves"},
     {"polish", SettingKind::flag, "false", 0, 0, "", "go on from the particles with Metropolis-Hastings on the likelihood"},
     {"polish_samples", SettingKind::integer, "25000", 100, 1e8, "",
      "iterations of each of its four chains, a fifth of them burn-in"},
