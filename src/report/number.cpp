@@ -60,7 +60,9 @@ SummaryText format_summary(Summary const& s) {
   auto const location = [&](double v) { return std::isfinite(v) ? with_exponent(v, decimals, exponent) : std::string("-"); };
   // A spread is known to 1/sqrt(2 ess) of itself: two digits.
   auto const spread = [&](double v) {
-    return std::isfinite(v) && v > 0 ? with_exponent(v, exponent - decade(v) + 1, exponent) : significant(v, 2);
+    // Under the row's power of ten, unless it would read as 20000000e-6 there.
+    bool const shared = std::isfinite(v) && v > 0 && !needs_exponent(decade(v) - exponent);
+    return shared ? with_exponent(v, exponent - decade(v) + 1, exponent) : significant(v, 2);
   };
   out.mean = location(s.mean);
   out.median = location(s.median);

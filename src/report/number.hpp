@@ -14,7 +14,8 @@ std::string shortest(double value);
 /// `digits` significant digits, plain or with an exponent, whichever is easier on the eye; "-" when not finite.
 std::string significant(double value, int digits);
 
-/// The numbers of one row, all with the digits the Monte Carlo error leaves and one exponent: "4.986e9".
+/// The numbers of one row, all with the digits the Monte Carlo error leaves and one exponent, "4.986e9"; a spread of quite another
+/// size has its own.
 struct SummaryText {
   std::string mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail;
 };
