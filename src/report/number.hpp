@@ -30,6 +30,12 @@ std::string pretty_number(std::string_view text);
 /// "N s/m^3" as a reader likes it: "N·s/m³".
 std::string pretty_unit(std::string_view unit);
 
+/// Words with units in brackets: "input x = a [m/s^2]" as "input x = a [m/s²]".
+std::string pretty_units(std::string_view words);
+
+/// Words with a quantity in them, their powers raised and no more: "sigma 0.472 m/s^2".
+std::string pretty_powers(std::string_view words);
+
 /// Superscript digits: "⁻³".
 std::string superscript(int number);
 

@@ -79,6 +79,7 @@ TEST_CASE("a spread of quite another size than its mean has a power of ten of it
   optimum.sd = 1.000007;
   CHECK(format_summary(optimum).mean == "-2e-6");
   CHECK(format_summary(optimum).sd == "1.0");
+  CHECK(format_summary(summary(-0.030096, 4.8e-5, 5e-6)).sd == "0.000048");
   optimum.mean = optimum.median = 4.986e9;
   optimum.sd = 0.004;
   CHECK(format_summary(optimum).sd == "0.0040");
@@ -107,6 +108,8 @@ TEST_CASE("units are shown with dots and raised powers, and what is no whole num
   CHECK(pretty_unit("m^1.5") == "m^1.5");
   CHECK(pretty_unit("m^") == "m^");
   CHECK(pretty_unit("m^-") == "m^-");
+  CHECK(pretty_powers("sigma 0.472 m/s^2, n 2 m^1.5") == "sigma 0.472 m/s², n 2 m^1.5");
+  CHECK(pretty_units("input x = a [N s/m^2], y[1] = y^2 [m^-1") == "input x = a [N·s/m²], y[1] = y^2 [m^-1");
   CHECK(pretty_number("-4.9e9") == "−4.9·10⁹");
   CHECK(pretty_number("-") == "-");
 }
