@@ -29,8 +29,9 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
   for (DiscoveredTerm const& term : equation.terms) {
     auto const [value, sd] = coefficient_text(term.coefficient, term.sd);
     bool const offered = term.fate != "left out";
-    table.rows.push_back({term.text, term.fate, term.kept ? value : "", term.kept ? sd : "", term.unit,
-                          offered ? probability_text(term.measure) : ""});
+    // Of the target it is known that it is there, not how large its coefficient is.
+    table.rows.push_back({term.text, term.fate == "known" ? "always kept" : term.fate, term.kept ? value : "", term.kept ? sd : "",
+                          term.unit, offered ? probability_text(term.measure) : ""});
     if (discovery.measure != "contribution") table.rows.back().push_back(term.kept ? significant(term.contribution, 3) : "");
   }
   return table;
@@ -40,7 +41,7 @@ ReportTable support_table(DiscoveredEquation const& equation) {
   bool const probable = std::any_of(equation.supports.begin(), equation.supports.end(),
                                     [](DiscoveredSupport const& each) { return each.probability > 0 && each.probability < 1; });
   ReportTable table{"best supports of " + equation.target,
-                    "Log evidence: against the known terms alone, by the same prior for all.",
+                    "Log evidence: against the terms that are always kept alone, by the same prior for all.",
                     {"terms", "log evidence"},
                     {}};
   if (probable) table.header.insert(table.header.begin() + 1, "probability");

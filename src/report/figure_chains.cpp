@@ -12,10 +12,37 @@ namespace sysid {
 
 using namespace plot;
 
+namespace {
+
+/// Of each chain, as long as so many keys can be told apart.
+std::vector<Key> chain_keys(Draws const& draws) {
+  std::vector<Key> keys;
+  std::size_t const count = draws.chains.size();
+  if (count < 2 || count > 2 * std::size(chains)) return keys;
+  for (std::size_t c = 0; c < count; ++c)
+    keys.push_back(
+        {c < std::size(chains) ? Key::line : Key::dashes, chains[c % std::size(chains)], fmt::format("chain {}", c + 1)});
+  return keys;
+}
+
+/// Pixels from either side of the figure to its legend.
+constexpr double legend_left = 10, legend_right = 14;
+
+int room_for(std::vector<Key> const& keys) {
+  return keys.empty() ? 0 : 8 + legend_height(keys, legend_left, column_width - legend_right);
+}
+
+std::string legend_of(std::vector<Key> const& keys, Cells const& cells) {
+  return legend(keys, legend_left, cells.width - legend_right, cells.height - 9.0, cells.width, cells.height);
+}
+
+}  // namespace
+
 Figure trace_figure(Draws const& draws) {
   std::size_t const count = std::min(draws.names.size(), shown_cells);
-  Cells const grid(count, 2, 118, 16);
-  Figure out{"trace", "Traces", "", preamble("trace", grid.width, grid.height), Topic::chains};
+  std::vector<Key> const keys = chain_keys(draws);
+  Cells const grid(count, 2, 118, 16, room_for(keys));
+  Figure out{"trace", "Traces", "", preamble("trace", grid.width, grid.height) + legend_of(keys, grid), Topic::chains};
   std::size_t longest = 1;
   for (Chain const& chain : draws.chains) longest = std::max(longest, chain.values.size());
   std::size_t const stride = (longest + 399) / 400;
@@ -37,6 +64,7 @@ Figure trace_figure(Draws const& draws) {
       plots += fmt::format("{}$chain{}_{} using 1:2 with lines lw 0.6 {}", c == 0 ? "plot " : ", ", i, c, series_colour(c));
     }
     out.script += panel(p, grid.width, grid.height) + plots + "\n";
+    if (i == 0) out.script += end_legend();
   }
   out.script += "unset multiplot\n";
   out.caption =
@@ -51,8 +79,10 @@ Figure trace_figure(Draws const& draws) {
 Figure rank_figure(Draws const& draws) {
   constexpr int bins = 20;
   std::size_t const count = std::min(draws.names.size(), shown_cells);
-  Cells const grid(count, 3, 132);
-  Figure out{"ranks", "Rank plots", "", preamble("ranks", grid.width, grid.height), Topic::chains};
+  std::vector<Key> keys = chain_keys(draws);
+  keys.push_back({Key::area, noise_band, "95 % of independent draws"});
+  Cells const grid(count, 3, 132, 0, room_for(keys));
+  Figure out{"ranks", "Rank plots", "", preamble("ranks", grid.width, grid.height) + legend_of(keys, grid), Topic::chains};
   auto const total = static_cast<double>(draws.total());
   for (std::size_t i = 0; i < count; ++i) {
     std::vector<double> const values = draws.column(i);
@@ -90,13 +120,16 @@ Figure rank_figure(Draws const& draws) {
     }
     out.script += data_block(fmt::format("guide{}", i), {{0, std::max(0.0, expected - spread), expected + spread},
                                                          {1, std::max(0.0, expected - spread), expected + spread}});
-    Panel p = grid.cell(i, 40, 10, 44, 8);
+    Panel p = grid.cell(i, 48, 10, 44, 8);
     p.x = axis(0, 1, 2);
     p.y = axis(0, 1.05 * largest, 3);
     p.y.exponent = 0;
     p.x_label = fmt::format("rank of {}", draws.names[i]);
+    p.y_label = "draws";
+    p.y_label_distance = 0;  // as near as the numbers let it
     out.script += panel(p, grid.width, grid.height);
     out.script += fmt::format("plot $guide{} using 1:2:3 with filledcurves fc rgb '{}' fs noborder{}\n", i, noise_band, plots);
+    if (i == 0) out.script += end_legend();
   }
   out.script += "unset multiplot\n";
   out.caption =

@@ -53,34 +53,48 @@ Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation) 
   Figure out;
   out.name = equation_name(discovery, "inclusion", equation);
   out.title = fmt::format("Terms of {}", found.target);
-  out.script = preamble(out.name, width, height);
+  // Of characters each term has one line, above those of the axis, its numbers and its label.
+  constexpr int lines_below = 3;
+  out.script = preamble(out.name, width, height, static_cast<int>(order.size()) + lines_below + 1);
   Axis x = probability ? axis(0, 1, 5) : axis(0, largest, 5, 0);
   Panel p = panel_at(left, width - 62.0, 44, height - 12.0, std::move(x), {0, static_cast<double>(order.size()), 0, {}});
   p.x_label = axis_label(discovery.measure, "", p.x);
   std::vector<std::vector<double>> kept, dropped;
   std::string labels;
+  int longest = 0;
   for (std::size_t r = 0; r < order.size(); ++r) {
     DiscoveredTerm const& term = found.terms[order[r]];
     double const y = static_cast<double>(order.size() - r) - 0.5, end = p.x.scaled(term.measure);
     (term.kept ? kept : dropped).push_back({end / 2, y, 0, end, y - 0.34, y + 0.34});
-    double const at = (p.bottom + (p.top - p.bottom) * y / static_cast<double>(order.size())) / height;
-    labels += fmt::format("set label {} {} at screen {:.5f},{:.5f} right textcolor rgb '{}'\n", 100 + 2 * r,
-                          quote(shortened(term.text, left - 26)), (left - 8) / width, at, term.kept ? ink : muted);
-    labels += fmt::format("set label {} {} at first {:.6g},{:.6g} left offset 1,0 textcolor rgb '{}'\n", 101 + 2 * r,
-                          quote(probability ? probability_text(term.measure) : significant(term.measure, 3)), end, y, muted);
+    std::string const name = shortened(term.text, left - 26);
+    longest = std::max(longest, text_width(name));
+    labels += fmt::format("set label {} {} at graph 0, first {:.6g} right offset -1,0 textcolor rgb '{}'\n", 100 + 2 * r,
+                          quote(name), y, term.kept ? ink : muted);
+    std::string const value = probability ? probability_text(term.measure) : significant(term.measure, 3);
+    // Characters have no colour to tell what was kept.
+    labels +=
+        fmt::format("set label {} (format eq 'text' ? ' {}{}' : '{}') at first {:.6g},{:.6g} left offset 1,0 textcolor rgb '{}'\n",
+                    101 + 2 * r, value, term.kept ? " kept" : "", value, end, y, muted);
   }
-  std::string plots;
+  std::string plots, lines;
   auto const bars = [&](char const* name, std::vector<std::vector<double>> const& rows, std::string_view colour) {
     if (rows.empty()) return;
     out.script += data_block(name, rows);
     plots += fmt::format("{}${} using 1:2:3:4:5:6 with boxxyerror fc rgb '{}' fs solid noborder", plots.empty() ? "plot " : ", ",
                          name, colour);
+    lines += fmt::format("{}${} using 3:2:4:(0) with vectors nohead", lines.empty() ? "plot " : ", ", name);
   };
   bars("kept", kept, model);
   bars("dropped", dropped, muted);
-  if (plots.empty()) plots = "plot NaN";
+  if (plots.empty()) plots = lines = "plot NaN";
   p.y_axis = false;
-  out.script += panel(p, width, height) + labels + plots + "\nunset multiplot\n";
+  out.script += panel(p, width, height) + labels;
+  // Margins of characters, so that names and values have room however few columns there are.
+  constexpr int value_width = 13;
+  out.script += fmt::format(
+      "if (format eq 'text') {{\nset lmargin {}\nset rmargin {}\nset bmargin {}\nset tmargin 0\n{}\n}} else {{\n{}\n}}\n"
+      "unset multiplot\n",
+      longest + 2, value_width, lines_below, lines, plots);
   out.caption =
       fmt::format("The {} of each term of the dictionary in {}; those in colour were kept.", discovery.measure, found.target);
   out.caption += probability ? " Near 1 the data ask for the term, near 0 they speak against it; between, they do not decide."
@@ -98,7 +112,15 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
   for (DiscoveredTerm const& term : discovery.equations[equation].terms)
     if (has_density(term)) terms.push_back(&term);
   std::size_t const count = std::min(terms.size(), shown_cells);
-  Cells const cells(count, 3, 140);
+  auto const label = [](DiscoveredTerm const& term) { return "coefficient of " + term.text; };
+  auto const axis_of = [](DiscoveredTerm const& term) {
+    return axis(term.coefficient - 3.5 * term.sd, term.coefficient + 3.5 * term.sd, 4);
+  };
+  constexpr double room = column_width / 3.0;
+  bool const short_labels = std::all_of(terms.begin(), terms.end(), [&](DiscoveredTerm const* each) {
+    return text_pixels(axis_label(label(*each), each->unit, axis_of(*each))) <= room;
+  });
+  Cells const cells(count, short_labels ? 3 : 2, 140);
   Figure out;
   out.name = equation_name(discovery, "coefficients", equation);
   out.title = fmt::format("Coefficients of {}", discovery.equations[equation].target);
@@ -106,11 +128,11 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
   for (std::size_t i = 0; i < count; ++i) {
     DiscoveredTerm const& term = *terms[i];
     Panel p = cells.cell(i, 14, 12, 46, 20);
-    p.x = axis(term.coefficient - 3.5 * term.sd, term.coefficient + 3.5 * term.sd, 4);
+    p.x = axis_of(term);
     p.x.clear_edges(0.03);
     p.y = {0, 1.08, 0, {}};
     p.y_axis = false;
-    p.x_label = axis_label("of " + term.text, term.unit, p.x);
+    p.x_label = axis_label(label(term), term.unit, p.x);
     auto const [mean, sd] = coefficient_text(p.x.origin_text.empty() ? p.x.scaled(term.coefficient) : term.coefficient,
                                              p.x.origin_text.empty() ? p.x.scaled_width(term.sd) : term.sd);
     p.title = fmt::format("{} ± {}", pretty_number(mean), pretty_number(sd));

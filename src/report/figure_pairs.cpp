@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "report/axis.hpp"
 #include "report/figures.hpp"
@@ -32,6 +34,28 @@ double correlation(std::vector<double> const& a, std::vector<double> const& b) {
   return ab / std::sqrt(aa * bb);
 }
 
+/// Which parameters are shown, in their order: where there are too many, those of the strongest correlations. Derived quantities
+/// would hide these, each going with what it is derived from: they stand behind.
+std::vector<std::size_t> shown_parameters(Draws const& draws, std::vector<std::vector<double>> const& thinned) {
+  std::vector<std::size_t> out(std::min(draws.names.size(), shown_pairs));
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  auto const sampled = static_cast<std::size_t>(draws.parameter_count);
+  if (sampled <= shown_pairs) return out;
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t a = 0; a < sampled; ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      double const r = correlation(thinned[a], thinned[b]);
+      pairs.emplace_back(std::isfinite(r) ? -std::fabs(r) : 0, b, a);
+    }
+  std::sort(pairs.begin(), pairs.end());
+  out.clear();
+  for (auto const& [strength, a, b] : pairs)
+    for (std::size_t const each : {a, b})
+      if (out.size() < shown_pairs && std::find(out.begin(), out.end(), each) == out.end()) out.push_back(each);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 /// An axis of a cell so many pixels wide: the fewest ticks of which two have numbers that stay clear of the neighbouring cells',
 /// counted from the digits they share where the numbers are too long for that.
 Axis cell_axis(std::pair<double, double> extent, int pixels) {
@@ -55,13 +79,23 @@ Axis cell_axis(std::pair<double, double> extent, int pixels) {
 }  // namespace
 
 Figure pair_figure(Draws const& draws) {
-  std::size_t const count = std::min(draws.names.size(), shown_pairs);
   // Draws of all chains, evenly thinned.
+  std::vector<std::vector<double>> thinned(draws.names.size());
+  std::size_t const stride = (static_cast<std::size_t>(draws.total()) + shown_draws - 1) / shown_draws;
+  for (std::size_t i = 0; i < thinned.size(); ++i) {
+    std::vector<double> const column = draws.column(i);
+    for (std::size_t d = 0; d < column.size(); d += stride) thinned[i].push_back(column[d]);
+  }
+  std::vector<std::size_t> const parameters = shown_parameters(draws, thinned);
+  std::size_t const count = parameters.size();
   std::vector<std::vector<double>> all(count), shown(count);
-  for (std::size_t i = 0; i < count; ++i) all[i] = draws.column(i);
-  std::size_t const stride = (all[0].size() + shown_draws - 1) / shown_draws;
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t d = 0; d < all[i].size(); d += stride) shown[i].push_back(all[i][d]);
+  for (std::size_t i = 0; i < count; ++i) {
+    all[i] = draws.column(parameters[i]);
+    shown[i] = std::move(thinned[parameters[i]]);
+  }
+  auto const label = [&](std::size_t i, Axis const& axis) {
+    return axis_label(draws.names[parameters[i]], draws.units[parameters[i]], axis);
+  };
 
   // Three stand in one column of print, more need the page.
   int const left = 70, bottom = 48, width = std::max(column_width, left + 6 + 110 * static_cast<int>(count));
@@ -94,7 +128,7 @@ Figure pair_figure(Draws const& draws) {
       p.x_numbers = last;
       p.x_label_room = cell - 6;
       p.y_label_room = tall - 6;
-      p.x_label = last ? axis_label(draws.names[column], draws.units[column], p.x) : "";
+      p.x_label = last ? label(column, p.x) : "";
       if (row == column) {
         constexpr std::size_t bins = 24;
         std::vector<double> counts(bins, 0);
@@ -117,7 +151,7 @@ Figure pair_figure(Draws const& draws) {
       p.y = axes[row];
       p.y_numbers = column == 0;
       p.y_label_distance = 54;
-      p.y_label = column == 0 ? axis_label(draws.names[row], draws.units[row], p.y) : "";
+      p.y_label = column == 0 ? label(row, p.y) : "";
       std::vector<std::vector<double>> points;
       for (std::size_t d = 0; d < shown[row].size(); ++d)
         points.push_back({axes[column].scaled(shown[column][d]), axes[row].scaled(shown[row][d])});
@@ -130,8 +164,12 @@ Figure pair_figure(Draws const& draws) {
       "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination the data "
       "determine "
       "where the two alone are not; separate clouds are several modes.";
-  if (draws.names.size() > shown_pairs)
-    out.caption += fmt::format(" Shown are the first {} of {}.", shown_pairs, draws.names.size());
+  if (std::size_t const left_out = draws.names.size() - count; left_out > 0)
+    out.caption += fmt::format(" Shown are {} of {}, {}; {} {} left out.", count, draws.names.size(),
+                               static_cast<std::size_t>(draws.parameter_count) > count
+                                   ? "those with the strongest correlations among the parameters"
+                                   : "the first",
+                               left_out, left_out == 1 ? "is" : "are");
   return out;
 }
 

@@ -54,7 +54,8 @@ std::string where_data_come_from(RestoringForce const& force) {
 Figure loop_figure(RestoringForce const& force) {
   auto const [first, last] = window(force.model);
   int const width = column_width;
-  std::vector<Key> keys = {{Key::line, model, "model"}};
+  bool const whole = last - first == force.model.force.size();
+  std::vector<Key> keys = {{Key::line, model, whole ? "model" : "model around the largest displacement"}};
   if (!force.data.force.empty()) keys.insert(keys.begin(), {Key::points, data, "data"});
   int const height = 236 + legend_height(keys, 10, width - 14);
   // Points of the data outside this may be noise that was differentiated.
@@ -112,8 +113,7 @@ Figure loop_figure(RestoringForce const& force) {
       force.displacement,
       force.per_mass ? "minus the acceleration" : "the input less what accelerates the mass, in the unit of the input",
       where_data_come_from(force));
-  if (last - first < force.model.force.size())
-    out.caption += fmt::format(" Shown of the model are {} samples around the largest displacement.", last - first);
+  if (!whole) out.caption += fmt::format(" Shown of the model are {} samples around the largest displacement.", last - first);
   return out;
 }
 
@@ -152,22 +152,20 @@ Figure surface_figure(RestoringForce const& force) {
     for (auto const& [place, number] : axis.ticks) list += fmt::format("{}'{}' {:.10g}", list.empty() ? "" : ", ", number, place);
     return fmt::format("set {0}tics offset {3} textcolor rgb '{1}' ({2})\n", which, ink, list, offset);
   };
-  auto const label = [](char which, std::string const& text, char const* how) {
-    return fmt::format("set {}label {} {} textcolor rgb '{}'\n", which, quote(shortened(text, 190)), how, ink);
+  // gnuplot's own labels lie over the numbers of their axes, or are left out in the view below.
+  int labels = 0;
+  auto const label = [&](std::string const& text, char const* place) {
+    return fmt::format("set label {} {} at screen {} textcolor rgb '{}'\n", 300 + ++labels, quote(shortened(text, 190)), place,
+                       ink);
   };
   out.script += fmt::format(
       "set xrange [{:.10g}:{:.10g}]\nset yrange [{:.10g}:{:.10g}]\nset zrange [{:.10g}:{:.10g}]\nset xyplane at {:.10g}\n"
       "set view 50,25,1.08,0.9\nset border 127 lw 0.7\nset grid noxtics noytics noztics\n",
       x.low, x.high, y.low, y.high, z.low, z.high, z.low);
   out.script += ticks('x', x, "0,-0.2") + ticks('y', y, "0,-0.2") + ticks('z', z, "0.4,0");
-  out.script += label('x', axis_label(force.displacement, force.displacement_unit, x), "rotate parallel offset 0,-0.6");
-  // gnuplot leaves this axis without its label in the view above; there is room below its numbers.
-  out.script += fmt::format("set label 301 {} at screen 0.98,0.1 right textcolor rgb '{}'\n",
-                            quote(axis_label(force.velocity, force.velocity_unit, y)), ink);
-  // Characters do not turn: there the label lies above its axis.
-  std::string const up = axis_label(force_name(force), force.force_unit, z);
-  out.script += fmt::format("if (format eq 'text') set label 302 {} at screen 0.02,0.62 left; else {}", quote(up),
-                            label('z', up, "rotate by 90 offset 1,0"));
+  out.script += label(axis_label(force.displacement, force.displacement_unit, x), "0.3,0.07 center");
+  out.script += label(axis_label(force.velocity, force.velocity_unit, y), "0.98,0.1 right");
+  out.script += label(axis_label(force_name(force), force.force_unit, z), "0.02,0.68 left");
   out.script += fmt::format(
       "splot $mesh using 1:2:3 with lines lw 0.8 lc rgb '{}'{}\nunset multiplot\n", model,
       points.empty() ? "" : fmt::format(", $points using 1:2:3 with points pt 7 ps 0.2 lc rgb '{}'", has_data ? data : contrast));

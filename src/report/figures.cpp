@@ -27,6 +27,21 @@ std::size_t records_of(std::vector<RestoringForce> const& forces) {
   return records.size();
 }
 
+/// Coefficients of unknown functions have a figure of their function.
+Draws without_coefficients(Report const& report) {
+  Draws draws = report.draws;
+  for (std::size_t c = std::min(report.summary.size(), draws.names.size()); c-- > 0;) {
+    if (!report.summary[c].coefficient) continue;
+    auto const at = static_cast<std::ptrdiff_t>(c);
+    draws.names.erase(draws.names.begin() + at);
+    draws.units.erase(draws.units.begin() + at);
+    if (at < draws.parameter_count) --draws.parameter_count;
+    for (Chain& chain : draws.chains)
+      for (std::vector<double>& row : chain.values) row.erase(row.begin() + at);
+  }
+  return draws;
+}
+
 /// What nothing measures and what stays where it is has nothing to show.
 bool shows_something(PredictedQuantity const& quantity) {
   std::vector<double> const& mean = quantity.response.mean;
@@ -65,7 +80,8 @@ std::vector<Figure> figures(Report const& report) {
   }
   bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
   if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
-  if (has_draws && report.draws.names.size() > 1) out.push_back(pair_figure(report.draws));
+  if (has_draws)
+    if (Draws const draws = without_coefficients(report); draws.names.size() > 1) out.push_back(pair_figure(draws));
   if (has_draws) out.push_back(trace_figure(report.draws));
   if (has_draws && report.draws.chains.size() > 1) out.push_back(rank_figure(report.draws));
   for (Prediction const& prediction : report.predictions)

@@ -9,6 +9,7 @@
 #include "report/html_parts.hpp"
 #include "report/html_sections.hpp"
 #include "report/html_style.hpp"
+#include "report/html_words.hpp"
 
 namespace sysid {
 
@@ -34,8 +35,7 @@ std::string page(std::string const& title, std::string const& header, std::strin
 }
 
 std::string entry(std::string const& id, std::string const& title, std::string_view kind = {}) {
-  return fmt::format("<li{}><a href=\"#{}\">{}</a></li>\n", kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), id,
-                     escape(title));
+  return fmt::format("<li class=\"link{}{}\"><a href=\"#{}\">{}</a></li>\n", kind.empty() ? "" : " ", kind, id, escape(title));
 }
 
 std::string all(std::vector<HtmlSection> const& sections, int level) {
@@ -54,7 +54,7 @@ std::string together(RunReport const& run) {
   for (ReportTable const& table : run.comparisons) {
     bool const fits = table.header.front() == "fit";
     evidences = evidences || fits;
-    out += table_html(table, fits ? 3 : 2);
+    out += table_html(table, fits ? 3 : 2, fits ? TitleBegins::with_a_word : TitleBegins::with_a_name);
   }
   if (evidences || !run.apart.empty())
     out += paragraph(run.apart + (!evidences ? ""
@@ -95,7 +95,7 @@ std::string run_html(RunReport const& run) {
     std::string const id = fmt::format("task-{}", i + 1);
     contents += fmt::format("<li class=\"{}\"><a href=\"#{}\">{}</a> <span class=\"what\">{}</span>{}</li>\n", verdict_kind(report),
                             id, escape(report.task), escape(report.what),
-                            has_verdict(report) ? fmt::format(" <b>{}</b>", marked(verdict_headline(report))) : "");
+                            has_verdict(report) ? fmt::format(" <b>{}</b>", marked(verdict_words(report))) : "");
     body += html({id, fmt::format("{}: {}", report.task, title_of(report)),
                   paragraph(report.what, "what") + all(task_sections(report, run.tasks[i].figures, id + "-", 3), 3), "whole"},
                  2);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -81,9 +82,9 @@ std::string html(HtmlTable const& table) {
     return out + "</tr>\n";
   };
   // A region that scrolls can be reached by the keyboard, and says what it is.
-  std::string out =
-      fmt::format("<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{0}\"><table{1}>\n<caption>{0}</caption>\n",
-                  escape(table.caption), table.last_is_words ? " class=\"said\"" : "");
+  std::string out = fmt::format(
+      "<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{0}\"><table{1}>\n<caption><span>{0}</span></caption>\n",
+      escape(table.caption), table.last_is_words ? " class=\"said\"" : "");
   if (!table.header.empty()) out += "<thead>" + row_html(table.header, true) + "</thead>\n";
   out += "<tbody>\n";
   for (auto const& row : table.rows) out += row_html(row, false);
@@ -113,7 +114,8 @@ std::string capitalised(std::string words) {
   auto const small = [](char c) { return c >= 'a' && c <= 'z'; };
   std::size_t letters = 0;
   while (letters < words.size() && small(words[letters])) ++letters;
-  bool const word = letters >= 2 && (letters == words.size() || (words[letters] == ' ' && words.compare(letters, 3, " = ") != 0));
+  bool const word = letters >= 2 && (letters == words.size() || words.compare(letters, 2, ": ") == 0 ||
+                                     (words[letters] == ' ' && words.compare(letters, 3, " = ") != 0));
   if (word) words[0] = static_cast<char>(words[0] - 'a' + 'A');
   return words;
 }
@@ -126,6 +128,13 @@ std::string paragraph(std::string_view words, std::string_view kind) {
 std::string with_unit(std::string const& name, std::string const& unit) {
   std::string const text = pretty_unit(unit);
   return escape(name) + (text.empty() || text == "-" ? "" : fmt::format(" <span class=\"unit\">{}</span>", escape(text)));
+}
+
+std::string number_html(std::string const& text) {
+  double value = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  bool const number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return number ? pretty_number(text) : escape(text);
 }
 
 std::string code(std::string_view text) { return fmt::format("<code>{}</code>", escape(text)); }
@@ -144,22 +153,31 @@ std::string figure_html(DrawnFigure const& drawn, std::string const& id, int num
 }
 
 std::string range_chart(double wide_low, double wide_high, double low, double high, double mean, std::string_view words) {
-  constexpr double width = 130, height = 18, edge = 4;
+  constexpr double width = 130, height = 18, edge = 12;
   bool const logarithmic = wide_low > 0 && wide_high > 10 * wide_low;
   auto const place = [&](double value) {
     double share = (value - wide_low) / (wide_high - wide_low);
     if (logarithmic) share = value > 0 ? std::log(value / wide_low) / std::log(wide_high / wide_low) : 0;
     return edge + (width - 2 * edge) * std::clamp(share, 0.0, 1.0);
   };
-  double const from = place(low), to = std::max(place(high), from);
-  // However narrow, it can be seen.
-  double const bar = std::max(to - from, 2.5), left = std::clamp((from + to) / 2 - bar / 2, edge, width - edge - bar);
+  std::string marks;
+  if (low < wide_high && high > wide_low) {
+    double const from = place(low), to = std::max(place(high), from);
+    // However narrow, it can be seen.
+    double const bar = std::max(to - from, 2.5), left = std::clamp((from + to) / 2 - bar / 2, edge, width - edge - bar);
+    marks += fmt::format("<rect class=\"narrow\" x=\"{:.1f}\" y=\"4\" width=\"{:.1f}\" height=\"10\"/>", left, bar);
+  }
+  // Beyond an end an arrow: what is clamped to the end would look as if it were inside. A hair is within what is drawn.
+  double const hair = 0.01 * (wide_high - wide_low);
+  if (low < wide_low - (logarithmic ? 0.01 * wide_low : hair))
+    marks += fmt::format("<path class=\"narrow\" d=\"M{} 4v10l-8-5z\"/>", edge - 2);
+  if (high > wide_high + hair) marks += fmt::format("<path class=\"narrow\" d=\"M{} 4v10l8-5z\"/>", width - edge + 2);
+  if (mean >= wide_low && mean <= wide_high)
+    marks += fmt::format("<rect class=\"mean\" x=\"{:.1f}\" y=\"2\" width=\"1.4\" height=\"14\"/>", place(mean) - 0.7);
   return fmt::format(
       "<svg class=\"range\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {} {}\"><rect class=\"wide\" x=\"{}\" y=\"7\" "
-      "width=\"{}\" "
-      "height=\"4\" rx=\"2\"/><rect class=\"narrow\" x=\"{:.1f}\" y=\"4\" width=\"{:.1f}\" height=\"10\"/><rect class=\"mean\" "
-      "x=\"{:.1f}\" y=\"2\" width=\"1.4\" height=\"14\"/></svg>",
-      escape(words), width, height, edge, width - 2 * edge, left, bar, place(mean) - 0.7);
+      "width=\"{}\" height=\"4\" rx=\"2\"/>{}</svg>",
+      escape(words), width, height, edge, width - 2 * edge, marks);
 }
 
 std::string legible(std::string_view text) {

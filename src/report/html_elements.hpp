@@ -33,6 +33,8 @@ std::string capitalised(std::string words);
 std::string paragraph(std::string_view words, std::string_view kind = {});
 /// "k N/m" with the unit as units are shown.
 std::string with_unit(std::string const& name, std::string const& unit);
+/// A number as numbers are shown; other text as it is.
+std::string number_html(std::string const& text);
 std::string code(std::string_view text);
 /// Text that is shown on demand, and always on paper.
 std::string folded(std::string_view summary, std::string_view text);
@@ -41,7 +43,7 @@ std::string folded(std::string_view summary, std::string_view text);
 std::string figure_html(DrawnFigure const& drawn, std::string const& id, int number);
 
 /// Where an interval lies within a wider one, on a logarithmic axis where the wide one is positive and spans more than a decade.
-/// `words` says the same. Intervals that reach out of the wide one are cut.
+/// `words` says the same. Where an interval goes on beyond an end of the wide one an arrow stands there.
 std::string range_chart(double wide_low, double wide_high, double low, double high, double mean, std::string_view words);
 
 /// Bytes that are no UTF-8 and characters that XML has no place for, as replacement characters.

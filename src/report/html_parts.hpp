@@ -1,8 +1,10 @@
 // The bodies of a page's sections, by subject; report/html_sections puts them in order. Empty where there is nothing to say.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "report/html_elements.hpp"
+#include "typeset/fixed_values.hpp"
 
 namespace sysid {
 
@@ -11,9 +13,13 @@ namespace sysid {
 /// Parameters from prior to posterior, the evidence, and the tables of this kind of task.
 std::string result_html(Report const& report);
 std::string modes_html(Report const& report);
+/// Parameters that are not estimated; empty where there is none, of selections and of discoveries.
+std::vector<FixedValue> fixed_parameters(Report const& report);
 
+/// Names stay as they are written; words begin with a capital.
+enum class TitleBegins { with_a_word, with_a_name };
 /// words: how many of the first columns are words and not numbers.
-std::string table_html(ReportTable const& table, std::size_t words = 1);
+std::string table_html(ReportTable const& table, std::size_t words = 1, TitleBegins title = TitleBegins::with_a_word);
 
 // How well it fits: report/html_scores.
 

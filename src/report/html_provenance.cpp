@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/xml.hpp"
+#include "report/number.hpp"
 #include "report/typeset.hpp"
 
 namespace sysid {
@@ -16,7 +17,7 @@ std::string data_html(Report const& report, int level) {
                        data.scored_rows.empty() ? "" : fmt::format(" ({})", escape(data.scored_rows)));
     if (!data.notes.empty()) {
       out += "<ul>\n";
-      for (std::string const& note : data.notes) out += fmt::format("<li>{}</li>\n", marked(note));
+      for (std::string const& note : data.notes) out += fmt::format("<li>{}</li>\n", marked(pretty_units(note)));
       out += "</ul>\n";
     }
     out += fmt::format("<p class=\"digest\">sha256 {}</p>\n", escape(data.sha256));

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "core/xml.hpp"
@@ -20,10 +19,16 @@ namespace {
 /// A cell of a table that other writers share: a number or a unit as a page shows it.
 std::string cell_html(std::string const& text, std::string const& column) {
   if (column == "unit") return escape(pretty_unit(text));
-  double value = 0;
-  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  bool const number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  return number ? pretty_number(text) : escape(text);
+  if (column == "noise") return escape(pretty_powers(text));
+  return number_html(text);
+}
+
+/// Where a posterior lies whose middle is outside the prior's 90 %: how far beyond, in the width of that. Else empty.
+std::string outside_words(PriorInfo const& prior, double middle) {
+  double const width = *prior.q95 - *prior.q5, beyond = std::max(*prior.q5 - middle, middle - *prior.q95);
+  if (!(beyond > 0)) return "";
+  return fmt::format("{} the prior's 90 %, by {} of its width", middle > *prior.q95 ? "above" : "below",
+                     pretty_number(significant(beyond / width, 2)));
 }
 
 std::string parameters(Report const& report) {
@@ -53,23 +58,39 @@ std::string parameters(Report const& report) {
                fmt::format("<br/><span class=\"unit\">{}</span>",
                            *ratio < hardly_narrower ? "hardly narrower"
                                                     : pretty_number(significant(*ratio, *ratio < 10 ? 2 : 3)) + " times narrower");
+      if (std::string const words = outside_words(*prior, s.mean); !words.empty())
+        row[2] += fmt::format("<br/><span class=\"outside\">{}</span>", words);
     }
     for (std::string const& cell :
          optimum ? std::vector<std::string>{t.mean, t.sd} : std::vector<std::string>{t.mean, t.sd, t.q5, t.median, t.q95})
       row.push_back(pretty_number(cell));
     table.rows.push_back(std::move(row));
   }
+  for (FixedValue const& each : fixed_parameters(report)) {
+    table.rows.push_back({with_unit(each.name, each.unit), "fixed", "", number_html(each.value)});
+    table.rows.back().resize(table.header.size());
+  }
   std::string out = html(table) + paragraph(learning_words(report));
   return out + paragraph(std::string(optimum ? "sd: of the normal approximation at the optimum (Laplace). "
                                              : "Digits end where the Monte Carlo error begins. ") +
                              (priors ? "Below each prior the interval that holds 90 % of it, beside it the posterior's within "
                                        "that: dark, with a stroke at the "
-                                       "mean, on a logarithmic scale where the prior's is positive and spans more than a decade."
+                                       "mean, on a logarithmic scale where the prior's is positive and spans more than a decade; "
+                                       "an arrow where it goes on beyond that."
                                      : ""),
                          "note");
 }
 
 }  // namespace
+
+std::vector<FixedValue> fixed_parameters(Report const& report) {
+  if (report.selection || report.discovery) return {};
+  std::vector<std::string> records;
+  for (DataInfo const& each : report.data) records.push_back(each.name.substr(0, each.name.find('.')));
+  // The file as it ran has the records too; a prediction has the model alone.
+  std::string const& text = report.resolved_text.empty() ? report.model_text : report.resolved_text;
+  return fixed_values(text, report.model_name, records);
+}
 
 std::string result_html(Report const& report) {
   std::string out = parameters(report);
@@ -85,8 +106,8 @@ std::string result_html(Report const& report) {
   return out;
 }
 
-std::string table_html(ReportTable const& table, std::size_t words) {
-  HtmlTable out{capitalised(table.title), {}, {}, words};
+std::string table_html(ReportTable const& table, std::size_t words, TitleBegins title) {
+  HtmlTable out{title == TitleBegins::with_a_name ? table.title : capitalised(table.title), {}, {}, words};
   for (std::string const& cell : table.header) out.header.push_back(escape(cell));
   for (auto const& row : table.rows) {
     out.rows.emplace_back();
@@ -108,12 +129,7 @@ std::string modes_html(Report const& report) {
     for (std::size_t i = 0; i < std::min(count, mode.declared.size()); ++i)
       table.rows.back().push_back(pretty_number(significant(mode.declared[i], 4)));
   }
-  double const second = report.modes.size() > 1 ? report.modes[1].share : 0;
-  return paragraph(report.modes.size() == 1
-                       ? "One mode was found: no other values of the parameters explain the data nearly as well."
-                   : second > 0.01 ? "Several modes carry weight: the parameters are not told by these data alone."
-                                   : "Other modes were found and carry next to no weight.") +
-         html(table) + paragraph("Share: of the Laplace masses of all modes.", "note");
+  return paragraph(mode_words(report)) + html(table) + paragraph("Share: of the Laplace masses of all modes.", "note");
 }
 
 }  // namespace sysid

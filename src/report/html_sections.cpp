@@ -17,7 +17,7 @@ namespace {
 
 std::string verdict_html(Report const& report) {
   if (!has_verdict(report)) return "";
-  std::string out = fmt::format("<p class=\"headline\">{}</p>\n{}", marked(capitalised(verdict_headline(report))),
+  std::string out = fmt::format("<p class=\"headline\">{}</p>\n{}", marked(capitalised(verdict_words(report))),
                                 paragraph(verdict_meaning(report)));
   if (report.findings.empty()) return out;
   out += "<ul>\n";
@@ -45,6 +45,12 @@ std::string model_html(Report const& report) {
     if (std::none_of(report.summary.begin(), report.summary.end(), [&](Summary const& s) { return s.name == prior.name; }))
       priors.rows.push_back({with_unit(prior.name, prior.unit), code(prior.text)});
   if (!priors.rows.empty()) out += html(priors);
+  // With the others where these have a table of their own.
+  HtmlTable fixed{"Fixed parameters", {"parameter", "value"}, {}, 1};
+  if (report.summary.empty())
+    for (FixedValue const& each : fixed_parameters(report))
+      fixed.rows.push_back({with_unit(each.name, each.unit), number_html(each.value)});
+  if (!fixed.rows.empty()) out += html(fixed);
   return out + folded("The model as it was written", report.model_text);
 }
 

@@ -67,6 +67,8 @@ math[display="block"] { width: fit-content; margin: 0.55rem 0; }
 }
 table { border-collapse: collapse; border-top: 1.5px solid var(--ink); border-bottom: 1.5px solid var(--ink); font-size: 0.9rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: 0.3rem; }
+/* It stays on the screen while what it heads is scrolled. */
+caption span { display: inline-block; position: sticky; left: 0; max-width: calc(100vw - 2.2rem); }
 th, td { padding: 0.28rem 0.9rem 0.28rem 0; text-align: left; vertical-align: baseline; }
 th:last-child, td:last-child { padding-right: 0.2rem; }
 thead th, thead td { font-weight: 600; color: var(--muted); border-bottom: 1px solid var(--rule); vertical-align: bottom; }
@@ -76,6 +78,7 @@ thead .n { white-space: normal; }
 .unit { color: var(--muted); font-weight: 400; font-size: 0.92em; white-space: nowrap; }
 td code { font-size: 0.88em; }
 .range { width: 130px; height: 18px; vertical-align: middle; }
+.outside { color: var(--doubtful); font-size: 0.92em; }
 .range .wide { fill: var(--fig-band); } .range .narrow { fill: var(--accent); } .range .mean { fill: var(--ink); }
 code, pre, .digest { font-family: ui-monospace, "SF Mono", Menlo, Consolas, "Liberation Mono", monospace; font-size: 0.85em; }
 .digest { color: var(--muted); overflow-wrap: anywhere; }
@@ -105,7 +108,7 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   :root { color-scheme: light; }
   html { font-size: 10pt; }
   body { max-width: none; padding: 0; }
-  nav, .skip { display: none; }
+  nav .link, .skip { display: none; }
   a { color: inherit; text-decoration: none; }
   /* Of one column (480: a test holds it to plot::column_width) two stand on a page. */
   figure { margin: 0.6rem 0 1.2rem; } figure > svg[viewBox^="0 0 480 "] { width: 120mm; }

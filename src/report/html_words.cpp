@@ -9,6 +9,7 @@
 
 #include "inference/chain_checks.hpp"
 #include "inference/residual_tests.hpp"
+#include "inference/verdict.hpp"
 #include "report/narrowing.hpp"
 #include "report/number.hpp"
 
@@ -84,6 +85,15 @@ std::optional<Extreme> extreme(Report const& report, std::function<double(Summar
 }
 
 }  // namespace
+
+std::string verdict_words(Report const& report) {
+  if (!report.discovery || !has_verdict(report)) return verdict_headline(report);
+  std::string missing;
+  for (DiscoveredEquation const& each : report.discovery->equations)
+    if (each.equation.empty()) missing += fmt::format("{}`{}`", missing.empty() ? "nothing found for " : ", ", each.target);
+  std::string const judged = judge(report.findings).text;
+  return missing + (missing.empty() ? "" : "; ") + judged.substr(0, judged.find('\n'));
+}
 
 std::string verdict_meaning(Report const& report) {
   if (!has_verdict(report)) return "";
@@ -210,6 +220,27 @@ std::string ledger_words(Report const& report) {
                      : severity == Severity::warning
                          ? "look whether the posterior ends where the model does."
                          : "with so many the posterior may end where the solver does, not where the data say.");
+}
+
+std::string mode_words(Report const& report) {
+  std::size_t const count = report.modes.size();
+  std::string places;
+  for (std::size_t m = 0; m < count; ++m)
+    places += fmt::format("{}{}", m == 0 ? "" : m + 1 == count ? " and " : ", ", report.modes[m].hits);
+  bool const counted = std::any_of(report.modes.begin(), report.modes.end(), [](Mode const& each) { return each.hits > 0; });
+  std::string out = fmt::format("The search found {}{}. ", count == 1 ? "one mode" : fmt::format("{} modes", count),
+                                counted ? fmt::format(", where {} of its local searches ended", places) : "");
+  if (grade(report) == Severity::error) {
+    bool const near = std::any_of(report.findings.begin(), report.findings.end(),
+                                  [](Finding const& each) { return each.code == "searched_near"; });
+    return out + fmt::format(
+                     "A check failed: a better mode may lie where no search went. Search {}with wider priors, or again with "
+                     "another seed.",
+                     near ? "everywhere (`search = everywhere`), " : "");
+  }
+  if (count == 1) return out + "It saw no other values of the parameters that explain the data nearly as well.";
+  return out + (report.modes[1].share > 0.01 ? "Several carry weight: the parameters are not told by these data alone."
+                                             : "Those behind the first carry next to no weight.");
 }
 
 std::string learning_words(Report const& report) {

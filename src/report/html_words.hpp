@@ -9,6 +9,9 @@
 
 namespace sysid {
 
+/// The verdict's first line in words: of a discovery without its equations, which a page has as formulas.
+std::string verdict_words(Report const& report);
+
 /// What the verdict allows: to use the numbers, to look first, or neither. Empty where there is none.
 std::string verdict_meaning(Report const& report);
 
@@ -25,6 +28,9 @@ std::vector<ChainWords> chain_words(Report const& report);
 
 /// How many simulations failed and what that means for the result; empty where nothing was simulated.
 std::string ledger_words(Report const& report);
+
+/// What the modes that were found say, and no more than a search can. There is a mode.
+std::string mode_words(Report const& report);
 
 /// What the posterior has learnt beyond the prior: its narrowest and widest parameters against their priors.
 std::string learning_words(Report const& report);

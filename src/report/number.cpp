@@ -60,7 +60,11 @@ SummaryText format_summary(Summary const& s) {
   auto const location = [&](double v) { return std::isfinite(v) ? with_exponent(v, decimals, exponent) : std::string("-"); };
   // A spread is known to 1/sqrt(2 ess) of itself: two digits.
   auto const spread = [&](double v) {
-    return std::isfinite(v) && v > 0 ? with_exponent(v, exponent - decade(v) + 1, exponent) : significant(v, 2);
+    if (!std::isfinite(v) || v <= 0) return significant(v, 2);
+    // Under the row's power of ten, unless it would read as 20000000e-6 there, or have no digit left.
+    int const above = decade(v) - exponent;
+    bool const shared = above < 6 && above > -10;
+    return shared ? with_exponent(v, exponent - decade(v) + 1, exponent) : significant(v, 2);
   };
   out.mean = location(s.mean);
   out.median = location(s.median);
@@ -105,26 +109,46 @@ std::string pretty_number(std::string_view text) {
   return e == std::string_view::npos ? out : out + "·10" + superscript(std::stoi(std::string(text.substr(e + 1))));
 }
 
-std::string pretty_unit(std::string_view unit) {
+std::string pretty_powers(std::string_view words) {
   std::string out;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
     std::size_t end = i + 1;
-    if (unit[i] == '^') {
-      if (end < unit.size() && unit[end] == '-') ++end;
-      while (end < unit.size() && unit[end] >= '0' && unit[end] <= '9') ++end;
+    if (words[i] == '^') {
+      if (end < words.size() && words[end] == '-') ++end;
+      while (end < words.size() && words[end] >= '0' && words[end] <= '9') ++end;
     }
     // A fraction (m^1.5) or an expression (N^(1-n)) stays as it is written.
-    bool const number = end > i + 1 && unit[end - 1] != '-' && (end == unit.size() || unit[end] != '.') && end - i < 5;
-    if (unit[i] == '^' && number) {
-      out += superscript(std::stoi(std::string(unit.substr(i + 1, end - i - 1))));
+    bool const number = end > i + 1 && words[end - 1] != '-' && (end == words.size() || words[end] != '.') && end - i < 5;
+    if (words[i] == '^' && number) {
+      out += superscript(std::stoi(std::string(words.substr(i + 1, end - i - 1))));
       i = end - 1;
-    } else if (unit[i] == ' ' || unit[i] == '*') {
-      if (!out.ends_with("·")) out += "·";
     } else {
-      out += unit[i];
+      out += words[i];
     }
   }
   return out;
+}
+
+std::string pretty_unit(std::string_view unit) {
+  std::string out;
+  for (char const c : pretty_powers(unit)) {
+    if (c != ' ' && c != '*')
+      out += c;
+    else if (!out.ends_with("·"))
+      out += "·";
+  }
+  return out;
+}
+
+std::string pretty_units(std::string_view words) {
+  std::string out;
+  while (true) {
+    std::size_t const begin = words.find(" [");
+    std::size_t const end = begin == words.npos ? words.npos : words.find(']', begin);
+    if (end == words.npos) return out.append(words);
+    out.append(words.substr(0, begin + 2)).append(pretty_unit(words.substr(begin + 2, end - begin - 2)));
+    words.remove_prefix(end);
+  }
 }
 
 int text_width(std::string_view text) {

@@ -14,7 +14,8 @@ std::string shortest(double value);
 /// `digits` significant digits, plain or with an exponent, whichever is easier on the eye; "-" when not finite.
 std::string significant(double value, int digits);
 
-/// The numbers of one row, all with the digits the Monte Carlo error leaves and one exponent: "4.986e9".
+/// The numbers of one row, all with the digits the Monte Carlo error leaves and one exponent, "4.986e9"; a spread of quite another
+/// size has its own.
 struct SummaryText {
   std::string mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail;
 };
@@ -28,6 +29,12 @@ std::string pretty_number(std::string_view text);
 
 /// "N s/m^3" as a reader likes it: "N·s/m³".
 std::string pretty_unit(std::string_view unit);
+
+/// Words with units in brackets: "input x = a [m/s^2]" as "input x = a [m/s²]".
+std::string pretty_units(std::string_view words);
+
+/// Words with a quantity in them, their powers raised and no more: "sigma 0.472 m/s^2".
+std::string pretty_powers(std::string_view words);
 
 /// Superscript digits: "⁻³".
 std::string superscript(int number);

@@ -84,7 +84,7 @@ std::string identifier(std::string_view text) {
   return out;
 }
 
-std::string preamble(std::string_view name, int width, int height) {
+std::string preamble(std::string_view name, int width, int height, int lines) {
   // Column width in print is 85 mm.
   double const inches = 85.0 / 25.4 / column_width, points = 72 * inches;
   // gnuplot's cairo terminals take a point for 4/3 of a pixel, and in PDF for two thirds of itself.
@@ -106,8 +106,8 @@ std::string preamble(std::string_view name, int width, int height) {
       "pointscale {:.2f} {}\n",
       width * inches, height * inches, 1.5 * 12 * points, points, points, shared);
   // Characters are twice as high as wide.
-  out += fmt::format("if (format eq 'text') set terminal dumb size columns,int(columns*{:.4f} + 0.5) noenhanced\n",
-                     height / (2.0 * width));
+  out += fmt::format("if (format eq 'text') set terminal dumb size columns,{} noenhanced\n",
+                     lines > 0 ? std::to_string(lines) : fmt::format("int(columns*{:.4f} + 0.5)", height / (2.0 * width)));
   return out + fmt::format(
                    "set border 3 lw 1 lc rgb '{}'\n"
                    "set tics nomirror out scale 0.6 textcolor rgb '{}'\n"

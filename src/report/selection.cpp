@@ -42,7 +42,7 @@ ReportTable model_table(SelectionReport const& selection) {
   bool const checked =
       std::any_of(selection.likelihoods.begin(), selection.likelihoods.end(), [](auto const& l) { return l.has_value(); });
   ReportTable table{"models",
-                    "Probability: sum of the particles' weights. Share: part of the particles, the tutorial's (8.21), which is no "
+                    "Probability: sum of the particles' weights. Share: part of the particles, Worden et al. (8.21), which is no "
                     "probability after the second population.",
                     {"model", "prior", "probability", "share", "died in population"},
                     {}};

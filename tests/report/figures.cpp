@@ -495,3 +495,103 @@ TEST_CASE("thresholds of nothing and without end have no place on a logarithmic 
   selection.floor.reset();
   CHECK(population_figure(selection).script.find("inf") == std::string::npos);
 }
+
+TEST_CASE("of many parameters the pairs show those that go together, and say how many are left out") {
+  Draws draws;
+  draws.chains.resize(1);
+  Stream stream({5, Purpose::test, 0, 0});
+  for (int p = 0; p < 14; ++p) {
+    draws.names.push_back("p" + std::to_string(p));
+    draws.units.emplace_back();
+  }
+  draws.parameter_count = 13;
+  for (int d = 0; d < 300; ++d) {
+    std::vector<double> row;
+    for (int p = 0; p < 13; ++p) row.push_back(stream.normal());
+    row[11] = row[3] + 0.1 * row[11];
+    row[12] = 0.1 * row[12] - row[9];
+    row.push_back(2 * row[0]);  // derived: as good as its parameter
+    draws.chains[0].values.push_back(std::move(row));
+  }
+  plot::Figure const figure = pair_figure(draws);
+  for (char const* name : {"'p3'", "'p9'", "'p11'", "'p12'"}) CHECK_MESSAGE(figure.script.find(name) != std::string::npos, name);
+  CHECK(figure.script.find("'p13'") == std::string::npos);
+  CHECK(figure.caption.ends_with("Shown are 7 of 14, those with the strongest correlations among the parameters; 7 are left out."));
+  draws.parameter_count = 7;
+  CHECK(pair_figure(draws).caption.ends_with("Shown are 7 of 14, the first; 7 are left out."));
+}
+
+TEST_CASE("coefficients of unknown functions leave the pairs to the parameters") {
+  Report report = example::duffing(40);
+  report.summary[1].coefficient = true;
+  for (plot::Figure const& figure : figures(report))
+    if (figure.name == "pairs")
+      CHECK((figure.script.find("'c [") == std::string::npos && figure.script.find("'k [") != std::string::npos));
+}
+
+TEST_CASE("chains have a legend where so many can be told apart, and ranks an axis that says what they count") {
+  Report report = example::duffing(40);
+  CHECK(trace_figure(report.draws).script.find("'chain 4'") != std::string::npos);
+  std::string const ranks = rank_figure(report.draws).script;
+  CHECK(ranks.find("'chain 4'") != std::string::npos);
+  CHECK(ranks.find("'draws'") != std::string::npos);
+  report.draws.chains.resize(1);
+  CHECK(trace_figure(report.draws).script.find("'chain 1'") == std::string::npos);
+  report.draws.chains.resize(40, report.draws.chains[0]);
+  CHECK(rank_figure(report.draws).script.find("'chain 1'") == std::string::npos);
+}
+
+TEST_CASE("a loop that is a part of the record says so, and labels of a surface stand upright clear of its numbers") {
+  RestoringForce force;
+  force.experiment = "e";
+  force.name = force.displacement = "y";
+  force.velocity = "y'";
+  force.displacement_unit = force.velocity_unit = force.force_unit = "m";
+  for (int i = 0; i < 5000; ++i) {
+    force.model.displacement.push_back(std::sin(0.1 * i));
+    force.model.velocity.push_back(std::cos(0.1 * i));
+    force.model.force.push_back(std::sin(0.1 * i));
+  }
+  CHECK(loop_figure(force).script.find("'model around the largest displacement'") != std::string::npos);
+  force.grid_displacement = force.grid_velocity = {-1, 0, 1};
+  force.surface.assign(3, {-1, 0, 1});
+  std::string const surface = surface_figure(force).script;
+  CHECK(surface.find("rotate") == std::string::npos);
+  CHECK(surface.find("set xlabel") == std::string::npos);
+  CHECK(surface.find("'y [m]' at screen") != std::string::npos);
+  CHECK(draw(surface_figure(force)).has_value());
+  for (auto* path : {&force.model.displacement, &force.model.velocity, &force.model.force}) path->resize(20);
+  CHECK(loop_figure(force).script.find("around the largest") == std::string::npos);
+}
+
+TEST_CASE("of characters each term of a discovery has one line, with its bar and its value") {
+  REQUIRE(gnuplot_installed());
+  DiscoveryReport discovery;
+  discovery.measure = "inclusion probability";
+  DiscoveredEquation equation;
+  equation.target = "y'";
+  for (int j = 0; j < 10; ++j) {
+    DiscoveredTerm term;
+    term.text = "term" + std::to_string(j);
+    term.kept = j < 2;
+    term.measure = j < 2 ? 1 : 0.5 / j;
+    term.sd = term.coefficient = 1;
+    equation.terms.push_back(term);
+  }
+  discovery.equations.push_back(equation);
+  for (int const columns : {40, 80, 120}) {
+    auto const text = draw(inclusion_figure(discovery, 0), FigureFormat::text, columns);
+    REQUIRE(text);
+    std::istringstream lines(*text);
+    std::string line;
+    for (int j = 0; j < 10; ++j) {
+      REQUIRE(std::getline(lines, line));
+      CAPTURE(line);
+      CHECK(line.find("term" + std::to_string(j)) != std::string::npos);
+      CHECK((line.find("--") != std::string::npos || j > 3));
+      CHECK(line.ends_with(j < 2 ? " 1.000 kept" : " " + probability_text(0.5 / j)));
+    }
+  }
+  // Two words of a label say more than "of": three cells stand in a row where they have room.
+  CHECK(coefficient_figure(discovery, 0).script.find("'coefficient of term0'") != std::string::npos);
+}

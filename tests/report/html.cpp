@@ -239,3 +239,119 @@ TEST_CASE("figures that could not be drawn are named, with the way to get them")
   CHECK(page.find("gnuplot-nox") != std::string::npos);
   CHECK(page.find("<b>Figure 1.</b> A caption.") != std::string::npos);
 }
+
+TEST_CASE("what is said of modes is no more than a search can see, least of all where a check failed") {
+  Report report = example::duffing(20);
+  report.modes[0].hits = 3;
+  auto const says = [&](char const* words) { return report_html(report, {}).find(words) != std::string::npos; };
+  CHECK(says("The search found one mode, where 3 of its local searches ended. It saw no other values"));
+  report.findings = {{Severity::error, "residuals", "m", ""}};
+  CHECK(says("The search found one mode, where 3 of its local searches ended. A check failed: a better mode may lie"));
+  CHECK_FALSE(says("no other values"));
+  CHECK_FALSE(says("search = everywhere"));
+  report.findings.push_back({Severity::note, "searched_near", "m", ""});
+  CHECK(says("<code>search = everywhere</code>"));
+  report.modes.resize(2, report.modes[0]);
+  CHECK(says("The search found 2 modes, where 3 and 3 of its local searches ended."));
+}
+
+TEST_CASE("paper keeps the tasks of a run with their verdicts, and not the links to sections") {
+  Report const one = example::duffing(20), other = example::duffing(30);
+  std::string const run = run_html({{{one, {}}, {other, {}}}, {{"a on b", "", {"prediction", "nmse [%]"}, {{"e", "1"}}}}, "", {}});
+  CHECK(run.find("<li class=\"link plain\"><a href=\"#together\">") != std::string::npos);
+  CHECK(run.find("<li class=\"good\"><a href=\"#task-1\">") != std::string::npos);
+  CHECK(report_html(one, {}).find("<li class=\"link\"><a href=\"#verdict\">") != std::string::npos);
+  std::string_view const paper = page_style.substr(page_style.find("@media print"));
+  CHECK(paper.find("nav .link, .skip { display: none; }") != std::string_view::npos);
+  CHECK(paper.find(" nav,") == std::string_view::npos);
+}
+
+TEST_CASE("a posterior beyond its prior's 90 % is seen and said to be there") {
+  Report report = example::duffing(20);
+  report.priors[0].q5 = 0.2;
+  report.priors[0].q95 = 1.2;
+  auto const page = [&](double low, double high, double mean) {
+    report.summary[0].q5 = low;
+    report.summary[0].q95 = high;
+    report.summary[0].mean = mean;
+    std::string const all = report_html(report, {});
+    std::size_t const begin = all.find("<svg class=\"range\"");
+    return all.substr(begin, all.find("</td>", begin) - begin);
+  };
+  auto const holds = [](std::string const& text, char const* part) { return text.find(part) != std::string::npos; };
+  std::string const inside = page(0.5, 0.7, 0.6), across = page(1.0, 1.3, 1.1), above = page(3.1, 3.3, 3.2),
+                    below = page(0, 0.1, 0);
+  CHECK((holds(inside, "<rect class=\"narrow\"") && holds(inside, "class=\"mean\"") && !holds(inside, "<path")));
+  CHECK((holds(across, "<rect class=\"narrow\"") && holds(across, "class=\"mean\"") && holds(across, "v10l8-5z")));
+  CHECK((!holds(above, "<rect class=\"narrow\"") && !holds(above, "class=\"mean\"") && holds(above, "v10l8-5z")));
+  CHECK((!holds(below, "<rect class=\"narrow\"") && !holds(below, "class=\"mean\"") && holds(below, "v10l-8-5z")));
+  CHECK_FALSE(holds(page(0.2 - 1e-6, 1.2 + 1e-6, 0.7), "<path"));
+  CHECK(holds(above, ">above the prior's 90 %, by 2.0 of its width<"));
+  CHECK(holds(below, ">below the prior's 90 %, by 0.20 of its width<"));
+  CHECK_FALSE(holds(across, "the prior's 90 %"));
+}
+
+TEST_CASE("parameters that are fixed stand beside those that are estimated") {
+  Report report = example::duffing(20);
+  report.resolved_text =
+      "model duffing {\n input x [N]\n state y [m]\n parameter m0 [kg] = 3.2\n parameter added per experiment [kg] = 0\n"
+      " parameter c [N s/m] ~ log_uniform(1, 2)\n m0*y'' + c*y' = x\n observe y ~ normal(y, sd = 1)\n}\n"
+      "data bench {\n file \"a.csv\"\n constant added = 500 [g]\n}\n";
+  std::string page = report_html(report, {});
+  CHECK(page.find("m0 <span class=\"unit\">kg</span></th><td>fixed</td><td></td><td class=\"n\">3.2</td>") != std::string::npos);
+  CHECK(page.find("added[bench] <span class=\"unit\">g</span></th><td>fixed</td><td></td><td class=\"n\">500</td>") !=
+        std::string::npos);
+  CHECK(test::broken_rules(page) == "");
+  // A prediction has no summary, and of the data blocks it does not know.
+  report.model_text = report.resolved_text.substr(0, report.resolved_text.find("data bench"));
+  report.resolved_text.clear();
+  report.summary.clear();
+  page = report_html(report, {});
+  CHECK(page.find("Fixed parameters") != std::string::npos);
+  CHECK(page.find("added[bench]") == std::string::npos);
+}
+
+TEST_CASE("names begin as they are written, words with a capital, and units have one form") {
+  Report report = example::duffing(20);
+  report.data[0].notes = {"input base = base_acc [m/s^2], linear"};
+  std::string const page = run_html({{{report, {}}},
+                                     {{"fitted to rig", "", {"fit", "model", "noise"}, {{"e", "f", "sigma 0.1 m/s^2"}}},
+                                      {"acc on rig.test", "", {"prediction", "nmse [%]"}, {{"e", "1"}}}},
+                                     "",
+                                     {}});
+  CHECK(page.find("<span>Fitted to rig</span></caption>") != std::string::npos);
+  CHECK(page.find("<span>acc on rig.test</span></caption>") != std::string::npos);
+  CHECK(page.find("sigma 0.1 m/s²") != std::string::npos);
+  CHECK(page.find("base_acc [m/s²], linear") != std::string::npos);
+  CHECK(page.find("m/s^2") == std::string::npos);
+}
+
+TEST_CASE("the verdict's headline is words: capitalised before a colon, without the equations of a discovery") {
+  Report report = example::duffing(20);
+  report.verdict = "unfinished: the run was interrupted";
+  CHECK(report_html(report, {}).find("<p class=\"headline\">Unfinished: the run was interrupted</p>") != std::string::npos);
+  report.verdict = "x' = -10*x; z' = 2*y; the checks pass";
+  report.discovery = DiscoveryReport();
+  report.discovery->equations.resize(2);
+  report.discovery->equations[0].equation = "x' = -10*x";
+  report.discovery->equations[1].equation = "z' = 2*y";
+  CHECK(report_html(report, {}).find("<p class=\"headline\">The checks pass</p>") != std::string::npos);
+  report.discovery->equations[1] = {};
+  report.discovery->equations[1].target = "z'";
+  std::string const page = run_html({{{report, {}}}, {}, "", {}});
+  CHECK(page.find("<p class=\"headline\">Nothing found for <code>z'</code>; the checks pass</p>") != std::string::npos);
+  CHECK(page.find("<b>nothing found for <code>z'</code>; the checks pass</b>") != std::string::npos);
+}
+
+TEST_CASE("what stands in the target of a discovery is always kept, and the source of the share of particles is named") {
+  DiscoveryReport discovery;
+  discovery.measure = "inclusion probability";
+  discovery.equations.resize(1);
+  discovery.equations[0].equation = "J*th'' = 2*y";
+  discovery.equations[0].terms.resize(1);
+  discovery.equations[0].terms[0].fate = "known";
+  CHECK(discovery_tables(discovery)[0].rows[0][1] == "always kept");
+  SelectionReport selection;
+  selection.result.models.resize(1);
+  CHECK(selection_tables(selection)[0].caption.find("Worden et al. (8.21)") != std::string::npos);
+}

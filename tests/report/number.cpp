@@ -68,6 +68,23 @@ TEST_CASE("the numbers of a row share one power of ten") {
   CHECK(format_summary(summary(2.5e-6, 1e-7, 1e-9)).mean == "2.500e-6");
 }
 
+TEST_CASE("a spread of quite another size than its mean has a power of ten of its own") {
+  SummaryText const wide = format_summary(summary(1.087e-6, 20, std::nan("")));
+  CHECK(wide.sd == "20");
+  Summary optimum = summary(1.087e-6, 20, std::nan(""));
+  optimum.q5 = optimum.q95 = std::nan("");
+  CHECK(format_summary(optimum).mean == "1e-6");
+  CHECK(format_summary(optimum).sd == "20");
+  optimum.mean = optimum.median = -2.155e-6;
+  optimum.sd = 1.000007;
+  CHECK(format_summary(optimum).mean == "-2e-6");
+  CHECK(format_summary(optimum).sd == "1.0");
+  CHECK(format_summary(summary(-0.030096, 4.8e-5, 5e-6)).sd == "0.000048");
+  optimum.mean = optimum.median = 4.986e9;
+  optimum.sd = 0.004;
+  CHECK(format_summary(optimum).sd == "0.0040");
+}
+
 TEST_CASE("a parameter that never moved still has a readable row") {
   Summary s = summary(3.0, 0, 0);
   s.rhat = s.ess_bulk = s.ess_tail = s.mcse_mean = std::nan("");
@@ -91,6 +108,8 @@ TEST_CASE("units are shown with dots and raised powers, and what is no whole num
   CHECK(pretty_unit("m^1.5") == "m^1.5");
   CHECK(pretty_unit("m^") == "m^");
   CHECK(pretty_unit("m^-") == "m^-");
+  CHECK(pretty_powers("sigma 0.472 m/s^2, n 2 m^1.5") == "sigma 0.472 m/s², n 2 m^1.5");
+  CHECK(pretty_units("input x = a [N s/m^2], y[1] = y^2 [m^-1") == "input x = a [N·s/m²], y[1] = y^2 [m^-1");
   CHECK(pretty_number("-4.9e9") == "−4.9·10⁹");
   CHECK(pretty_number("-") == "-");
 }
