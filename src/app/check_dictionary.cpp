@@ -23,7 +23,7 @@ DictionaryPage describe_dictionary(CheckedDictionary const& dictionary) {
     DictionaryPage::Equation entry{equation.text, equation.unit ? equation.unit->text : std::string(), {}};
     for (DictionaryTerm const& term : equation.terms)
       entry.terms.push_back({term.text, term.unit ? term.unit->text : "",
-                             term.in_target             ? "known, in the target"
+                             term.in_target             ? "in the target, always kept"
                              : term.coefficient.empty() ? ""
                                                         : "coefficient " + term.coefficient});
     page.equations.push_back(std::move(entry));

@@ -90,7 +90,7 @@ bool add_coverage(Report& report, bool fed_back) {
       any = true;
       report.findings.push_back(
           {Severity::warning, "coverage_low",
-           fmt::format("only {:.0f} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
+           fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
            fed_back
                ? "a free run leaves out the noise that feeds back into later samples: its bands are those of the parameters and "
                  "of each sample's own noise"

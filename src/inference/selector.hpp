@@ -25,7 +25,7 @@ struct PopulationRecord {
   };
   std::vector<OfModel> models;
 
-  /// The tutorial's (8.21): a part of the particles, which is no probability after the second population.
+  /// Worden et al. (8.21): a part of the particles, which is no probability after the second population.
   double share(int model) const;
   /// Accepted part of the proposals; 1 before the first.
   double acceptance() const;
