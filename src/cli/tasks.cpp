@@ -73,7 +73,7 @@ ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<s
     std::ostream nowhere(nullptr);
     SilentProgress silent;
     TerminalProgress terminal;
-    WrappedOutput out(std::cout, STDOUT_FILENO), notices(std::cerr, STDERR_FILENO);
+    LineOutput out(std::cout, wrapped_for(STDOUT_FILENO)), notices(std::cerr, wrapped_for(STDERR_FILENO));
     return run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal, out,
                      options.quiet ? nowhere : notices);
   });

@@ -104,7 +104,7 @@ bool Workbench::answer(ast::Expression const& tree, std::string const& text) {
     said = described(*quantity) + "\n";
   }
   show(diagnostics, text);
-  if (said) voices_.answers << *said << std::flush;
+  if (said) answer_lines(*said);
   return said.has_value();
 }
 

@@ -20,7 +20,7 @@ bool Workbench::check(Arguments) {
   Session session(checked_->source, checked_->file, options_, progress_, nowhere, nowhere);
   CheckResult const result = check_file(session);
   voices_.messages << at_the_prompt(render(result.diagnostics, checked_->source, voices_.colour)) << std::flush;
-  voices_.answers << check_text(result.page) << std::flush;
+  answer_lines(check_text(result.page));
   return !result.diagnostics.has_errors();
 }
 
@@ -133,7 +133,7 @@ bool Workbench::compare(Arguments tasks) {
     }
     folders.push_back(result->folder);
   }
-  voices_.answers << comparison_text(sysid::compare(folders)) << std::flush;
+  answer_lines(comparison_text(sysid::compare(folders)));
   return true;
 }
 

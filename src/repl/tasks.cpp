@@ -9,44 +9,11 @@
 #include "app/results.hpp"
 #include "app/stored_draws.hpp"
 #include "core/interrupt.hpp"
+#include "core/wrapped.hpp"
 #include "repl/workbench.hpp"
 #include "report/result.hpp"
 
 namespace sysid::repl {
-namespace {
-
-/// Notices in the words of the prompt, line by line as they come.
-class PromptWords : public std::streambuf {
- public:
-  explicit PromptWords(std::ostream& out) : out_(out) {}
-  ~PromptWords() override {
-    if (!line_.empty()) out_ << at_the_prompt(line_) << std::flush;
-  }
-  PromptWords(PromptWords const&) = delete;
-  PromptWords& operator=(PromptWords const&) = delete;
-
- protected:
-  int_type overflow(int_type c) override {
-    if (c == traits_type::eof()) return traits_type::not_eof(c);
-    line_ += traits_type::to_char_type(c);
-    if (c == '\n') {
-      out_ << at_the_prompt(line_) << std::flush;
-      line_.clear();
-    }
-    return c;
-  }
-
- private:
-  std::ostream& out_;
-  std::string line_;
-};
-
-std::string verb_of(Task const& task) {
-  constexpr std::string_view verbs[] = {"simulate", "fit", "select", "discover", "predict"};
-  return std::string(verbs[task.what.index()]);
-}
-
-}  // namespace
 
 Result* Workbench::find_result(std::string_view task) {
   auto const place = std::find_if(results_.begin(), results_.end(), [&](Result const& each) { return each.task == task; });
@@ -83,8 +50,7 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
   options.seed.reset();  // it stands in the task
   options.resume = resume;
   options.force = options_.force || made_.contains(name);
-  PromptWords words(voices_.messages);
-  std::ostream notices(&words);
+  LineOutput notices(voices_.messages, [](std::string const& line) { return at_the_prompt(line); });
   std::ostringstream answers;
   Session session(checked->source, checked->file, options, progress_, answers, notices);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -118,7 +84,7 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
   // Stopped before its first draw, a task stays in the work: `resume` goes on with it.
   if (!something) return exit == ExitCode::interrupted;
   keep(session, *place, index, at_the_prompt(answers.str()));
-  voices_.answers << at_the_prompt(answers.str()) << std::flush;
+  answer_lines(at_the_prompt(answers.str()));
   return true;
 }
 

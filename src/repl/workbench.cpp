@@ -8,6 +8,7 @@
 
 #include "app/experiments.hpp"
 #include "app/pipeline.hpp"
+#include "core/wrapped.hpp"
 #include "repl/change.hpp"
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"
@@ -54,6 +55,8 @@ Workbench::Workbench(RunOptions options, Progress& progress, Voices voices)
 Workbench::~Workbench() = default;
 
 void Workbench::say(std::string const& line) { voices_.messages << line << '\n' << std::flush; }
+
+void Workbench::answer_lines(std::string const& text) { voices_.answers << wrapped(text, voices_.columns()) << std::flush; }
 
 bool Workbench::refuse(std::string const& message, std::string const& help) {
   say(fmt::format("{}{}{}", message, help.empty() ? "" : "\nhelp: ", help));

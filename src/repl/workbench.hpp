@@ -1,6 +1,7 @@
 // A session at the prompt: the work so far, what its tasks have left, and what an entry does to them. Knows no terminal.
 #pragma once
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <ostream>
@@ -25,7 +26,8 @@ namespace sysid::repl {
 struct Voices {
   std::ostream& answers;
   std::ostream& messages;
-  bool colour = false;  // of messages
+  bool colour = false;                              // of messages
+  std::function<int()> columns = [] { return 0; };  // of the terminal that shows the answers; 0: there is none
 };
 
 /// A word at the prompt that is no statement of the language.
@@ -82,6 +84,8 @@ class Workbench {
   void show(Diagnostics const& diagnostics, Source const& source, Work const& work, std::string const& entry);
   bool refuse(std::string const& message, std::string const& help = "");
   void say(std::string const& line);
+  /// What tasks print, numbers, plots: wrapped for the terminal. Sources are answered as they are.
+  void answer_lines(std::string const& text);
   /// Runs what may throw; false when it did, with what it said.
   bool guarded(Source const& source, std::function<bool()> const& act);
   std::set<std::string> tasks_run() const;

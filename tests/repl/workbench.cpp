@@ -223,6 +223,33 @@ TEST_CASE("a file is loaded, changed, loaded again; its paths are those of its f
   CHECK_FALSE(other.enter("show last"));
 }
 
+TEST_CASE("a narrow screen wraps what tasks say, and neither sources nor tables") {
+  Dialogue wide, narrow(50);
+  std::string const comment = "# a comment of more words than a line of fifty columns has room for\n";
+  for (Dialogue* d : {&wide, &narrow}) {
+    d->begin();
+    REQUIRE(d->enter(comment + "function twice(a) = 2*a"));
+    REQUIRE_MESSAGE(d->enter("first = fit oscillator to bench.train with map"), d->messages());
+  }
+  CHECK(has(wide.answers(), "chi_squared_per_sample"));
+  auto const widest = [](std::string const& text) {
+    std::istringstream lines(text);
+    std::size_t most = 0;
+    for (std::string line; std::getline(lines, line);) most = std::max(most, line.size());
+    return most;
+  };
+  CHECK(widest(wide.answers()) > 80);
+  CHECK(widest(narrow.answers()) < 60);
+  for (char const* entry : {"show oscillator", "show twice", "list"}) {
+    CAPTURE(entry);
+    for (Dialogue* d : {&wide, &narrow}) REQUIRE(d->enter(entry));
+    CHECK(wide.answers() == narrow.answers());
+  }
+  REQUIRE(narrow.enter("list kernels"));
+  CHECK(widest(narrow.answers()) < 75);  // a signature
+  CHECK(has(narrow.answers(), "\n    "));
+}
+
 TEST_CASE("from a pipe nothing is repeated, and the exit code says whether an entry has failed") {
   auto const exit = [](std::string const& text, std::string* answers = nullptr) {
     Dialogue d;
