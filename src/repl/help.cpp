@@ -9,7 +9,7 @@
 #include "app/lists.hpp"
 #include "app/module_page.hpp"
 #include "core/wrapped.hpp"
-#include "repl/quantity.hpp"
+#include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"
 
@@ -178,9 +178,8 @@ std::optional<std::string> help_on(std::string const& word, int columns) {
   auto const add_rows = [&](std::string const& rows) { add(wrapped_rows(rows, columns)); };
   for (CommandRow const& row : commands())
     if (row.name == word) add_rows(fmt::format("{}\n  {}\n", row.usage, row.summary));
-  for (auto const rows : {statistics(), series_functions()})
-    for (PromptFunction const& row : rows)
-      if (row.name == word) add_rows(fmt::format("{} (at the prompt)\n  {}\n", row.usage, row.summary));
+  for (PromptFunction const& row : prompt_functions())
+    if (row.name == word) add_rows(fmt::format("{} (at the prompt)\n  {}\n", row.usage, row.summary));
   for (std::string_view const plot : {"plot", "trace", "histogram"})
     if (word == plot)
       add_rows(
@@ -217,8 +216,7 @@ std::vector<std::string> const& words_with_help() {
   static std::vector<std::string> const all = [] {
     std::vector<std::string> words = {"plot", "trace", "histogram"};
     for (CommandRow const& row : commands()) words.emplace_back(row.name);
-    for (auto const rows : {statistics(), series_functions()})
-      for (PromptFunction const& row : rows) words.emplace_back(row.name);
+    for (PromptFunction const& row : prompt_functions()) words.emplace_back(row.name);
     for (KeywordRow const& row : keyword_rows) words.emplace_back(row.word);
     for (ListRow const& topic : lists()) add_words(topic, words);
     std::sort(words.begin(), words.end());

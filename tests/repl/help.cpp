@@ -16,6 +16,7 @@
 #include "inference/selector.hpp"
 #include "regression/columns.hpp"
 #include "regression/selector.hpp"
+#include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"
 
@@ -41,7 +42,7 @@ TEST_CASE("every word of the language, every setting and every code of a message
   add_rows(functions()), add_rows(distributions()), add_rows(gaussian_process::kernels()), add_rows(generators());
   add_settings(backends()), add_settings(selectors()), add_settings(solvers());
   add_settings(regression::selectors()), add_settings(regression::forms());
-  add_rows(repl::commands()), add_rows(repl::statistics()), add_rows(repl::series_functions());
+  add_rows(repl::commands()), add_rows(repl::prompt_functions());
   for (char const* option : {"start",  "solver",   "substeps", "prediction",      "seed",       "search",  "draws",
                              "redraw", "distance", "weights",  "values",          "noise",      "samples", "rate",
                              "file",   "E2103",    "2103",     "chains_disagree", "hysteresis", "plot",    "trace"})

@@ -155,6 +155,48 @@ TEST_CASE("expressions over draws are computed draw by draw, with units") {
   CHECK_FALSE(d.enter("quantile(k, 95)"));
 }
 
+TEST_CASE("draws of different fits, and samples of different records, are not paired") {
+  Dialogue d;
+  d.begin();
+  std::string const with = " with mh(samples = 400, burn_in = 200, thin = 2, chains = 2)";
+  REQUIRE(d.enter("a = fit oscillator to bench.train" + with));
+  REQUIRE(d.enter("b = fit oscillator to bench.train" + with + ", seed = 2"));
+  for (char const* entry : {"corr(a.k, b.k)", "plot(a.k, b.k)", "mean(a.k - b.k)"}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), "draws of a and draws of b do not go together one by one"), d.messages());
+  }
+  CHECK(d.enter("corr(a.k, a.c)"));
+  CHECK(d.enter("mean(a.k) - mean(b.k)"));
+  // Two predictions of one record go together; those of as many rows of another one do not.
+  CHECK(d.enter("rms(predicted(a.displacement) - predicted(b.displacement))"));
+  CHECK(d.enter("corr(residual(a.displacement), residual(b.displacement))"));
+  REQUIRE(d.enter("split train = rows 1..200, later = rows 101..300"));
+  REQUIRE(d.enter("forecast = predict a on bench.train with draws(20)"));
+  REQUIRE(d.enter("other = predict a on bench.later with draws(20)"));
+  for (char const* entry : {"corr(residual(forecast.displacement), residual(other.displacement))",
+                            "plot(predicted(forecast.displacement), predicted(other.displacement))"}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), "rows of a record"), d.messages());
+  }
+}
+
+TEST_CASE("an optimum says that it has no draws, whatever is asked of it") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("best = fit oscillator to bench.train with map"));
+  for (char const* entry :
+       {"probability(k > 1 [N/m])", "quantile(k, 0.5)", "corr(k, c)", "sd(2*k)", "plot(k, c)", "plot(k)", "plot(k/c)"}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), "`best` is an optimum, one point: it has no draws"), d.messages());
+  }
+  CHECK(d.enter("sd(k)"));
+  CHECK_FALSE(d.enter("plot(mean(k), k)"));
+  CHECK(has(d.messages(), "this is one number"));
+}
+
 TEST_CASE("plots are drawn in the size asked for, of what they are said to be of") {
   Dialogue d;
   d.begin();
