@@ -14,6 +14,16 @@
 #include "report/result.hpp"
 
 namespace sysid::repl {
+namespace {
+
+/// The task whose draws this one begins from.
+std::optional<int> earlier_of(Task const& task) {
+  if (auto const* fit = std::get_if<FitTask>(&task.what)) return fit->near;
+  if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->fit;
+  return std::nullopt;
+}
+
+}  // namespace
 
 Result* Workbench::find_result(std::string_view task) {
   auto const place = std::find_if(results_.begin(), results_.end(), [&](Result const& each) { return each.task == task; });
@@ -57,6 +67,13 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
     if (auto const known = fitted_.find(tasks[i].name); known != fitted_.end()) session.fitted[static_cast<int>(i)] = known->second;
     if (auto const known = selected_.find(tasks[i].name); known != selected_.end())
       session.selected[static_cast<int>(i)] = known->second;
+  }
+  if (auto const earlier = earlier_of(*place)) {
+    Task const& needed = tasks[static_cast<std::size_t>(*earlier)];
+    bool const there = session.fitted.contains(*earlier) || session.selected.contains(*earlier);
+    if (!there && !sysid::complete(session.result_folder(needed)))
+      return refuse(fmt::format("`{}` begins from the draws of `{}`, and there are none yet", name, needed.name),
+                    fmt::format("`{} {}`", interrupted_.contains(needed.name) ? "resume" : "run", needed.name));
   }
   clear_interrupt();
   auto const index = static_cast<int>(place - tasks.begin());

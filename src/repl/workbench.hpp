@@ -20,6 +20,10 @@
 #include "repl/result.hpp"
 #include "repl/work.hpp"
 
+namespace sysid {
+struct Comparison;
+}
+
 namespace sysid::repl {
 
 /// Where what is said goes: answers, and messages about them.
@@ -110,6 +114,8 @@ class Workbench {
   bool run(Arguments tasks);
   bool refit(Arguments);
   bool compare(Arguments tasks);
+  /// Models by the names of `list`, where what a task ran on is kept beside what it has become.
+  void use_names_of_work(Comparison& comparison) const;
   bool resume(Arguments task);
 
   // --- work_commands.cpp
