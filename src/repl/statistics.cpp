@@ -26,11 +26,12 @@ double sum_of_products(Values const& a, Values const& b) {
   return sum;
 }
 
-/// False, and said so, where it is asked of one number.
-bool scatters(Asked const& asked) {
-  if (asked.of.values.size() > 1) return true;
-  auto const [message, help] = without_draws(asked.of);
-  asked.refuse(asked.call.arguments[0].span, message, help);
+/// False, and said so, where an argument is one number.
+bool scatters(Asked const& asked, std::size_t argument = 0) {
+  Quantity const& quantity = argument == 0 ? asked.of : *asked.other;
+  if (quantity.values.size() > 1) return true;
+  auto const [message, help] = without_draws(quantity);
+  asked.refuse(asked.call.arguments[argument].span, message, help);
   return false;
 }
 
@@ -63,7 +64,7 @@ Value rms(Asked const& asked) {
 }
 
 Value corr(Asked const& asked) {
-  if (!scatters(asked)) return {};
+  if (!scatters(asked) || !scatters(asked, 1)) return {};
   if (auto const why = unpaired(asked.of, *asked.other)) {
     asked.refuse(asked.call.span, *why, "correlation pairs draws of one fit, or samples of one record");
     return {};

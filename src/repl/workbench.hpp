@@ -83,6 +83,8 @@ class Workbench {
              std::vector<std::string>& notices);
   /// Checks the draft and makes it the work, or shows what is wrong with it.
   bool adopt(Work draft, std::string const& entry);
+  /// Asks the files of data blocks that a draft adds or changes for their columns, as far as the files are there.
+  void ask_for_columns(Work const& draft, Source const& source, CheckedFile const& file, Diagnostics& diagnostics);
   void show(Diagnostics const& diagnostics, std::string const& entry);
   /// Diagnostics about the text of a work: places in what was typed are shown there.
   void show(Diagnostics const& diagnostics, Source const& source, Work const& work, std::string const& entry);

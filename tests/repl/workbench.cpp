@@ -156,6 +156,22 @@ TEST_CASE("a mistake shows where it stands in what was typed, and leaves the wor
   CHECK(d.workbench().work().text() == before);
 }
 
+TEST_CASE("a column that is not in the file is told when it is entered, at its place") {
+  Dialogue d;
+  d.begin();
+  std::string const before = d.workbench().work().text();
+  CHECK_FALSE(d.enter("measure displacement = displacment [m]"));
+  CHECK_MESSAGE(has(d.messages(), "prompt:1:24: error[E4008]"), d.messages());
+  CHECK(has(d.messages(), "did you mean `displacement`?"));
+  CHECK_FALSE(d.enter("data other { file \"" + d.path("results/made/made.csv") + "\"; time t [s]; input x = z [N] hold linear }"));
+  CHECK(has(d.messages(), "has no column `z`"));
+  CHECK(d.workbench().work().text() == before);
+  // Nobody knows what will stand in a file that is not there yet.
+  CHECK_MESSAGE(d.enter("data later { file \"later.csv\"; time t [s]; input x = z [N] hold linear }"), d.messages());
+  CHECK_MESSAGE(d.enter("change bench"), d.messages());
+  CHECK_MESSAGE(d.enter("measure displacement = displacement [m]"), d.messages());
+}
+
 TEST_CASE("a task that cannot run is no part of the work") {
   Dialogue d;
   d.begin();
@@ -203,6 +219,8 @@ TEST_CASE("draws of different fits, and samples of different records, are not pa
     CHECK_MESSAGE(has(d.messages(), "draws of a and draws of b do not go together one by one"), d.messages());
   }
   CHECK(d.enter("corr(a.k, a.c)"));
+  CHECK_FALSE(d.enter("corr(a.k, mean(a.c))"));
+  CHECK(has(d.messages(), "this is one number"));
   CHECK(d.enter("mean(a.k) - mean(b.k)"));
   // Two predictions of one record go together; those of as many rows of another one do not.
   CHECK(d.enter("rms(predicted(a.displacement) - predicted(b.displacement))"));
