@@ -32,14 +32,6 @@ std::vector<BackendSettings> settings_of(Rows const& all) {
   return rows;
 }
 
-std::string verb_of(Task const& task) {
-  return std::holds_alternative<SimulateTask>(task.what)   ? "simulate"
-         : std::holds_alternative<FitTask>(task.what)      ? "fit"
-         : std::holds_alternative<SelectTask>(task.what)   ? "select"
-         : std::holds_alternative<DiscoverTask>(task.what) ? "discover"
-                                                           : "predict";
-}
-
 std::string dump(CandidateSet const& set) {
   std::string text = fmt::format("candidates {}{}\n", set.name, set.title.empty() ? "" : " \"" + set.title + "\"");
   for (CandidateModel const& each : set.models) text += fmt::format("  {} probability {}\n", each.name, each.probability);
@@ -69,6 +61,14 @@ std::string nothing_to_do(Source const& source, CheckedFile const& file, std::ve
 }
 
 }  // namespace
+
+std::string verb_of(Task const& task) {
+  return std::holds_alternative<SimulateTask>(task.what)   ? "simulate"
+         : std::holds_alternative<FitTask>(task.what)      ? "fit"
+         : std::holds_alternative<SelectTask>(task.what)   ? "select"
+         : std::holds_alternative<DiscoverTask>(task.what) ? "discover"
+                                                           : "predict";
+}
 
 std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved) {
   ReadableFile const read = parse_readable(source, diagnostics);

@@ -25,6 +25,9 @@ struct Loaded {
 /// modules join it. IoError when a module cannot be read.
 std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved = {});
 
+/// "fit": the verb that a task is written with.
+std::string verb_of(Task const& task);
+
 /// What `--dump STAGE` prints: ast, flat, model or program.
 std::string dump_stage(Source& source, std::string const& stage, Diagnostics& diagnostics);
 

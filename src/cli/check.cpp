@@ -1,5 +1,6 @@
 // check: messages and a page about a file before any sampling.
 #include <unistd.h>
+
 #include <sstream>
 
 #include "app/check_file.hpp"
@@ -26,7 +27,7 @@ ExitCode fill_page(Messages const& messages, CheckOptions const& options, CheckP
     for (Diagnostics const* each : {&said, static_cast<Diagnostics const*>(&result.diagnostics)})
       for (Diagnostic const& one : each->all()) ++(one.severity == Severity::error ? result.page.errors : result.page.warnings);
     page = std::move(result.page);
-    if (!messages.json) WrappedOutput(std::cout, STDOUT_FILENO) << check_text(page);
+    if (!messages.json) std::cout << wrapped(check_text(page), terminal_columns(STDOUT_FILENO));
     if (result.diagnostics.has_errors()) return result.unreadable ? ExitCode::io : ExitCode::user_error;
     return grade(page) == Severity::error ? ExitCode::doubtful : ExitCode::success;
   });

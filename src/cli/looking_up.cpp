@@ -12,8 +12,9 @@
 namespace sysid::cli {
 namespace {
 
-ExitCode print(std::string const& page) {
-  WrappedOutput(std::cout, STDOUT_FILENO) << page;
+/// laid_out: for a terminal of so many columns.
+ExitCode print(std::string const& text, std::string (*laid_out)(std::string_view, int)) {
+  std::cout << laid_out(text, terminal_columns(STDOUT_FILENO));
   return ExitCode::success;
 }
 
@@ -30,15 +31,16 @@ Work declare_list(CLI::App& verb) {
   std::vector<std::string> topics;
   for (ListRow const& row : lists()) topics.emplace_back(row.name);
   verb.add_option("TABLE", *table, list_topics())->required()->check(CLI::IsMember(topics));
-  return [table](Messages const&) { return print(find_list(*table)->text()); };
+  return [table](Messages const&) { return print(find_list(*table)->text(), &wrapped_rows); };
 }
 
 Work declare_explain(CLI::App& verb) {
   auto const code = std::make_shared<std::string>();
   verb.add_option("CODE", *code, "of a message or a finding, such as E2001 or chains_disagree; none: list all");
   return [code](Messages const& messages) {
-    std::optional<std::string> const page = code->empty() ? list_codes() : explain(*code);
-    return page ? print(*page) : unknown(messages, "message " + *code, "explain");
+    if (code->empty()) return print(list_codes(), &wrapped_rows);
+    std::optional<std::string> const page = explain(*code);
+    return page ? print(*page, &filled) : unknown(messages, "message " + *code, "explain");
   };
 }
 
@@ -47,12 +49,12 @@ Work declare_document(CLI::App& verb) {
   verb.add_option("MODULE", *module, "one of `sysid list modules`")->required();
   return [module](Messages const& messages) {
     auto const page = module_page(*module);
-    return page ? print(*page) : unknown(messages, "module " + *module, "list modules");
+    return page ? print(*page, &filled) : unknown(messages, "module " + *module, "list modules");
   };
 }
 
 Work declare_version(CLI::App&) {
-  return [](Messages const&) { return print(fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set()))); };
+  return [](Messages const&) { return print(fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())), &wrapped); };
 }
 
 }  // namespace sysid::cli

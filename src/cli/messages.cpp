@@ -17,7 +17,7 @@ void Messages::show(Diagnostics const& diagnostics, Source const& source) const 
   if (json)
     *out << render_json(diagnostics, source);
   else
-    WrappedOutput(*out, STDERR_FILENO) << render(diagnostics, source, coloured_messages());
+    *out << wrapped(render(diagnostics, source, coloured_messages()), terminal_columns(STDERR_FILENO)) << std::flush;
 }
 
 void Messages::complain(std::string message, std::string help) const {

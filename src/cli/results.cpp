@@ -1,5 +1,6 @@
 // compare, report: what can be made of results that are there.
 #include <unistd.h>
+
 #include "app/compare.hpp"
 #include "app/report_results.hpp"
 #include "cli/command.hpp"
@@ -16,7 +17,7 @@ Work declare_compare(CLI::App& verb) {
     if (messages.json)
       std::cout << comparison_json(comparison);
     else
-      WrappedOutput(std::cout, STDOUT_FILENO) << comparison_text(comparison);
+      std::cout << wrapped(comparison_text(comparison), terminal_columns(STDOUT_FILENO));
     return ExitCode::success;
   };
 }

@@ -68,14 +68,17 @@ ExitCode dump(Messages const& messages, TaskOptions const& options) {
 }
 
 ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<std::string> const& kinds) {
+  install_interrupt_handlers();  // a request that comes while the file is read stops the first task
   return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
-    install_interrupt_handlers();
     std::ostream nowhere(nullptr);
     SilentProgress silent;
     TerminalProgress terminal;
-    WrappedOutput out(std::cout, STDOUT_FILENO), notices(std::cerr, STDERR_FILENO);
-    return run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal, out,
-                     options.quiet ? nowhere : notices);
+    LineOutput out(std::cout, wrapped_for(STDOUT_FILENO)), notices(std::cerr, wrapped_for(STDERR_FILENO));
+    ExitCode const exit = run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal,
+                                    out, options.quiet ? nowhere : notices);
+    // Nothing else may have said so: before the first draw there is no summary.
+    if (options.quiet && exit == ExitCode::interrupted) std::cerr << "sysid: interrupted; --resume goes on with what there is\n";
+    return exit;
   });
 }
 

@@ -1,5 +1,6 @@
-// Prose for a terminal: long lines go on below, broken between words.
+// Text for a terminal, line by line and page by page: where it is narrower than a line, the line goes on below between words.
 #pragma once
+#include <functional>
 #include <ostream>
 #include <streambuf>
 #include <string>
@@ -7,23 +8,34 @@
 
 namespace sysid {
 
-/// One line (without its end) in lines of at most `columns`, where its words allow; what goes on is four further in. Lines of
-/// tables, pictures and marked sources, whose columns have a meaning, are left as they are.
-std::string wrapped(std::string_view line, int columns);
+/// What tasks print, each line in lines of at most `columns` where its words allow; what goes on is four further in. Lines of
+/// tables, pictures and marked sources, whose columns have a meaning, are left as they are. columns: 0, as in all of these, where
+/// there is no terminal: the text as it is.
+std::string wrapped(std::string_view text, int columns);
+
+/// A page of prose: its paragraphs, lines that follow one another in column 0, and its list items are joined and filled anew.
+/// Headings, tables of Markdown, fenced lines and indented ones are left as they are.
+std::string filled(std::string_view page, int columns);
+
+/// Rows whose last column, two spaces behind the others, is prose: it goes on below itself, or below its row where there is too
+/// little room beside the others.
+std::string wrapped_rows(std::string_view rows, int columns);
 
 /// Columns of the terminal behind a file descriptor; 0 where there is none.
 int terminal_columns(int descriptor);
 
-/// Passes on what is written, line by line, wrapped for the terminal behind the descriptor; as it is where there is none.
-class WrappedOutput : public std::ostream {
+/// Passes on what is written, line by line, as a function makes it of each (without its end). Where a line is flushed before its
+/// end, it is passed on as it is.
+class LineOutput : public std::ostream {
  public:
-  WrappedOutput(std::ostream& sink, int descriptor);
-  ~WrappedOutput() override;
+  using OfLine = std::function<std::string(std::string const& line)>;
+  LineOutput(std::ostream& sink, OfLine of_line);
+  ~LineOutput() override;
 
  private:
   class Lines : public std::streambuf {
    public:
-    Lines(std::ostream& sink, int descriptor) : sink_(sink), descriptor_(descriptor) {}
+    Lines(std::ostream& sink, OfLine of_line) : sink_(sink), of_line_(std::move(of_line)) {}
     void end();
 
    protected:
@@ -35,12 +47,15 @@ class WrappedOutput : public std::ostream {
     void put(char character);
 
     std::ostream& sink_;
-    int descriptor_;
+    OfLine of_line_;
     std::string line_;    // what has come of it
     bool begun_ = false;  // part of the line has been passed on
   };
 
   Lines lines_;
 };
+
+/// `wrapped` for the terminal behind a descriptor, whose window may change its size between two lines.
+LineOutput::OfLine wrapped_for(int descriptor);
 
 }  // namespace sysid

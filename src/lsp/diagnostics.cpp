@@ -46,10 +46,13 @@ Json as_json(Diagnostic const& diagnostic, Source const& source, assist::Reading
 }  // namespace
 
 Json diagnostics(Documents& documents, Document& document) {
-  assist::Judgement const found = assist::judge(document.path, document.text, documents.unsaved());
+  document.asked.clear();
+  auto const text_of = [&, unsaved = documents.unsaved()](std::string const& path) {
+    document.asked.push_back(uri_of(path));
+    return unsaved(path);
+  };
+  assist::Judgement const found = assist::judge(document.path, document.text, text_of);
   document.judged = true;
-  document.used.clear();
-  for (int file = 1; file < found.source.files(); ++file) document.used.push_back(uri_of(found.source.name(file)));
   Json all = Json::array();
   for (Diagnostic const& each : found.diagnostics.all()) {
     bool const elsewhere = each.primary && found.source.place(each.primary->span.begin).file > 0;

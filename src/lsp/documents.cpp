@@ -50,7 +50,22 @@ Document& Documents::open(std::string const& uri, std::string text, std::int64_t
   document.path = path_of(uri);
   document.text = std::move(text);
   document.version = version;
+  touch_users(document);
   return document;
+}
+
+void Documents::close(std::string const& uri) {
+  // What is in the file counts from now on.
+  touch_users(at(uri));
+  all_.erase(uri);
+}
+
+void Documents::touch_users(Document const& module) {
+  for (auto& [uri, document] : all_)
+    if (std::find(document.asked.begin(), document.asked.end(), uri_of(module.path)) != document.asked.end()) {
+      document.judged = false;
+      document.read = false;
+    }
 }
 
 Document& Documents::at(std::string const& uri) {
@@ -76,6 +91,7 @@ void Documents::change(Document& document, Json const& changes, std::int64_t ver
   document.judged = false;
   document.read = false;
   document.reading = nullptr;
+  touch_users(document);
 }
 
 UnsavedText Documents::unsaved() const {

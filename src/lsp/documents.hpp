@@ -34,7 +34,7 @@ struct Document {
   std::string uri, path, text;
   std::int64_t version = 0;
   bool judged = false;                             // its diagnostics are those of this text
-  std::vector<std::string> used;                   // files of its last judgement
+  std::vector<std::string> asked;                  // files that its last judgement looked for, there or not
   std::shared_ptr<assist::Reading const> reading;  // of this text; null: not read yet, or it cannot be read
   bool read = false;
   std::shared_ptr<assist::Reading const> last_reading;  // the last that there was, with its text
@@ -44,7 +44,7 @@ struct Document {
 class Documents {
  public:
   Document& open(std::string const& uri, std::string text, std::int64_t version);
-  void close(std::string const& uri) { all_.erase(uri); }
+  void close(std::string const& uri);
   /// RequestError where it is not open.
   Document& at(std::string const& uri);
   /// Full and incremental changes, in order.
@@ -56,6 +56,9 @@ class Documents {
   UnsavedText unsaved() const;
 
  private:
+  /// Those that use it as a module say something else now.
+  void touch_users(Document const& module);
+
   std::map<std::string, Document> all_;
 };
 

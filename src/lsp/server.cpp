@@ -1,7 +1,6 @@
 // A table of requests, and the loop around it.
 #include "lsp/server.hpp"
 
-#include <algorithm>
 #include <functional>
 
 #include "lsp/features.hpp"
@@ -81,12 +80,6 @@ std::vector<Json> Server::notified(std::string const& method, Json const& params
   } else if (method == "textDocument/didChange") {
     Document& document = document_of(documents_, params);
     documents_.change(document, params.at("contentChanges"), params.at("textDocument").value("version", document.version + 1));
-    // Those that use it as a module say something else now.
-    for (auto& [uri, other] : documents_.all())
-      if (std::find(other.used.begin(), other.used.end(), uri_of(document.path)) != other.used.end()) {
-        other.judged = false;
-        other.read = false;
-      }
   } else if (method == "textDocument/didClose") {
     std::string const uri = document_of(documents_, params).uri;
     documents_.close(uri);

@@ -104,7 +104,7 @@ bool Workbench::answer(ast::Expression const& tree, std::string const& text) {
     said = described(*quantity) + "\n";
   }
   show(diagnostics, text);
-  if (said) voices_.answers << *said << std::flush;
+  if (said) answer_lines(*said);
   return said.has_value();
 }
 
@@ -141,10 +141,12 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
   if (arguments.size() == 2) {
     auto const x = evaluator.value(arguments[0].value), y = evaluator.value(arguments[1].value);
     if (!x || !y) return std::nullopt;
-    if (x->values.size() != y->values.size() || x->values.size() < 2)
-      return refuse(call.span,
-                    fmt::format("`{}` has {} values, `{}` has {}", x->label, x->values.size(), y->label, y->values.size()),
-                    "both are draws of one fit, or samples of one record");
+    for (Quantity const* each : {&*x, &*y})
+      if (each->values.size() < 2) {
+        auto const [message, help] = without_draws(*each);
+        return refuse(arguments[each == &*x ? 0 : 1].value.span, message, help);
+      }
+    if (auto const why = unpaired(*x, *y)) return refuse(call.span, *why, "both are draws of one fit, or samples of one record");
     drawn = plot_curves({{x->all_shown(), y->all_shown(), false}}, axis_of(*x), axis_of(*y), plot_size_);
   } else {
     ast::Expression const& what = arguments[0].value;
@@ -157,10 +159,10 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
       bool const histogram = inner != nullptr && (*inner)->function.text == "histogram" && (*inner)->arguments.size() == 1;
       auto const quantity = evaluator.value(trace || histogram ? (*inner)->arguments[0].value : what);
       if (!quantity) return std::nullopt;
-      if (quantity->values.size() < 2)
-        return refuse(
-            what.span, fmt::format("`{}` is one number", quantity->label),
-            quantity->kind == Quantity::Kind::draws ? "fit with mh for draws, or plot(residual(CHANNEL)), plot(FIT)" : examples);
+      if (quantity->values.size() < 2) {
+        auto const [message, help] = without_draws(*quantity);
+        return refuse(what.span, message, help.empty() ? examples : help + ", or plot(residual(CHANNEL)), plot(FIT)");
+      }
       if (trace)
         drawn = quantity->kind == Quantity::Kind::rows ? along_time(*quantity, plot_size_) : along_draws(*quantity, plot_size_);
       else if (histogram || quantity->kind == Quantity::Kind::draws)

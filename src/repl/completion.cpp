@@ -9,6 +9,7 @@
 
 #include "assist/completion.hpp"
 #include "repl/help.hpp"
+#include "repl/statistics.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::repl {
@@ -139,8 +140,7 @@ Words first_words() {
 
 Words functions_of_prompt() {
   Words words = {"plot", "trace", "histogram"};
-  for (auto const rows : {statistics(), series_functions()})
-    for (PromptFunction const& row : rows) words.emplace_back(row.name);
+  for (PromptFunction const& row : prompt_functions()) words.emplace_back(row.name);
   return words;
 }
 

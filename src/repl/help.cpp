@@ -8,7 +8,8 @@
 #include "app/explain.hpp"
 #include "app/lists.hpp"
 #include "app/module_page.hpp"
-#include "repl/quantity.hpp"
+#include "core/wrapped.hpp"
+#include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"
 
@@ -171,49 +172,51 @@ void add_words(ListRow const& topic, std::vector<std::string>& words) {
 
 std::span<KeywordRow const> keywords() { return keyword_rows; }
 
-std::optional<std::string> help_on(std::string const& word) {
+std::optional<std::string> help_on(std::string const& word, int columns) {
   std::string text;
   auto const add = [&](std::string const& more) { text += (text.empty() || more.empty() ? "" : "\n") + more; };
+  auto const add_rows = [&](std::string const& rows) { add(wrapped_rows(rows, columns)); };
   for (CommandRow const& row : commands())
-    if (row.name == word) add(fmt::format("{}\n  {}\n", row.usage, row.summary));
-  for (auto const rows : {statistics(), series_functions()})
-    for (PromptFunction const& row : rows)
-      if (row.name == word) add(fmt::format("{} (at the prompt)\n  {}\n", row.usage, row.summary));
+    if (row.name == word) add_rows(fmt::format("{}\n  {}\n", row.usage, row.summary));
+  for (PromptFunction const& row : prompt_functions())
+    if (row.name == word) add_rows(fmt::format("{} (at the prompt)\n  {}\n", row.usage, row.summary));
   for (std::string_view const plot : {"plot", "trace", "histogram"})
     if (word == plot)
-      add("plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)\n"
+      add_rows(
+          "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)\n"
           "  a plot in characters: draws in their order, how often which value, one thing against another, a series along its "
           "record,\n"
           "  what a fit or prediction makes of a record\n");
   for (KeywordRow const& row : keyword_rows)
-    if (row.word == word) add(entry_of(row));
-  for (ListRow const& topic : lists()) add(from_list(topic, word));
-  if (auto const page = module_page(word)) add(*page);
+    if (row.word == word) add_rows(entry_of(row));
+  for (ListRow const& topic : lists()) add_rows(from_list(topic, word));
+  if (auto const page = module_page(word)) add(filled(*page, columns));
   if (text.empty())
-    if (auto const section = explain(word)) add(*section);
+    if (auto const section = explain(word)) add(filled(*section, columns));
   return text.empty() ? std::nullopt : std::optional(text);
 }
 
-std::string help_overview() {
-  std::string text =
+std::string help_overview(int columns) {
+  std::string const first =
       "Statements of the language, as in a file: a model, a data block, a task; a task is run when it is entered. Statements of a\n"
       "model or data block, `parameter k [N/m] ~ normal(1e4, sd = 100)` or an equation, change the one that was entered last. "
       "Lines\n"
       "go on while a brace or bracket is open. Expressions are over results: mean(k), quantile(fn, 0.95), plot(trace(k)),\n"
       "corr(k, k3), rms(residual(output)).\n\n";
+  std::string rows;
   std::size_t width = 0;
   for (CommandRow const& row : commands()) width = std::max(width, row.usage.size());
-  for (CommandRow const& row : commands()) text += fmt::format("  {:<{}}  {}\n", row.usage, width, row.summary);
-  return text +
-         "\n`help WORD` explains every word of the language and every code of a message: help log_uniform, help fit, help E2103.\n";
+  for (CommandRow const& row : commands()) rows += fmt::format("  {:<{}}  {}\n", row.usage, width, row.summary);
+  std::string const last =
+      "\n`help WORD` explains every word of the language and every code of a message: help log_uniform, help fit, help E2103.\n";
+  return filled(first, columns) + wrapped_rows(rows, columns) + filled(last, columns);
 }
 
 std::vector<std::string> const& words_with_help() {
   static std::vector<std::string> const all = [] {
     std::vector<std::string> words = {"plot", "trace", "histogram"};
     for (CommandRow const& row : commands()) words.emplace_back(row.name);
-    for (auto const rows : {statistics(), series_functions()})
-      for (PromptFunction const& row : rows) words.emplace_back(row.name);
+    for (PromptFunction const& row : prompt_functions()) words.emplace_back(row.name);
     for (KeywordRow const& row : keyword_rows) words.emplace_back(row.word);
     for (ListRow const& topic : lists()) add_words(topic, words);
     std::sort(words.begin(), words.end());

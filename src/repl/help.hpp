@@ -15,11 +15,11 @@ struct KeywordRow {
 std::span<KeywordRow const> keywords();
 
 /// All that is known of a word, in the order command, function of the prompt, keyword, tables of the language, module, message;
-/// nothing when no table has it.
-std::optional<std::string> help_on(std::string const& word);
+/// nothing when no table has it. columns: of the terminal; 0 where there is none.
+std::optional<std::string> help_on(std::string const& word, int columns = 0);
 
 /// What `help` prints alone.
-std::string help_overview();
+std::string help_overview(int columns = 0);
 
 /// Every word that `help_on` knows, but for codes of messages.
 std::vector<std::string> const& words_with_help();

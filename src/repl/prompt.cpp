@@ -47,8 +47,9 @@ int read_entries(std::istream& in, Workbench& workbench) {
 
 int run_prompt(RunOptions const& options, std::string const& file) {
   TerminalProgress progress;
-  WrappedOutput answers(std::cout, STDOUT_FILENO), messages(std::cerr, STDERR_FILENO);
-  Workbench workbench(options, progress, {answers, messages, coloured_messages()});
+  LineOutput messages(std::cerr, wrapped_for(STDERR_FILENO));
+  Workbench workbench(options, progress,
+                      {std::cout, messages, coloured_messages(), [] { return terminal_columns(STDOUT_FILENO); }});
   bool const terminal = isatty(STDIN_FILENO) != 0;
   bool const loaded = file.empty() || workbench.enter("load \"" + file + "\"");
   if (!terminal) {

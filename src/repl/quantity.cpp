@@ -1,15 +1,14 @@
-// Names to columns; statistics by hand, everything else by the checker's expressions.
+// Names to columns; statistics by their table, everything else by the checker's expressions.
 #include "repl/quantity.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "check/scope.hpp"
 #include "check/walk.hpp"
-#include "inference/convergence.hpp"
+#include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
@@ -17,33 +16,15 @@
 namespace sysid::repl {
 namespace {
 
-constexpr PromptFunction statistic_rows[] = {
-    {"mean", "mean(k)", "mean over draws, or over the samples of a record"},
-    {"sd", "sd(k)", "standard deviation; of an optimum Laplace's"},
-    {"median", "median(k)", "the value that half of the draws lie below"},
-    {"quantile", "quantile(k, 0.95)", "the value below which that part of the draws lies"},
-    {"min", "min(k)", "the smallest draw or sample"},
-    {"max", "max(k)", "the largest draw or sample"},
-    {"rms", "rms(residual(output))", "root of the mean square"},
-    {"corr", "corr(k, k3)", "correlation of two quantities, draw by draw or sample by sample"},
-    {"probability", "probability(k3 > 0)", "the part of the draws for which a comparison holds"},
-    {"count", "count(k)", "how many draws or samples there are"},
-};
-
-constexpr PromptFunction series_rows[] = {
-    {"measured", "measured(output)", "the samples of a channel on the rows that were fitted or predicted"},
-    {"predicted", "predicted(output)", "the mean prediction of a channel there, without noise"},
-    {"residual", "residual(output)", "what was measured less what was predicted"},
-};
-
-PromptFunction const* find(std::span<PromptFunction const> rows, std::string_view name) {
-  auto const place = std::find_if(rows.begin(), rows.end(), [&](PromptFunction const& each) { return each.name == name; });
+template <class Row>
+Row const* find(std::span<Row const> rows, std::string_view name) {
+  auto const place = std::find_if(rows.begin(), rows.end(), [&](Row const& each) { return each.name == name; });
   return place == rows.end() ? nullptr : &*place;
 }
 
 /// `min(a)` is a statistic, `min(a, b)` the language's.
 bool is_statistic(ast::Call const& call) {
-  if (find(statistic_rows, call.function.text) == nullptr) return false;
+  if (find(statistics(), call.function.text) == nullptr) return false;
   return (call.function.text != "min" && call.function.text != "max") || call.arguments.size() == 1;
 }
 
@@ -63,23 +44,23 @@ std::vector<double> finite(std::vector<double> const& values) {
   return kept;
 }
 
-double mean(std::vector<double> const& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double sum_of_products(std::vector<double> const& a, std::vector<double> const& b) {
-  double const mean_a = mean(a), mean_b = mean(b);
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - mean_a) * (b[i] - mean_b);
-  return sum;
-}
-
 std::string article(Quantity::Kind kind) { return kind == Quantity::Kind::draws ? "draws" : "rows of a record"; }
 
 }  // namespace
 
-std::span<PromptFunction const> statistics() { return statistic_rows; }
-std::span<PromptFunction const> series_functions() { return series_rows; }
+std::optional<std::string> unpaired(Quantity const& a, Quantity const& b) {
+  bool const rows = a.kind == Quantity::Kind::rows && b.kind == a.kind;
+  bool const same = rows ? a.record != nullptr && b.record != nullptr && a.record->experiment == b.record->experiment &&
+                               a.record->time == b.record->time
+                         : a.kind == b.kind && a.of == b.of;
+  if (same && a.values.size() == b.values.size()) return std::nullopt;
+  return fmt::format("{} of {} and {} of {} do not go together one by one", article(a.kind), a.of, article(b.kind), b.of);
+}
+
+std::pair<std::string, std::string> without_draws(Quantity const& quantity) {
+  if (quantity.kind == Quantity::Kind::number) return {"this is one number", ""};
+  return {fmt::format("`{}` is an optimum, one point: it has no draws", quantity.of), "fit with mh for draws"};
+}
 
 std::vector<double> Quantity::all_shown() const {
   std::vector<double> result;
@@ -179,7 +160,7 @@ std::optional<Quantity> Evaluator::series(ast::Call const& call) {
   std::string const& what = call.function.text;
   if (channel == nullptr) {
     refuse(call.span, fmt::format("`{}` takes the name of a channel", what),
-           fmt::format("for example `{}`", find(series_rows, what)->usage));
+           fmt::format("for example `{}`", find(series_functions(), what)->usage));
     return std::nullopt;
   }
   std::string const path = path_of(*channel);
@@ -208,85 +189,28 @@ std::optional<Quantity> Evaluator::series(ast::Call const& call) {
 }
 
 std::optional<Quantity> Evaluator::statistic(ast::Call const& call) {
-  std::string const& name = call.function.text;
-  std::size_t const wanted = name == "corr" || name == "quantile" ? 2 : 1;
-  if (call.arguments.size() != wanted ||
+  StatisticRow const& row = *find(statistics(), call.function.text);
+  if (call.arguments.size() != row.arguments ||
       std::any_of(call.arguments.begin(), call.arguments.end(), [](auto const& each) { return each.name; })) {
-    refuse(call.span, fmt::format("`{}` takes {}", name, wanted == 1 ? "one argument" : "two arguments"),
-           fmt::format("for example `{}`", find(statistic_rows, name)->usage));
+    refuse(call.span, fmt::format("`{}` takes {}", row.name, row.arguments == 1 ? "one argument" : "two arguments"),
+           fmt::format("for example `{}`", row.usage));
     return std::nullopt;
   }
-  auto const of = value(call.arguments[0].value);
-  if (!of) return std::nullopt;
-  Quantity result{Quantity::Kind::number, {}, of->unit, "", of->of, {}, {}, nullptr};
-  std::vector<double> values = finite(of->values);
-  if (values.empty()) {
-    refuse(call.arguments[0].span, "there is no number in this");
-    return std::nullopt;
+  std::vector<Quantity> of;
+  for (ast::Argument const& argument : call.arguments) {
+    auto each = value(argument.value);
+    if (!each) return std::nullopt;
+    if (finite(each->values).empty()) {
+      refuse(argument.span, "there is no number in this");
+      return std::nullopt;
+    }
+    of.push_back(std::move(*each));
   }
-  Span const where = call.arguments[0].span;
-  bool const one_draw = of->kind != Quantity::Kind::rows && of->values.size() == 1;
-  auto const needs_draws = [&] {
-    if (!one_draw) return false;
-    refuse(where,
-           of->kind == Quantity::Kind::number ? "this is one number"
-                                              : fmt::format("`{}` is an optimum, one point: it has no draws", of->of),
-           of->kind == Quantity::Kind::number ? "" : "fit with mh for draws");
-    return true;
-  };
-  if (name == "mean") {
-    result.values = {mean(values)};
-  } else if (name == "sd") {
-    if (!of->sd && needs_draws()) return std::nullopt;
-    result.values = {
-        of->sd ? *of->sd
-               : std::sqrt(sum_of_products(values, values) / static_cast<double>(std::max<std::size_t>(values.size() - 1, 1)))};
-  } else if (name == "median") {
-    result.values = {quantile(values, 0.5)};
-  } else if (name == "quantile") {
-    auto const p = value(call.arguments[1].value);
-    if (!p || needs_draws()) return std::nullopt;
-    if (p->values.size() != 1 || !(p->values[0] >= 0 && p->values[0] <= 1)) {
-      refuse(call.arguments[1].span, "a quantile is asked for by a part between 0 and 1", "for example `quantile(k, 0.95)`");
-      return std::nullopt;
-    }
-    result.values = {quantile(values, p->values[0])};
-  } else if (name == "min" || name == "max") {
-    result.values = {name == "min" ? *std::min_element(values.begin(), values.end())
-                                   : *std::max_element(values.begin(), values.end())};
-  } else if (name == "rms") {
-    double sum = 0;
-    for (double const each : values) sum += each * each;
-    result.values = {std::sqrt(sum / static_cast<double>(values.size()))};
-  } else if (name == "corr") {
-    auto const other = value(call.arguments[1].value);
-    if (!other || needs_draws()) return std::nullopt;
-    if (other->values.size() != of->values.size() || other->kind != of->kind) {
-      refuse(call.span,
-             fmt::format("`{}` has {} {}, `{}` has {}", of->label, of->values.size(), article(of->kind), other->label,
-                         other->values.size()),
-             "correlation pairs draws of one fit, or samples of one record");
-      return std::nullopt;
-    }
-    std::vector<double> a, b;
-    for (std::size_t i = 0; i < of->values.size(); ++i)
-      if (std::isfinite(of->values[i]) && std::isfinite(other->values[i]))
-        a.push_back(of->values[i]), b.push_back(other->values[i]);
-    result.values = {sum_of_products(a, b) / std::sqrt(sum_of_products(a, a) * sum_of_products(b, b))};
-    result.unit = Unit{};
-  } else if (name == "probability") {
-    if (needs_draws()) return std::nullopt;
-    if (std::any_of(values.begin(), values.end(), [](double each) { return each != 0 && each != 1; })) {
-      refuse(where, "a probability is that of a comparison", "for example `probability(k3 > 0)`");
-      return std::nullopt;
-    }
-    result.values = {mean(values)};
-    result.unit = Unit{};
-  } else {
-    result.values = {static_cast<double>(values.size())};
-    result.unit = Unit{};
-  }
-  return result;
+  auto const result =
+      row.value({of[0], finite(of[0].values), of.size() > 1 ? &of[1] : nullptr, call,
+                 [&](Span span, std::string message, std::string help) { refuse(span, std::move(message), std::move(help)); }});
+  if (!result) return std::nullopt;
+  return Quantity{Quantity::Kind::number, {*result}, row.pure ? Unit{} : of[0].unit, "", of[0].of, {}, {}, nullptr};
 }
 
 bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
@@ -302,7 +226,7 @@ bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
     tree.node = std::move(reference);
   };
   if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
-    bool const along = find(series_rows, (*call)->function.text) != nullptr;
+    bool const along = find(series_functions(), (*call)->function.text) != nullptr;
     if (along || is_statistic(**call)) {
       auto quantity = along ? series(**call) : statistic(**call);
       if (quantity) put(std::move(*quantity));
@@ -361,18 +285,16 @@ std::optional<Quantity> Evaluator::value(ast::Expression const& tree) {
   for (Quantity const& each : found) {
     if (each.kind == Quantity::Kind::number || each.values.size() == 1) {
       if (result.kind == Quantity::Kind::number && each.kind == Quantity::Kind::draws)
-        result.kind = each.kind, result.chains = each.chains;
+        result.kind = each.kind, result.chains = each.chains, result.of = each.of;
       continue;
     }
     bool const first = result.values.size() == 1;
-    if (!first && (each.kind != result.kind || each.values.size() != result.values.size())) {
-      refuse(tree.span,
-             fmt::format("{} of {} and {} of {} do not go together one by one", article(result.kind), result.of, article(each.kind),
-                         each.of),
-             "take `mean`, `sd` or another number of each");
+    if (!first) {
+      auto const why = unpaired(result, each);
+      if (!why) continue;
+      refuse(tree.span, *why, "take `mean`, `sd` or another number of each");
       return std::nullopt;
     }
-    if (!first) continue;
     result.kind = each.kind;
     result.of = each.of;
     result.chains = each.chains;

@@ -3,9 +3,9 @@
 #pragma once
 #include <deque>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/diagnostic.hpp"
@@ -32,14 +32,11 @@ struct Quantity {
   std::string unit_text() const;
 };
 
-/// What only expressions at the prompt may call.
-struct PromptFunction {
-  std::string_view name, usage, summary;
-};
-/// mean, sd, quantile, ...: draws or rows to a number.
-std::span<PromptFunction const> statistics();
-/// measured, predicted, residual: a channel to rows.
-std::span<PromptFunction const> series_functions();
+/// Why two quantities of several values do not go together one by one: only draws of one fit do, and samples of one record.
+std::optional<std::string> unpaired(Quantity const& a, Quantity const& b);
+
+/// Message and help about a quantity of one value that is asked for its scatter.
+std::pair<std::string, std::string> without_draws(Quantity const& quantity);
 
 class Evaluator {
  public:

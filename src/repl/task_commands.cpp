@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "app/check_file.hpp"
@@ -20,7 +21,7 @@ bool Workbench::check(Arguments) {
   Session session(checked_->source, checked_->file, options_, progress_, nowhere, nowhere);
   CheckResult const result = check_file(session);
   voices_.messages << at_the_prompt(render(result.diagnostics, checked_->source, voices_.colour)) << std::flush;
-  voices_.answers << check_text(result.page) << std::flush;
+  answer_lines(check_text(result.page));
   return !result.diagnostics.has_errors();
 }
 
@@ -102,6 +103,12 @@ bool Workbench::refit(Arguments arguments) {
         if (option.key) stated.insert(option.key->text);
         backend = backend || (!option.key && !option.input);
       }
+  bool const anew = !stated.contains("search");
+  if (anew && name == from)
+    return refuse(
+        fmt::format("`{}` is the fit that a refit begins from: it cannot take its place", from),
+        fmt::format("give it a name of its own, `refit as {}`, or let it begin anew, `refit as {} with search = everywhere`",
+                    free_task_name(from), from));
   std::string kept;
   for (ast::Option const& option : task.options) {
     // Of new options the rest stays: the back end, where the simulation starts, how it is solved, the seed.
@@ -111,9 +118,40 @@ bool Workbench::refit(Arguments arguments) {
   }
   // Without a back end of their own, new options follow the old one.
   options = backend ? options + (kept.empty() ? "" : ", ") + kept : kept + (kept.empty() || options.empty() ? "" : ", ") + options;
-  statement += fmt::format(" with {}, search = near({})", options, from);
+  statement += " with " + options;
+  if (anew) statement += fmt::format("{}search = near({})", options.empty() ? "" : ", ", from);
   say(statement);
   return enter_parts(statement);
+}
+
+void Workbench::use_names_of_work(Comparison& comparison) const {
+  auto const rename = [&](std::string const& task, std::string& model) {
+    std::size_t place = work_.find(ItemKind::task, task);
+    if (place == work_.items.size()) return;
+    ast::Task tree = std::get<ast::Task>(item_of(work_.items[place].text));
+    // Of a prediction, that of its fit.
+    place = work_.find(ItemKind::task, tree.subject.text);
+    if (place < work_.items.size()) tree = std::get<ast::Task>(item_of(work_.items[place].text));
+    model.replace(0, std::min(model.find('('), model.size()), tree.subject.text);
+  };
+  // By model as the results call it: its names in the work, each with its fits.
+  std::map<std::string, std::vector<std::pair<std::string, std::string>>> fits;
+  for (ComparedFit& fit : comparison.fits) {
+    auto& names = fits[fit.model];
+    rename(fit.name, fit.model);
+    auto const known = std::find_if(names.begin(), names.end(), [&](auto const& each) { return each.first == fit.model; });
+    if (known == names.end())
+      names.emplace_back(fit.model, fit.name);
+    else
+      known->second += ", " + fit.name;
+  }
+  for (ComparedPrediction& prediction : comparison.predictions) rename(prediction.name, prediction.model);
+  // That models of one name differ is told by their names.
+  for (auto const& [model, names] : fits) {
+    std::string note = fmt::format("the fits of `{}` are of different models: ", model);
+    for (auto const& [name, tasks] : names) note += (&name == &names.front().first ? "" : "; ") + tasks;
+    std::erase(comparison.notes, note);
+  }
 }
 
 bool Workbench::compare(Arguments tasks) {
@@ -133,7 +171,9 @@ bool Workbench::compare(Arguments tasks) {
     }
     folders.push_back(result->folder);
   }
-  voices_.answers << comparison_text(sysid::compare(folders)) << std::flush;
+  Comparison comparison = sysid::compare(folders);
+  use_names_of_work(comparison);
+  answer_lines(comparison_text(comparison));
   return true;
 }
 

@@ -9,41 +9,18 @@
 #include "app/results.hpp"
 #include "app/stored_draws.hpp"
 #include "core/interrupt.hpp"
+#include "core/wrapped.hpp"
 #include "repl/workbench.hpp"
 #include "report/result.hpp"
 
 namespace sysid::repl {
 namespace {
 
-/// Notices in the words of the prompt, line by line as they come.
-class PromptWords : public std::streambuf {
- public:
-  explicit PromptWords(std::ostream& out) : out_(out) {}
-  ~PromptWords() override {
-    if (!line_.empty()) out_ << at_the_prompt(line_) << std::flush;
-  }
-  PromptWords(PromptWords const&) = delete;
-  PromptWords& operator=(PromptWords const&) = delete;
-
- protected:
-  int_type overflow(int_type c) override {
-    if (c == traits_type::eof()) return traits_type::not_eof(c);
-    line_ += traits_type::to_char_type(c);
-    if (c == '\n') {
-      out_ << at_the_prompt(line_) << std::flush;
-      line_.clear();
-    }
-    return c;
-  }
-
- private:
-  std::ostream& out_;
-  std::string line_;
-};
-
-std::string verb_of(Task const& task) {
-  constexpr std::string_view verbs[] = {"simulate", "fit", "select", "discover", "predict"};
-  return std::string(verbs[task.what.index()]);
+/// The task whose draws this one begins from.
+std::optional<int> earlier_of(Task const& task) {
+  if (auto const* fit = std::get_if<FitTask>(&task.what)) return fit->near;
+  if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->fit;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -83,14 +60,20 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
   options.seed.reset();  // it stands in the task
   options.resume = resume;
   options.force = options_.force || made_.contains(name);
-  PromptWords words(voices_.messages);
-  std::ostream notices(&words);
+  LineOutput notices(voices_.messages, [](std::string const& line) { return at_the_prompt(line); });
   std::ostringstream answers;
   Session session(checked->source, checked->file, options, progress_, answers, notices);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (auto const known = fitted_.find(tasks[i].name); known != fitted_.end()) session.fitted[static_cast<int>(i)] = known->second;
     if (auto const known = selected_.find(tasks[i].name); known != selected_.end())
       session.selected[static_cast<int>(i)] = known->second;
+  }
+  if (auto const earlier = earlier_of(*place)) {
+    Task const& needed = tasks[static_cast<std::size_t>(*earlier)];
+    bool const there = session.fitted.contains(*earlier) || session.selected.contains(*earlier);
+    if (!there && !sysid::complete(session.result_folder(needed)))
+      return refuse(fmt::format("`{}` begins from the draws of `{}`, and there are none yet", name, needed.name),
+                    fmt::format("`{} {}`", interrupted_.contains(needed.name) ? "resume" : "run", needed.name));
   }
   clear_interrupt();
   auto const index = static_cast<int>(place - tasks.begin());
@@ -118,7 +101,7 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
   // Stopped before its first draw, a task stays in the work: `resume` goes on with it.
   if (!something) return exit == ExitCode::interrupted;
   keep(session, *place, index, at_the_prompt(answers.str()));
-  voices_.answers << at_the_prompt(answers.str()) << std::flush;
+  answer_lines(at_the_prompt(answers.str()));
   return true;
 }
 

@@ -1,10 +1,10 @@
 // The dialogue on libedit: Tab completes, arrows recall, Ctrl-C takes back the line or stops a run, Ctrl-D ends.
 #include <fmt/format.h>
 #include <histedit.h>
+#include <langinfo.h>
 #include <poll.h>
 #include <unistd.h>
 
-#include <langinfo.h>
 #include <cerrno>
 #include <clocale>
 #include <csignal>

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/lists.hpp"
+#include "core/wrapped.hpp"
 #include "repl/change.hpp"
 #include "repl/help.hpp"
 #include "repl/workbench.hpp"
@@ -39,7 +40,7 @@ bool Workbench::list(Arguments topic) {
   if (!topic.empty()) {
     ListRow const* const row = find_list(topic);
     if (row == nullptr) return refuse(fmt::format("there is no list of {}", topic), "topics are " + list_topics());
-    voices_.answers << row->text() << std::flush;
+    voices_.answers << wrapped_rows(row->text(), voices_.columns()) << std::flush;
     return true;
   }
   if (work_.items.empty()) {
@@ -90,7 +91,7 @@ bool Workbench::show_text(Arguments name) {
     return refuse(fmt::format("there is no `{}` in the work", name), did_you_mean(name, known));
   }
   if (place < work_.items.size()) voices_.answers << laid_out(work_.items[place].text);
-  if (result != nullptr) voices_.answers << '\n' << result->summary << fmt::format("files: {}\n", result->folder.string());
+  if (result != nullptr) answer_lines(fmt::format("\n{}files: {}\n", result->summary, result->folder.string()));
   voices_.answers << std::flush;
   return true;
 }
@@ -135,10 +136,10 @@ bool Workbench::drop(Arguments name) {
 
 bool Workbench::help(Arguments word) {
   if (word.empty()) {
-    voices_.answers << help_overview() << std::flush;
+    voices_.answers << help_overview(voices_.columns()) << std::flush;
     return true;
   }
-  if (auto const text = help_on(word)) {
+  if (auto const text = help_on(word, voices_.columns())) {
     voices_.answers << *text << std::flush;
     return true;
   }

@@ -8,6 +8,9 @@
 
 #include "app/experiments.hpp"
 #include "app/pipeline.hpp"
+#include "app/readiness.hpp"
+#include "core/wrapped.hpp"
+#include "data/table.hpp"
 #include "repl/change.hpp"
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"
@@ -54,6 +57,8 @@ Workbench::Workbench(RunOptions options, Progress& progress, Voices voices)
 Workbench::~Workbench() = default;
 
 void Workbench::say(std::string const& line) { voices_.messages << line << '\n' << std::flush; }
+
+void Workbench::answer_lines(std::string const& text) { voices_.answers << wrapped(text, voices_.columns()) << std::flush; }
 
 bool Workbench::refuse(std::string const& message, std::string const& help) {
   say(fmt::format("{}{}{}", message, help.empty() ? "" : "\nhelp: ", help));
@@ -220,12 +225,45 @@ bool Workbench::draft(EntryPart const& part, std::string const& entry, Work& wor
   return true;
 }
 
+void Workbench::ask_for_columns(Work const& draft, Source const& source, CheckedFile const& file, Diagnostics& diagnostics) {
+  std::ostream nowhere(nullptr);
+  Session const session(source, file, options_, progress_, nowhere, nowhere);
+  for (DataBlock const& block : file.data) {
+    std::size_t const now = draft.find(ItemKind::data, block.name), before = work_.find(ItemKind::data, block.name);
+    bool const changed =
+        now < draft.items.size() && (before == work_.items.size() || work_.items[before].text != draft.items[now].text);
+    std::filesystem::path const path = session.folder() / block.path;
+    // What a task has yet to make may look otherwise then.
+    Task const* made = maker(session, block);
+    if (!changed || !std::filesystem::is_regular_file(path) || (made != nullptr && !made_.contains(made->name))) continue;
+    auto const refused = [&](auto const& ask) {
+      try {
+        ask();
+        return false;
+      } catch (UserError const& error) {
+        diagnostics.add(error.diagnostic());
+        return true;
+      } catch (IoError const&) {
+        return true;  // who reads it says so
+      }
+    };
+    std::optional<Table> table;
+    if (refused([&] { table = Table::read(path.string(), block.path_span); })) continue;
+    auto const ask = [&](ColumnUse const& use) { refused([&] { table->numbers(use.column, use.span); }); };
+    if (block.time) ask(*block.time);
+    for (DataInputUse const& input : block.inputs) ask(input);
+    for (DataMeasureUse const& measure : block.measured) ask(measure);
+  }
+}
+
 bool Workbench::adopt(Work draft, std::string const& entry) {
   Source source(draft.path.string(), draft.text());
   Diagnostics diagnostics;
   auto file = sysid::load(source, diagnostics);
+  // What comes from a file is said of the tasks that read it.
+  if (file && !entry.empty()) ask_for_columns(draft, source, *file, diagnostics);
   show(diagnostics, source, draft, entry);
-  if (!file) return false;
+  if (!file || diagnostics.has_errors()) return false;
   for (WorkItem& item : draft.items) item.typed.clear();
   if (draft.text() != work_.text()) unsaved_ = true;
   work_ = std::move(draft);

@@ -1,6 +1,7 @@
 // A session at the prompt: the work so far, what its tasks have left, and what an entry does to them. Knows no terminal.
 #pragma once
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <ostream>
@@ -19,13 +20,18 @@
 #include "repl/result.hpp"
 #include "repl/work.hpp"
 
+namespace sysid {
+struct Comparison;
+}
+
 namespace sysid::repl {
 
 /// Where what is said goes: answers, and messages about them.
 struct Voices {
   std::ostream& answers;
   std::ostream& messages;
-  bool colour = false;  // of messages
+  bool colour = false;                              // of messages
+  std::function<int()> columns = [] { return 0; };  // of the terminal that shows the answers; 0: there is none
 };
 
 /// A word at the prompt that is no statement of the language.
@@ -77,11 +83,15 @@ class Workbench {
              std::vector<std::string>& notices);
   /// Checks the draft and makes it the work, or shows what is wrong with it.
   bool adopt(Work draft, std::string const& entry);
+  /// Asks the files of data blocks that a draft adds or changes for their columns, as far as the files are there.
+  void ask_for_columns(Work const& draft, Source const& source, CheckedFile const& file, Diagnostics& diagnostics);
   void show(Diagnostics const& diagnostics, std::string const& entry);
   /// Diagnostics about the text of a work: places in what was typed are shown there.
   void show(Diagnostics const& diagnostics, Source const& source, Work const& work, std::string const& entry);
   bool refuse(std::string const& message, std::string const& help = "");
   void say(std::string const& line);
+  /// What tasks print, numbers, plots: wrapped for the terminal. Sources are answered as they are.
+  void answer_lines(std::string const& text);
   /// Runs what may throw; false when it did, with what it said.
   bool guarded(Source const& source, std::function<bool()> const& act);
   std::set<std::string> tasks_run() const;
@@ -106,6 +116,8 @@ class Workbench {
   bool run(Arguments tasks);
   bool refit(Arguments);
   bool compare(Arguments tasks);
+  /// Models by the names of `list`, where what a task ran on is kept beside what it has become.
+  void use_names_of_work(Comparison& comparison) const;
   bool resume(Arguments task);
 
   // --- work_commands.cpp

@@ -1,5 +1,9 @@
 // The program, asked in a folder of its own.
 #pragma once
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <string>
 
 #include "core/files.hpp"
@@ -13,6 +17,26 @@ class Desk {
   /// `sysid ARGUMENTS`, from this folder.
   Said ask(std::string const& arguments) const {
     return said_by("cd '" + folder_.path().string() + "' && NO_COLOR=1 '" SYSID_PROGRAM "' " + arguments);
+  }
+  /// The same on a terminal.
+  Said ask_on_terminal(std::string const& arguments, unsigned short columns) const {
+    winsize size = {40, columns, 0, 0};
+    int master = -1;
+    pid_t const child = forkpty(&master, nullptr, nullptr, &size);
+    if (child == 0) {
+      std::string const command = "cd '" + folder_.path().string() + "' && NO_COLOR=1 '" SYSID_PROGRAM "' " + arguments;
+      execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      _exit(127);
+    }
+    Said said;
+    char buffer[4096];
+    for (ssize_t got; (got = read(master, buffer, sizeof buffer)) > 0;) said.text.append(buffer, static_cast<std::size_t>(got));
+    std::erase(said.text, '\r');
+    int status = 0;
+    waitpid(child, &status, 0);
+    said.exit = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    close(master);
+    return said;
   }
   std::filesystem::path path(std::string const& name) const { return folder_.path() / name; }
   void save(std::string const& name, std::string const& text) const { write_file(path(name), text); }

@@ -55,22 +55,25 @@ class Client {
     take(server.handle({{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}}));
   }
 
+  /// What the server says when nothing more comes.
+  void settle() { take(server.publish()); }
+
   /// Opens a text under a URI; the requests below are about the last one opened.
   void open(std::string const& path, std::string const& text) {
     uri = lsp::uri_of(path);
     notify("textDocument/didOpen", {{"textDocument", {{"uri", uri}, {"languageId", "sysid"}, {"version", 1}, {"text", text}}}});
-    take(server.publish());
+    settle();
   }
   void replace(std::string const& text) {
     notify("textDocument/didChange",
            {{"textDocument", {{"uri", uri}, {"version", ++version_}}}, {"contentChanges", {{{"text", text}}}}});
-    take(server.publish());
+    settle();
   }
   /// Bytes of `old` replaced, as an editor sends it.
   void edit(std::string const& old, Span span, std::string const& text) {
     notify("textDocument/didChange", {{"textDocument", {{"uri", uri}, {"version", ++version_}}},
                                       {"contentChanges", {{{"range", lsp::range(lsp::Lines(old), span)}, {"text", text}}}}});
-    take(server.publish());
+    settle();
   }
   Json at(std::string const& method, std::string const& text, std::size_t offset, Json more = Json::object()) {
     more["textDocument"] = {{"uri", uri}};

@@ -216,6 +216,41 @@ TEST_CASE("a name of a module beside the file is renamed in all files that use i
   CHECK(!client.diagnostics.empty());
 }
 
+TEST_CASE("what a module says counts for the files that use it when it is opened, changed and closed") {
+  TemporaryFolder folder;
+  auto const model = [](std::string const& name) {
+    return "model " + name + " {\n  input u [m]\n  parameter k [N/m] ~ log_uniform(1, 1e5)\n  derive force [N] = k*u\n}\n";
+  };
+  auto const path = [&](std::string const& name) { return (folder.path() / name).string(); };
+  write_file(folder.path() / "springs.sysid", model("spring"));
+  std::string const user =
+      "use springs\nmodel rig {\n  input x [N]\n  state y [m]\n  initial y = 0, y' = 0\n  part s = spring(u = y)\n"
+      "  1 [kg]*y'' + s.force = x\n  observe d ~ normal(y, sd = 1 [mm])\n}\n";
+  Client client;
+  client.open(path("rig.sysid"), user);
+  std::string const uri = client.uri;
+  CHECK(client.diagnostics.empty());
+  // What an editor does beside it, and what the file is said to be then.
+  auto const said_after = [&](std::string const& method, std::string const& of, Json params) {
+    params["textDocument"]["uri"] = lsp::uri_of(path(of));
+    client.notify("textDocument/" + method, std::move(params));
+    client.settle();
+    return client.diagnostics.size();
+  };
+  auto const text = [](std::string const& content) { return Json{{"textDocument", {{"text", content}, {"version", 1}}}}; };
+  CHECK(said_after("didOpen", "springs.sysid", text(model("sprung"))) > 0);
+  CHECK(said_after("didChange", "springs.sysid", {{"contentChanges", {{{"text", model("spring")}}}}}) == 0);
+  CHECK(said_after("didChange", "springs.sysid", {{"contentChanges", {{{"text", model("sprung")}}}}}) > 0);
+  CHECK(said_after("didClose", "springs.sysid", Json::object()) == 0);
+  CHECK(client.uri == uri);
+
+  // A module that no file holds yet.
+  client.open(path("second.sysid"), "use dampers\n" + user);
+  CHECK_FALSE(client.diagnostics.empty());
+  CHECK(said_after("didOpen", "dampers.sysid", text(model("damper"))) == 0);
+  CHECK(said_after("didClose", "dampers.sysid", Json::object()) > 0);
+}
+
 TEST_CASE("formatting is that of fmt, and nothing for a file with mistakes") {
   Bench bench;
   Json const edits =

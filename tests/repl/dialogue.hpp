@@ -25,7 +25,9 @@ inline std::string const oscillator = R"(model oscillator {
 
 class Dialogue {
  public:
-  Dialogue() : workbench_(options(), progress_, {answers_, messages_}) {}
+  /// columns: of the terminal that shows it; 0: none.
+  explicit Dialogue(int columns = 0)
+      : workbench_(options(), progress_, {answers_, messages_, false, [columns] { return columns; }}) {}
 
   bool enter(std::string const& entry) {
     answers_.str("");

@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <iterator>
 #include <set>
+#include <sstream>
 
 #include "check/generators.hpp"
 #include "core/solver.hpp"
@@ -14,6 +16,7 @@
 #include "inference/selector.hpp"
 #include "regression/columns.hpp"
 #include "regression/selector.hpp"
+#include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"
 
@@ -39,7 +42,7 @@ TEST_CASE("every word of the language, every setting and every code of a message
   add_rows(functions()), add_rows(distributions()), add_rows(gaussian_process::kernels()), add_rows(generators());
   add_settings(backends()), add_settings(selectors()), add_settings(solvers());
   add_settings(regression::selectors()), add_settings(regression::forms());
-  add_rows(repl::commands()), add_rows(repl::statistics()), add_rows(repl::series_functions());
+  add_rows(repl::commands()), add_rows(repl::prompt_functions());
   for (char const* option : {"start",  "solver",   "substeps", "prediction",      "seed",       "search",  "draws",
                              "redraw", "distance", "weights",  "values",          "noise",      "samples", "rate",
                              "file",   "E2103",    "2103",     "chains_disagree", "hysteresis", "plot",    "trace"})
@@ -47,6 +50,26 @@ TEST_CASE("every word of the language, every setting and every code of a message
   CHECK(words.size() > 150);
   for (std::string const& word : words) CHECK_MESSAGE(repl::help_on(word).has_value(), word);
   CHECK_FALSE(repl::help_on("frobnicate").has_value());
+}
+
+TEST_CASE("on a narrow screen help is laid out anew, and nothing of it is lost") {
+  auto const words = [](std::string const& text) {
+    std::istringstream in(text);
+    return std::vector<std::string>(std::istream_iterator<std::string>(in), {});
+  };
+  for (char const* word : {"refit", "E2103", "mh", "fit", "hysteresis", "log_normal", "plot"}) {
+    CAPTURE(word);
+    std::string const whole = *repl::help_on(word), narrow = *repl::help_on(word, 60);
+    CHECK(whole != narrow);
+    CHECK((words(whole) == words(narrow)));
+  }
+  std::string const overview = repl::help_overview(60);
+  CHECK((words(overview) == words(repl::help_overview())));
+  std::istringstream lines(overview);
+  for (std::string line; std::getline(lines, line);) CHECK_MESSAGE(line.size() <= 60, line);
+  // An equation stays whole.
+  CHECK(repl::help_on("hysteresis", 60)->find("alpha*abs(displacement')*abs(z)^(n - 1)*z - beta*displacement'*abs(z)^n\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("help on a word says how it is written, and what it does") {

@@ -16,9 +16,9 @@ namespace sysid {
 
 class PseudoTerminal {
  public:
-  /// The prompt in `folder`, with results, history and state there; a screen of 100 columns.
-  explicit PseudoTerminal(std::filesystem::path const& folder, RunOptions options = {}) {
-    winsize size = {40, 100, 0, 0};
+  /// The prompt in `folder`, with results, history and state there.
+  explicit PseudoTerminal(std::filesystem::path const& folder, RunOptions options = {}, unsigned short columns = 100) {
+    winsize size = {40, columns, 0, 0};
     child_ = forkpty(&master_, nullptr, nullptr, &size);
     if (child_ != 0) return;
     setenv("XDG_STATE_HOME", (folder / "state").c_str(), 1);

@@ -25,6 +25,21 @@ TEST_CASE("a prompt, a statement over several lines, an answer, the end") {
   CHECK(terminal.ended() == 0);
 }
 
+TEST_CASE("on a narrow screen a source is shown as it is, messages go on below") {
+  TemporaryFolder folder;
+  PseudoTerminal terminal(folder.path(), {}, 60);
+  terminal.until(terminal.prompt);
+  // A source that is typed is drawn over several rows of the screen: it comes from a file.
+  std::string const comment = "# a comment of more words than a line of sixty columns has room for, all of them in one line";
+  write_file(folder.path() / "long.sysid", comment + "\nfunction twice(a) = 2*a\n");
+  terminal.enter("load long.sysid");
+  CHECK(shows(terminal.enter("show"), comment));
+  CHECK(shows(terminal.enter("drop a"), "there is no `a` in the work"));
+  CHECK(shows(terminal.enter("load \"of a file that is nowhere to be found, by a long name.sysid\""), "\r\n    "));
+  terminal.type("\x04");
+  CHECK(terminal.ended() == 0);
+}
+
 TEST_CASE("Ctrl-C takes back a line and what is unfinished, and the prompt goes on") {
   TemporaryFolder folder;
   PseudoTerminal terminal(folder.path());

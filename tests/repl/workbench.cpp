@@ -55,7 +55,13 @@ TEST_CASE("fits of a session are compared by their evidence, and what has not be
   REQUIRE(d.enter("refit"));
   REQUIRE_MESSAGE(d.enter("compare"), d.messages());
   CHECK(has(d.answers(), "fitted to bench.train, rows 1..200 (200)"));
-  CHECK(has(d.answers(), "the fits of `oscillator` are of different models: first; first2"));  // it has changed in between
+  // The model has changed in between: `list` has two names for it.
+  CHECK(has(d.answers(), "first   oscillator_1 "));
+  CHECK(has(d.answers(), "first2  oscillator "));
+  CHECK_FALSE(has(d.answers(), "different models"));
+  REQUIRE(d.enter("forecast = predict first on bench.train with draws(1)"));
+  REQUIRE(d.enter("compare"));
+  CHECK(has(d.answers(), "forecast    oscillator_1 "));
   CHECK_FALSE(d.enter("compare first, second"));
   CHECK_FALSE(d.enter("compare firs"));
   CHECK(has(d.messages(), "there is no result of `firs`"));
@@ -70,6 +76,36 @@ TEST_CASE("a refit with new options keeps the others, the back end among them") 
   CHECK(has(d.messages(), "first2 = fit oscillator to bench.train with map, substeps = 2, seed=5, search = near(first)"));
   REQUIRE_MESSAGE(d.enter("refit first as third with ml"), d.messages());
   CHECK(has(d.messages(), "third = fit oscillator to bench.train with ml, substeps = 2, seed = 3, search = near(first)"));
+}
+
+TEST_CASE("a refit may begin everywhere, and cannot take the place of what it begins from") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("drag = fit oscillator to bench.train with map"));
+  CHECK_FALSE(d.enter("refit as drag"));
+  CHECK(has(d.messages(),
+            "`drag` is the fit that a refit begins from: it cannot take its place\nhelp: give it a name of its own, "
+            "`refit as drag2`"));
+  REQUIRE_MESSAGE(d.enter("refit with search = everywhere"), d.messages());
+  CHECK(has(d.messages(), "drag2 = fit oscillator to bench.train with map, seed = 1, search = everywhere\n"));
+  REQUIRE_MESSAGE(d.enter("refit drag as drag with search = everywhere"), d.messages());
+}
+
+TEST_CASE("a task that begins from another one says which, where that has not been run") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("save " + d.path("sub.sysid")));
+  write_file(d.path("sub.sysid"), read_file(d.path("sub.sysid")) +
+                                      "\nfirst = fit oscillator to bench.train with map, seed = 1\n"
+                                      "second = fit oscillator to bench.train with map, search = near(first), seed = 1\n"
+                                      "forecast = predict second on bench\n");
+  Dialogue other;
+  REQUIRE_MESSAGE(other.enter("load " + d.path("sub.sysid")), other.messages());
+  CHECK_FALSE(other.enter("run second"));
+  CHECK(other.messages() == "`second` begins from the draws of `first`, and there are none yet\nhelp: `run first`\n");
+  CHECK_FALSE(other.enter("run forecast"));
+  CHECK(has(other.messages(), "help: `run second`"));
+  CHECK_MESSAGE(other.enter("run first second forecast"), other.messages());
 }
 
 TEST_CASE("a saved session is a file that gives the same numbers, to the last digit") {
@@ -120,6 +156,22 @@ TEST_CASE("a mistake shows where it stands in what was typed, and leaves the wor
   CHECK(d.workbench().work().text() == before);
 }
 
+TEST_CASE("a column that is not in the file is told when it is entered, at its place") {
+  Dialogue d;
+  d.begin();
+  std::string const before = d.workbench().work().text();
+  CHECK_FALSE(d.enter("measure displacement = displacment [m]"));
+  CHECK_MESSAGE(has(d.messages(), "prompt:1:24: error[E4008]"), d.messages());
+  CHECK(has(d.messages(), "did you mean `displacement`?"));
+  CHECK_FALSE(d.enter("data other { file \"" + d.path("results/made/made.csv") + "\"; time t [s]; input x = z [N] hold linear }"));
+  CHECK(has(d.messages(), "has no column `z`"));
+  CHECK(d.workbench().work().text() == before);
+  // Nobody knows what will stand in a file that is not there yet.
+  CHECK_MESSAGE(d.enter("data later { file \"later.csv\"; time t [s]; input x = z [N] hold linear }"), d.messages());
+  CHECK_MESSAGE(d.enter("change bench"), d.messages());
+  CHECK_MESSAGE(d.enter("measure displacement = displacement [m]"), d.messages());
+}
+
 TEST_CASE("a task that cannot run is no part of the work") {
   Dialogue d;
   d.begin();
@@ -153,6 +205,50 @@ TEST_CASE("expressions over draws are computed draw by draw, with units") {
   CHECK(has(d.messages(), "E2103"));
   CHECK_FALSE(d.enter("corr(k, displacement)"));
   CHECK_FALSE(d.enter("quantile(k, 95)"));
+}
+
+TEST_CASE("draws of different fits, and samples of different records, are not paired") {
+  Dialogue d;
+  d.begin();
+  std::string const with = " with mh(samples = 400, burn_in = 200, thin = 2, chains = 2)";
+  REQUIRE(d.enter("a = fit oscillator to bench.train" + with));
+  REQUIRE(d.enter("b = fit oscillator to bench.train" + with + ", seed = 2"));
+  for (char const* entry : {"corr(a.k, b.k)", "plot(a.k, b.k)", "mean(a.k - b.k)"}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), "draws of a and draws of b do not go together one by one"), d.messages());
+  }
+  CHECK(d.enter("corr(a.k, a.c)"));
+  CHECK_FALSE(d.enter("corr(a.k, mean(a.c))"));
+  CHECK(has(d.messages(), "this is one number"));
+  CHECK(d.enter("mean(a.k) - mean(b.k)"));
+  // Two predictions of one record go together; those of as many rows of another one do not.
+  CHECK(d.enter("rms(predicted(a.displacement) - predicted(b.displacement))"));
+  CHECK(d.enter("corr(residual(a.displacement), residual(b.displacement))"));
+  REQUIRE(d.enter("split train = rows 1..200, later = rows 101..300"));
+  REQUIRE(d.enter("forecast = predict a on bench.train with draws(20)"));
+  REQUIRE(d.enter("other = predict a on bench.later with draws(20)"));
+  for (char const* entry : {"corr(residual(forecast.displacement), residual(other.displacement))",
+                            "plot(predicted(forecast.displacement), predicted(other.displacement))"}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), "rows of a record"), d.messages());
+  }
+}
+
+TEST_CASE("an optimum says that it has no draws, whatever is asked of it") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("best = fit oscillator to bench.train with map"));
+  for (char const* entry :
+       {"probability(k > 1 [N/m])", "quantile(k, 0.5)", "corr(k, c)", "sd(2*k)", "plot(k, c)", "plot(k)", "plot(k/c)"}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), "`best` is an optimum, one point: it has no draws"), d.messages());
+  }
+  CHECK(d.enter("sd(k)"));
+  CHECK_FALSE(d.enter("plot(mean(k), k)"));
+  CHECK(has(d.messages(), "this is one number"));
 }
 
 TEST_CASE("plots are drawn in the size asked for, of what they are said to be of") {
@@ -221,6 +317,33 @@ TEST_CASE("a file is loaded, changed, loaded again; its paths are those of its f
   CHECK(has(other.answers(), "last: fit oscillator"));
   REQUIRE(other.enter("drop last"));
   CHECK_FALSE(other.enter("show last"));
+}
+
+TEST_CASE("a narrow screen wraps what tasks say, and neither sources nor tables") {
+  Dialogue wide, narrow(50);
+  std::string const comment = "# a comment of more words than a line of fifty columns has room for\n";
+  for (Dialogue* d : {&wide, &narrow}) {
+    d->begin();
+    REQUIRE(d->enter(comment + "function twice(a) = 2*a"));
+    REQUIRE_MESSAGE(d->enter("first = fit oscillator to bench.train with map"), d->messages());
+  }
+  CHECK(has(wide.answers(), "chi_squared_per_sample"));
+  auto const widest = [](std::string const& text) {
+    std::istringstream lines(text);
+    std::size_t most = 0;
+    for (std::string line; std::getline(lines, line);) most = std::max(most, line.size());
+    return most;
+  };
+  CHECK(widest(wide.answers()) > 80);
+  CHECK(widest(narrow.answers()) < 60);
+  for (char const* entry : {"show oscillator", "show twice", "list"}) {
+    CAPTURE(entry);
+    for (Dialogue* d : {&wide, &narrow}) REQUIRE(d->enter(entry));
+    CHECK(wide.answers() == narrow.answers());
+  }
+  REQUIRE(narrow.enter("list kernels"));
+  CHECK(widest(narrow.answers()) < 75);  // a signature
+  CHECK(has(narrow.answers(), "\n    "));
 }
 
 TEST_CASE("from a pipe nothing is repeated, and the exit code says whether an entry has failed") {
