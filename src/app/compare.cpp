@@ -28,6 +28,7 @@ struct Result {
   fs::path folder;
   std::string name;
   json summary;
+  std::string model;               // as it is called here
   std::optional<Finding> earlier;  // that it was made from a fit which has been run again
 
   bool is(std::string_view verb) const { return summary.value("what", std::string()).starts_with(std::string(verb) + " "); }
@@ -38,7 +39,6 @@ struct Result {
            (earlier ? 1 : 0);
   }
   bool pass() const { return !summary.contains("verdict") || summary["verdict"].value("pass", true); }
-  std::string model() const { return summary.value("model", std::string()); }
 };
 
 UserError refused(std::string message, std::string help) {
@@ -46,14 +46,18 @@ UserError refused(std::string message, std::string help) {
 }
 
 Result read_result(fs::path const& folder) {
-  Result result{folder, folder.lexically_normal().filename().string(),
-                json::parse(read_file(folder / "summary.json"), nullptr, false), made_from_earlier(folder)};
+  Result result{folder,
+                folder.lexically_normal().filename().string(),
+                json::parse(read_file(folder / "summary.json"), nullptr, false),
+                {},
+                made_from_earlier(folder)};
   if (result.name.empty()) result.name = folder.lexically_normal().parent_path().filename().string();
   bool const whole = result.summary.is_object() && result.summary.contains("what") && result.summary["what"].is_string() &&
                      result.summary.value("data", json::array()).is_array();
   if (!whole)
     throw refused(fmt::format("`{}` is no result of a task", (folder / "summary.json").string()),
                   "run the task again with --force");
+  result.model = result.summary.value("model", std::string());
   return result;
 }
 
@@ -139,7 +143,7 @@ ComparedFit compared_fit(Result const& result) {
   json const& summary = result.summary;
   ComparedFit fit;
   fit.name = result.name;
-  fit.model = result.model();
+  fit.model = result.model;
   fit.pass = result.pass();
   fit.warnings = result.warnings();
   fit.parameters = summary.value("parameter_count", 0);
@@ -171,11 +175,11 @@ std::vector<std::string> models_of_one_name(std::vector<Result> const& results) 
   std::vector<std::string> notes;
   std::set<std::string> told;
   for (Result const& first : results) {
-    if (!told.insert(first.model()).second) continue;
+    if (!told.insert(first.model).second) continue;
     std::vector<std::string> identities, fits;  // one entry each per model of this name
     bool other_text = false;
     for (Result const& each : results) {
-      if (each.model() != first.model()) continue;
+      if (each.model != first.model) continue;
       other_text = other_text || model_text(each) != model_text(first);
       std::string const own = identity(each);
       auto const known = std::find(identities.begin(), identities.end(), own);
@@ -187,7 +191,7 @@ std::vector<std::string> models_of_one_name(std::vector<Result> const& results) 
       }
     }
     if (fits.size() > 1)
-      notes.push_back(fmt::format("the fits of `{}` are of different {}: {}", first.model(),
+      notes.push_back(fmt::format("the fits of `{}` are of different {}: {}", first.model,
                                   other_text ? "models" : "starts, rules of prediction or inputs", fmt::join(fits, "; ")));
   }
   return notes;
@@ -221,7 +225,7 @@ void add_predictions(Result const& result, std::vector<ComparedPrediction>& pred
     for (auto const& [channel, scores] : of_experiment.items()) {
       if (!scores.contains("nmse") || !scores["nmse"].is_number()) continue;
       ComparedPrediction each{result.name,
-                              result.model(),
+                              result.model,
                               kind_of(result.summary),
                               channel + " on " + experiment,
                               data.value("scored_rows", ""),
@@ -240,7 +244,7 @@ void add_predictions(Result const& result, std::vector<ComparedPrediction>& pred
 
 }  // namespace
 
-Comparison compare(std::vector<fs::path> const& folders) {
+Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model_of) {
   std::vector<Result> results;
   for (fs::path const& folder : folders)
     for (Result& each : results_in(folder)) {
@@ -248,6 +252,8 @@ Comparison compare(std::vector<fs::path> const& folders) {
                                      [&](Result const& other) { return fs::equivalent(other.folder, each.folder); });
       if (!known) results.push_back(std::move(each));
     }
+  if (model_of)
+    for (Result& each : results) each.model = model_of(each.name, each.model);
   tell_apart(results);
   Comparison comparison;
   std::vector<Result> fits;

@@ -124,34 +124,14 @@ bool Workbench::refit(Arguments arguments) {
   return enter_parts(statement);
 }
 
-void Workbench::use_names_of_work(Comparison& comparison) const {
-  auto const rename = [&](std::string const& task, std::string& model) {
-    std::size_t place = work_.find(ItemKind::task, task);
-    if (place == work_.items.size()) return;
-    ast::Task tree = std::get<ast::Task>(item_of(work_.items[place].text));
-    // Of a prediction, that of its fit.
-    place = work_.find(ItemKind::task, tree.subject.text);
-    if (place < work_.items.size()) tree = std::get<ast::Task>(item_of(work_.items[place].text));
-    model.replace(0, std::min(model.find('('), model.size()), tree.subject.text);
-  };
-  // By model as the results call it: its names in the work, each with its fits.
-  std::map<std::string, std::vector<std::pair<std::string, std::string>>> fits;
-  for (ComparedFit& fit : comparison.fits) {
-    auto& names = fits[fit.model];
-    rename(fit.name, fit.model);
-    auto const known = std::find_if(names.begin(), names.end(), [&](auto const& each) { return each.first == fit.model; });
-    if (known == names.end())
-      names.emplace_back(fit.model, fit.name);
-    else
-      known->second += ", " + fit.name;
-  }
-  for (ComparedPrediction& prediction : comparison.predictions) rename(prediction.name, prediction.model);
-  // That models of one name differ is told by their names.
-  for (auto const& [model, names] : fits) {
-    std::string note = fmt::format("the fits of `{}` are of different models: ", model);
-    for (auto const& [name, tasks] : names) note += (&name == &names.front().first ? "" : "; ") + tasks;
-    std::erase(comparison.notes, note);
-  }
+std::string Workbench::model_of_work(std::string const& task, std::string model) const {
+  std::size_t place = work_.find(ItemKind::task, task);
+  if (place == work_.items.size()) return model;
+  ast::Task tree = std::get<ast::Task>(item_of(work_.items[place].text));
+  // Of a prediction, that of its fit.
+  place = work_.find(ItemKind::task, tree.subject.text);
+  if (place < work_.items.size()) tree = std::get<ast::Task>(item_of(work_.items[place].text));
+  return model.replace(0, std::min(model.find('('), model.size()), tree.subject.text);
 }
 
 bool Workbench::compare(Arguments tasks) {
@@ -171,9 +151,8 @@ bool Workbench::compare(Arguments tasks) {
     }
     folders.push_back(result->folder);
   }
-  Comparison comparison = sysid::compare(folders);
-  use_names_of_work(comparison);
-  answer_lines(comparison_text(comparison));
+  answer_lines(comparison_text(
+      sysid::compare(folders, [this](std::string const& task, std::string const& model) { return model_of_work(task, model); })));
   return true;
 }
 

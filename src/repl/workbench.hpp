@@ -20,9 +20,7 @@
 #include "repl/result.hpp"
 #include "repl/work.hpp"
 
-namespace sysid {
-struct Comparison;
-}
+namespace sysid {}
 
 namespace sysid::repl {
 
@@ -116,8 +114,8 @@ class Workbench {
   bool run(Arguments tasks);
   bool refit(Arguments);
   bool compare(Arguments tasks);
-  /// Models by the names of `list`, where what a task ran on is kept beside what it has become.
-  void use_names_of_work(Comparison& comparison) const;
+  /// The model of a task by the name of `list`, where what it ran on is kept beside what it has become.
+  std::string model_of_work(std::string const& task, std::string model) const;
   bool resume(Arguments task);
 
   // --- work_commands.cpp

@@ -119,12 +119,6 @@ TEST_CASE("fits of the same samples stand side by side on the page of a run, of 
   CHECK(page.find("<a href=\"#together\">") != std::string::npos);
   CHECK(page.find("cannot be compared") == std::string::npos);
 
-  DishRun const twice(
-      false, with(fits, "stays = fit still to dish with map", "again = fit decay to dish with map, start = estimated(rows = 2)"));
-  report_results(twice.results, twice.folder.path() / "all.html", false);
-  CHECK(read_file(twice.folder.path() / "all.html").find("are of different starts, rules of prediction or inputs: again; grows") !=
-        std::string::npos);
-
   std::string const parts =
       with(with(fits, "measure size = y\n", "measure size = y\n  split early = rows 1..2, late = rows 3..4\n"),
            "grows = fit decay to dish ", "grows = fit decay to dish.early ");

@@ -53,6 +53,35 @@ TEST_CASE("a fit that explains next to nothing and leaves more than noise fails,
   CHECK(found->at("severity") == "error");
 }
 
+TEST_CASE("a posterior where its prior has next to nothing is named, one in its middle or at a bound is not") {
+  auto const record = [](int row, Stream& stream) {
+    return 2 * std::exp(-0.005 * (row - 101)) + 0.01 * stream.normal();
+  };  // k = 0.05
+  std::string const broad = "k [1/s] ~ log_uniform(0.01, 10)";
+  for (auto const& [prior, named] :
+       {std::pair("k [1/s] ~ normal(0.06, sd = 0.002)", true), std::pair("k [1/s] ~ normal(0.05, sd = 0.002)", false),
+        std::pair("k [1/s] ~ log_uniform(0.01, 0.04)", false)}) {
+    CAPTURE(prior);
+    std::string statements = decay;
+    statements.replace(statements.find(broad), broad.size(), prior);
+    json const findings = findings_of_late_rows(statements, record);
+    json const* const found = find(findings, "prior_contradicted");
+    CHECK((found != nullptr) == named);
+    if (found != nullptr) CHECK(found->at("message").get<std::string>().starts_with("k is at 0.0"));
+  }
+}
+
+TEST_CASE("one spike neither hides what a fit misses nor is taken for it") {
+  // The decay alone is fitted; the record swings as well, and one sample is far off.
+  auto const record = [](int row, Stream& stream) {
+    return row == 250 ? 99 : 2 * std::exp(-0.05 * (row - 101)) + 0.05 * std::sin(0.4 * row) + 0.001 * stream.normal();
+  };
+  json const findings = findings_of_late_rows(decay, record);
+  CHECK(find(findings, "samples_far_off") != nullptr);
+  CHECK(find(findings, "residuals_not_white") != nullptr);
+  CHECK(find(findings, "explains_little") == nullptr);
+}
+
 TEST_CASE("noise larger than the response is no fault of the fit") {
   json const findings =
       findings_of_late_rows(decay, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + 3 * stream.normal(); });

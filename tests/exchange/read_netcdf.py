@@ -111,7 +111,8 @@ def main():
             for variable, suffix in ((f"{name}_response{label}", ""), (f"{name}{label}", "_noisy")):
                 values = group[variable].values[0]
                 for column, ours in (("mean", values.mean(0)), ("sd", values.std(0, ddof=1)),
-                                     ("q2.5", np.quantile(values, 0.025, axis=0)), ("q97.5", np.quantile(values, 0.975, axis=0))):
+                                     ("q2.5", np.quantile(values, 0.025, axis=0, method="weibull")),
+                                     ("q97.5", np.quantile(values, 0.975, axis=0, method="weibull"))):
                     require(close(ours, rows[:, header.index(f"{name}{suffix}_{column}")], 1e-11), f"{column} of {variable}")
     print(f"{compared} comparisons; groups: {' '.join(groups)}")
 
