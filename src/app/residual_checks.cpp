@@ -92,10 +92,6 @@ struct ScoredChannel {
   }
 };
 
-bool among(std::vector<std::size_t> const& places, std::size_t place) {
-  return std::find(places.begin(), places.end(), place) != places.end();
-}
-
 std::vector<double> without(std::vector<double> residuals, std::vector<std::size_t> const& places) {
   for (std::size_t const place : places) residuals[place] = std::nan("");
   return residuals;
@@ -138,12 +134,12 @@ std::vector<std::size_t> spikes(ScoredChannel const& of) {
   return alone(of, outliers(errors));
 }
 
-// nmse [%] without `left_out`, on the scale on which the noise has one size: by logarithms where it multiplies.
+// nmse [%] without `left_out`, places that rise, on the scale on which the noise has one size: by logarithms where it multiplies.
 double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& left_out) {
   DistributionRow const& noise = *of.described().noise.row;
   std::vector<double> observed, predicted;
   for (std::size_t i = 0; i < of.observed.size(); ++i) {
-    if (among(left_out, of.places[i])) continue;
+    if (std::binary_search(left_out.begin(), left_out.end(), of.places[i])) continue;
     observed.push_back(of.observed[i]);
     predicted.push_back(of.predicted[i]);
   }
