@@ -10,7 +10,8 @@ namespace sysid {
 /// shows in later ones, which a free run leaves out.
 bool add_coverage(Report& report, bool fed_back);
 
-/// A warning where the fit whose results are in that folder has failed its checks: `from_doubtful_fit`.
+/// `from_doubtful_fit`: an error where the fit whose results are in that folder has failed its checks or is unfinished, a warning
+/// where it is to be used with care.
 void add_source(std::filesystem::path const& fit, Report& report);
 
 /// What a prediction's bands allow, from its findings and failures; missed: as `add_coverage` says.
