@@ -1,5 +1,5 @@
 // What a fit leaves unexplained, experiment by experiment and channel by channel: how much of it there is, of which size, and
-// whether it is noise.
+// whether it is noise; and which priors it contradicts.
 #pragma once
 #include <string>
 #include <vector>
