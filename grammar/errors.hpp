@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "grammar/scan.hpp"
 
 namespace sysid::grammar::errors {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "grammar/layout.hpp"
 
 namespace sysid::grammar {

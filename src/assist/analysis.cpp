@@ -3,11 +3,11 @@
 
 #include <sstream>
 
-#include "app/pipeline.hpp"
-#include "app/readiness.hpp"
-#include "app/session.hpp"
+#include "app/session/preconditions.hpp"
+#include "app/session/session.hpp"
 #include "assist/resolve.hpp"
 #include "grammar/layout.hpp"
+#include "load/load.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid::assist {

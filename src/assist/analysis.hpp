@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "app/modules.hpp"
 #include "assist/symbols.hpp"
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
+#include "load/modules.hpp"
 
 namespace sysid::assist {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/modules.hpp"
-#include "core/source.hpp"
+#include "core/text/source.hpp"
+#include "load/modules.hpp"
 
 namespace sysid::assist {
 

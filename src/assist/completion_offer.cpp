@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "data/table.hpp"
 #include "syntax/words.hpp"
 

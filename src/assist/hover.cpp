@@ -5,11 +5,11 @@
 
 #include <algorithm>
 
-#include "app/module_page.hpp"
+#include "app/catalogue/module_page.hpp"
 #include "check/elaborate/elaborate.hpp"
-#include "check/model.hpp"
-#include "check/scope.hpp"
-#include "check/units.hpp"
+#include "check/expression/scope.hpp"
+#include "check/model/model.hpp"
+#include "check/units/units.hpp"
 
 namespace sysid::assist {
 namespace {

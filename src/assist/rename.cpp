@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <set>
 
-#include "app/pipeline.hpp"
-#include "core/files.hpp"
+#include "core/system/files.hpp"
+#include "load/load.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/words.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "assist/name_scopes.hpp"
 #include "assist/use_resolver.hpp"
-#include "check/tasks.hpp"
+#include "check/task/tasks.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::assist {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid::assist {

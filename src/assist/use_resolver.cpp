@@ -5,7 +5,7 @@
 #include <array>
 #include <set>
 
-#include "check/option_reader.hpp"
+#include "check/expression/option_reader.hpp"
 
 namespace sysid::assist {
 namespace {

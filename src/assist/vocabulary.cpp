@@ -8,18 +8,17 @@
 #include <map>
 #include <sstream>
 
+#include "check/dictionary/generators.hpp"
 #include "check/elaborate/array_functions.hpp"
-#include "check/generator.hpp"
-#include "check/generators.hpp"
-#include "check/task_options.hpp"
-#include "core/solver.hpp"
+#include "check/task/signal_generators.hpp"
+#include "check/task/task_options.hpp"
+#include "core/setting/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
-#include "inference/backend.hpp"
-#include "inference/selector.hpp"
-#include "regression/columns.hpp"
-#include "regression/selector.hpp"
+#include "inference/table.hpp"
+#include "regression/choice/selector.hpp"
+#include "regression/column/columns.hpp"
 
 namespace sysid::assist {
 namespace {

@@ -6,15 +6,15 @@
 #include <map>
 #include <set>
 
-#include "check/candidates.hpp"
-#include "check/consequences.hpp"
-#include "check/culprit.hpp"
-#include "check/data.hpp"
-#include "check/dictionary.hpp"
-#include "check/errors.hpp"
-#include "check/model.hpp"
-#include "check/tasks.hpp"
-#include "check/unused.hpp"
+#include "check/cascade_filter.hpp"
+#include "check/data/data.hpp"
+#include "check/dictionary/dictionary.hpp"
+#include "check/message/errors.hpp"
+#include "check/model/model.hpp"
+#include "check/model/unit_blame.hpp"
+#include "check/model/unused.hpp"
+#include "check/task/candidates.hpp"
+#include "check/task/tasks.hpp"
 
 namespace sysid {
 namespace {

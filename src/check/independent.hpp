@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid {

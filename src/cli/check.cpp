@@ -3,11 +3,13 @@
 
 #include <sstream>
 
-#include "app/check_file.hpp"
-#include "app/session.hpp"
+#include "app/preflight/check_file.hpp"
+#include "app/session/session.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "core/wrapped.hpp"
+#include "core/text/wrapped.hpp"
+#include "diagnostics/verdict.hpp"
+#include "report/page/check_page.hpp"
 
 namespace sysid::cli {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "exchange/export_netcdf.hpp"
 #include "exchange/export_stan.hpp"
 #include "syntax/parse.hpp"

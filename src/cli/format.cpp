@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "cli/command.hpp"
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 
 namespace sysid::cli {
 namespace {

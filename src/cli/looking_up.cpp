@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/explain.hpp"
-#include "app/lists.hpp"
-#include "app/module_page.hpp"
+#include "app/catalogue/explain.hpp"
+#include "app/catalogue/lists.hpp"
+#include "app/catalogue/module_page.hpp"
 #include "cli/command.hpp"
-#include "core/instruction_set.hpp"
-#include "core/wrapped.hpp"
+#include "core/numeric/instruction_set.hpp"
+#include "core/text/wrapped.hpp"
 
 namespace sysid::cli {
 namespace {

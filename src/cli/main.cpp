@@ -2,7 +2,7 @@
 #include "cli/command.hpp"
 #include "cli/help.hpp"
 #include "cli/usage.hpp"
-#include "core/instruction_set.hpp"
+#include "core/numeric/instruction_set.hpp"
 
 namespace sysid::cli {
 namespace {

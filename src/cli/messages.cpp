@@ -6,10 +6,10 @@
 
 #include <new>
 
-#include "app/experiments.hpp"
-#include "core/colour.hpp"
-#include "core/files.hpp"
-#include "core/wrapped.hpp"
+#include "core/system/colour.hpp"
+#include "core/system/files.hpp"
+#include "core/text/wrapped.hpp"
+#include "experiment/experiments.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid::cli {

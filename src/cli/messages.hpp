@@ -4,9 +4,9 @@
 #include <iostream>
 #include <string>
 
-#include "app/options.hpp"
-#include "app/pipeline.hpp"
-#include "core/diagnostic.hpp"
+#include "app/session/options.hpp"
+#include "core/text/diagnostic.hpp"
+#include "load/load.hpp"
 
 namespace sysid::cli {
 

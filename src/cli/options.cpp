@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "report/figure_format.hpp"
+#include "report/figure/figure_format.hpp"
 
 namespace sysid::cli {
 namespace {

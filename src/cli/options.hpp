@@ -2,7 +2,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 
-#include "app/options.hpp"
+#include "app/session/options.hpp"
 
 namespace sysid::cli {
 

@@ -1,11 +1,11 @@
 // compare, report: what can be made of results that are there.
 #include <unistd.h>
 
-#include "app/compare.hpp"
-#include "app/report_results.hpp"
+#include "app/run/compare.hpp"
+#include "app/run/report_results.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "core/wrapped.hpp"
+#include "core/text/wrapped.hpp"
 
 namespace sysid::cli {
 

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/pipeline.hpp"
+#include "app/run/pipeline.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "core/instruction_set.hpp"
-#include "core/interrupt.hpp"
-#include "core/progress_terminal.hpp"
-#include "core/wrapped.hpp"
+#include "core/numeric/instruction_set.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/system/progress_terminal.hpp"
+#include "core/text/wrapped.hpp"
 
 namespace sysid::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/unit.hpp"
+#include "core/numeric/unit.hpp"
 
 namespace sysid {
 

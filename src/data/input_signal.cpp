@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "data/errors.hpp"
 #include "data/experiment.hpp"
 #include "data/spline.hpp"

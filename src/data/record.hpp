@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostic.hpp"
-#include "core/unit.hpp"
+#include "core/numeric/unit.hpp"
+#include "core/text/diagnostic.hpp"
 #include "data/experiment.hpp"
 
 namespace sysid {

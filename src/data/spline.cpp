@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 namespace sysid {
 namespace {

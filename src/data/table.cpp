@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "data/digest.hpp"
 #include "data/errors.hpp"
 

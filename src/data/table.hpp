@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 
 namespace sysid {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "expression/graph.hpp"
 
 namespace sysid {

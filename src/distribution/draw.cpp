@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "distribution/distribution.hpp"
 
 namespace sysid {

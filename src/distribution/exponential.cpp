@@ -1,5 +1,5 @@
 // The exponential distribution.
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 
 namespace sysid {

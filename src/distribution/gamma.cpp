@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 #include "function/boost_policy.hpp"
 

@@ -1,5 +1,5 @@
 // The half-Cauchy distribution: the absolute value of a Cauchy variate around 0.
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 
 namespace sysid {

@@ -1,5 +1,5 @@
 // The log-normal distribution: the logarithm of x is normal.
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 
 namespace sysid {

@@ -1,5 +1,5 @@
 // The negative binomial distribution: counts that scatter more than Poisson's.
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/counts.hpp"
 
 namespace sysid {

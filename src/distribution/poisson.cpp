@@ -1,5 +1,5 @@
 // The Poisson distribution: counts of independent events.
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/counts.hpp"
 
 namespace sysid {

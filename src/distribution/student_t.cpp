@@ -1,7 +1,7 @@
 // Student's t with location and scale: noise with outliers.
 #include <boost/math/special_functions/beta.hpp>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 #include "function/boost_policy.hpp"
 

@@ -1,7 +1,7 @@
 // All distributions of the language, in the order `sysid list distributions` prints. A new one is a file and a line here.
 #include "distribution/rows.hpp"
 
-#include "core/table.hpp"
+#include "core/setting/table.hpp"
 
 namespace sysid {
 

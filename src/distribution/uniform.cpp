@@ -1,7 +1,7 @@
 // The uniform distribution and the log-uniform distribution, whose logarithm is uniform.
 #include <algorithm>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 
 namespace sysid {

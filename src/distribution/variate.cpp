@@ -1,7 +1,7 @@
 // Variates and quantiles that several distributions share, from core/elementary alone: the same bits on every processor.
 #include <cmath>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 
 namespace sysid {

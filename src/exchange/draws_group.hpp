@@ -2,7 +2,7 @@
 // further dimensions, as ArviZ has them.
 #pragma once
 #include "exchange/netcdf.hpp"
-#include "inference/draws.hpp"
+#include "result/draws.hpp"
 
 namespace sysid {
 

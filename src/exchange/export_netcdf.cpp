@@ -3,15 +3,16 @@
 
 #include <fmt/format.h>
 
-#include "app/made_from.hpp"
-#include "app/results.hpp"
-#include "core/files.hpp"
+#include "app/session/made_from.hpp"
+#include "app/session/results.hpp"
+#include "core/system/files.hpp"
 #include "exchange/inference_data.hpp"
 #include "exchange/predictions_data.hpp"
 #include "exchange/refused.hpp"
 #include "exchange/selection_data.hpp"
 #include "exchange/simulated_data.hpp"
-#include "report/selection.hpp"
+#include "report/file/selection.hpp"
+#include "result/selection.hpp"
 
 namespace sysid {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "app/experiments.hpp"
-#include "app/stored_draws.hpp"
-#include "core/files.hpp"
+#include "app/session/stored_draws.hpp"
+#include "core/system/files.hpp"
 #include "exchange/refused.hpp"
 #include "exchange/stan_program.hpp"
+#include "experiment/experiments.hpp"
 
 namespace sysid {
 namespace {

@@ -1,9 +1,9 @@
 // Stored draws as they are, and the data beside them.
 #include "exchange/inference_data.hpp"
 
-#include "app/experiments.hpp"
 #include "exchange/draws_group.hpp"
 #include "exchange/sample_groups.hpp"
+#include "experiment/experiments.hpp"
 
 namespace sysid {
 

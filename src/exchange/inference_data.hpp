@@ -3,7 +3,7 @@
 // Groups and their names after the schema of InferenceData: posterior, sample_stats, log_likelihood, posterior_predictive,
 // observed_data, constant_data, prior, prior_predictive, predictions, predictions_constant_data.
 #pragma once
-#include "app/session.hpp"
+#include "app/session/session.hpp"
 #include "exchange/netcdf.hpp"
 #include "exchange/stored_result.hpp"
 

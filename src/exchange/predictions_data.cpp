@@ -7,9 +7,9 @@
 #include <functional>
 #include <numeric>
 
-#include "app/posterior_trajectories.hpp"
-#include "app/process_trajectories.hpp"
-#include "app/selection_trajectories.hpp"
+#include "app/process/process_trajectories.hpp"
+#include "app/selection/selection_trajectories.hpp"
+#include "app/session/posterior_trajectories.hpp"
 #include "exchange/draws_group.hpp"
 #include "exchange/sample_groups.hpp"
 

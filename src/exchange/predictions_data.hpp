@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "app/session.hpp"
+#include "app/session/session.hpp"
 #include "exchange/inference_data.hpp"
 
 namespace sysid {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "exchange/refused.hpp"
 
 namespace sysid {

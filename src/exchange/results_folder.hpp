@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/session.hpp"
+#include "app/session/session.hpp"
 #include "exchange/stored_result.hpp"
 
 namespace sysid {

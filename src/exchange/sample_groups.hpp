@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "app/session.hpp"
+#include "app/session/session.hpp"
 #include "exchange/netcdf.hpp"
 #include "likelihood/trajectory.hpp"
 

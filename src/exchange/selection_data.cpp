@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
-#include "app/stored_draws.hpp"
-#include "core/diagnostic.hpp"
+#include "app/session/stored_draws.hpp"
+#include "core/text/diagnostic.hpp"
+#include "core/text/number.hpp"
 #include "exchange/draws_group.hpp"
-#include "report/number.hpp"
-#include "report/selection.hpp"
+#include "report/file/selection.hpp"
+#include "result/selection.hpp"
 
 namespace sysid {
 namespace {

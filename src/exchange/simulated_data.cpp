@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <numeric>
 
-#include "app/bands.hpp"
-#include "app/derived_draws.hpp"
-#include "app/experiments.hpp"
-#include "app/fit_target.hpp"
-#include "app/stored_draws.hpp"
+#include "app/session/derived_draws.hpp"
+#include "app/session/fit_target.hpp"
+#include "app/session/stored_draws.hpp"
+#include "diagnostics/bands.hpp"
 #include "exchange/draws_group.hpp"
 #include "exchange/predictions_data.hpp"
 #include "exchange/sample_groups.hpp"
+#include "experiment/experiments.hpp"
 #include "likelihood/pointwise.hpp"
 
 namespace sysid {

@@ -1,6 +1,6 @@
 // What the model of a fit adds to its stored draws: likelihoods and predictive samples, simulated once more.
 #pragma once
-#include "app/session.hpp"
+#include "app/session/session.hpp"
 #include "exchange/inference_data.hpp"
 
 namespace sysid {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/reporting.hpp"
+#include "app/session/reporting.hpp"
 
 namespace sysid {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/experiments.hpp"
-#include "app/session.hpp"
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
 
 namespace sysid {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "exchange/stan_text.hpp"
 
 namespace sysid {

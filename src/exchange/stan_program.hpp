@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "app/session.hpp"
+#include "app/session/session.hpp"
 
 namespace sysid {
 

@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/text/number.hpp"
 #include "expression/function.hpp"
-#include "report/number.hpp"
 
 namespace sysid {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "app/stored_draws.hpp"
-#include "core/files.hpp"
+#include "app/session/stored_draws.hpp"
+#include "core/system/files.hpp"
 #include "exchange/refused.hpp"
 
 namespace sysid {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "inference/draws.hpp"
+#include "result/draws.hpp"
 
 namespace sysid {
 

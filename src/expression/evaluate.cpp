@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/diagnostic.hpp"
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/text/diagnostic.hpp"
 #include "expression/function.hpp"
 #include "expression/graph.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "expression/function.hpp"
 #include "expression/graph.hpp"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "expression/graph.hpp"
 
 namespace sysid {

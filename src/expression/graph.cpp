@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "expression/function.hpp"
 
 namespace sysid {

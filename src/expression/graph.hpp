@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 
 namespace sysid {
 

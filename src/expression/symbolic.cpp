@@ -1,8 +1,8 @@
 // Symbolic passes over a graph: derivatives and substitution. Both walk in topological order, so depth costs no stack.
 #include <string>
 
-#include "core/diagnostic.hpp"
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/text/diagnostic.hpp"
 #include "expression/function.hpp"
 #include "expression/graph.hpp"
 

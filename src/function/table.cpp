@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/table.hpp"
+#include "core/setting/table.hpp"
 #include "function/primitive.hpp"
 
 namespace sysid {

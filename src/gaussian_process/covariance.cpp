@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "gaussian_process/conditions.hpp"
 #include "gaussian_process/jet.hpp"
 #include "linear_algebra/lapack.hpp"

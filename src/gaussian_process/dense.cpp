@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "linear_algebra/lapack.hpp"
 
 namespace sysid::gaussian_process {

@@ -1,6 +1,6 @@
 // Regression by the covariance matrix of all observations: any covariance, up to some thousands of them.
 #pragma once
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "gaussian_process/covariance.hpp"
 #include "gaussian_process/linear_mean.hpp"
 #include "gaussian_process/observations.hpp"

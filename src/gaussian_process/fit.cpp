@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/elementary.hpp"
-#include "core/not_finite.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "gaussian_process/maximise.hpp"
 
 namespace sysid::gaussian_process {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "gaussian_process/concern.hpp"
 #include "gaussian_process/covariance.hpp"
 #include "gaussian_process/observations.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 namespace sysid::gaussian_process {
 

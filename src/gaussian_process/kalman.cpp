@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 namespace sysid::gaussian_process {
 namespace {

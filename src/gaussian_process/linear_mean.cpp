@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid::gaussian_process {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "expression/term.hpp"
 #include "gaussian_process/rows.hpp"
 

@@ -1,7 +1,7 @@
 // The displacement of an oscillator under white noise: physics in the covariance.
 #include <cmath>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "expression/term.hpp"
 #include "gaussian_process/rows.hpp"
 

@@ -1,7 +1,7 @@
 // The periodic kernel: functions that repeat themselves.
 #include <numbers>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {

@@ -8,10 +8,10 @@
 #include <array>
 #include <cmath>
 
-#include "core/elementary.hpp"
-#include "inference/laplace.hpp"
-#include "inference/refit.hpp"
+#include "core/numeric/elementary.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "search/laplace.hpp"
+#include "search/refit.hpp"
 
 namespace sysid {
 namespace {

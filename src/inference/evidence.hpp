@@ -6,18 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "inference/backend.hpp"
+#include "likelihood/target.hpp"
+#include "result/evidence.hpp"
+#include "result/mode.hpp"
+#include "search/aim.hpp"
 
 namespace sysid {
-
-struct Evidence {
-  std::optional<double> log_evidence;  // nats, of densities in declared units
-  std::string reason;                  // why there is none
-  /// How far the density is from normal: by the axes of the modes' ellipsoids, one by one, log_evidence would be larger by this.
-  double along_axes = 0;
-  int modes = 0;               // that it is the sum over
-  bool of_likelihood = false;  // there is none by the nature of the fit
-};
 
 /// From the modes of the density that `aim` names, which are followed to those of the density on the sampler's coordinates:
 ///

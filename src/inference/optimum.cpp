@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "inference/checkpoint.hpp"
-#include "inference/laplace.hpp"
-#include "inference/search.hpp"
+#include "inference/backend/checkpoint.hpp"
+#include "search/laplace.hpp"
+#include "search/search.hpp"
 
 namespace sysid::optimum {
 namespace {

@@ -1,6 +1,6 @@
 // `map` and `ml`: one point and its Laplace widths, in the form of every other result.
 #pragma once
-#include "inference/backend.hpp"
+#include "inference/backend/backend.hpp"
 
 namespace sysid::optimum {
 

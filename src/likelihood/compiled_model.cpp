@@ -8,7 +8,7 @@
 
 #include "model/dump.hpp"
 
-#include "core/solver.hpp"
+#include "core/setting/solver.hpp"
 #include "likelihood/parameter_space.hpp"
 
 namespace sysid {

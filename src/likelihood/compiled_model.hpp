@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 #include "model/model.hpp"
 #include "program/kernel.hpp"
 #include "program/simulation_program.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/ledger.hpp"
+#include "core/system/ledger.hpp"
 #include "simulate/simulator.hpp"
 
 namespace sysid {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnostic.hpp"
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "core/text/diagnostic.hpp"
 #include "likelihood/failures.hpp"
 #include "simulate/thread_pool.hpp"
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnostic.hpp"
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "likelihood/target.hpp"
 #include "model/model.hpp"
 #include "program/kernel.hpp"

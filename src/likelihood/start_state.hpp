@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "core/numeric/lanes.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "simulate/simulator.hpp"
 

@@ -1,7 +1,7 @@
 // What a target need not have.
 #include "likelihood/target.hpp"
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 

@@ -5,20 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.hpp"
-#include "core/ledger.hpp"
-#include "core/random.hpp"
+#include "core/numeric/lanes.hpp"
+#include "core/numeric/random.hpp"
+#include "core/system/ledger.hpp"
+#include "result/parameter_info.hpp"
 
 namespace sysid {
-
-/// A sampled parameter as the user declared it.
-struct ParameterInfo {
-  std::string name;
-  std::string unit;  // as written; may be empty
-  double lower,
-      upper;  // bounds of the prior's support, declared unit; infinite where there is none or it depends on other parameters
-  bool coefficient = false;  // of an unknown function: a search begins with it at zero, whatever the prior draws
-};
 
 class Target {
  public:

@@ -1,7 +1,7 @@
 // Records of the trajectory program, in declared units, a few dozen parameter vectors at a time so that long records fit in memory.
 #include "likelihood/trajectory.hpp"
 
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
 
 #include <algorithm>
 #include <cmath>

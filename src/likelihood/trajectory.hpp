@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "likelihood/failures.hpp"
 #include "likelihood/start_state.hpp"

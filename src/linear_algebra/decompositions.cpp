@@ -8,7 +8,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 namespace sysid {
 

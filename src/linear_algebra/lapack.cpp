@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid::lapack {
 namespace {

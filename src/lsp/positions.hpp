@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 
 namespace sysid::lsp {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "core/source.hpp"
-#include "core/unit.hpp"
+#include "core/numeric/unit.hpp"
+#include "core/text/source.hpp"
 
 namespace sysid {
 

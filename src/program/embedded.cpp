@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/solver.hpp"
+#include "core/setting/solver.hpp"
 #include "expression/function.hpp"
 #include "expression/switching.hpp"
 #include "program/frozen.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <unordered_map>
 
-#include "core/diagnostic.hpp"
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 namespace {

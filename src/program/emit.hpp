@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "expression/graph.hpp"
-#include "program/code.hpp"
+#include "program/bytecode/code.hpp"
 
 namespace sysid {
 

@@ -1,7 +1,7 @@
 // The table of explicit one-step methods, and what they share.
 #include "program/integrator.hpp"
 
-#include "core/table.hpp"
+#include "core/setting/table.hpp"
 
 namespace sysid {
 

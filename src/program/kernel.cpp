@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "program/algebra.hpp"
 #include "program/emit.hpp"
 #include "program/interpreter/executor.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "core/numeric/lanes.hpp"
 #include "expression/graph.hpp"
-#include "program/code.hpp"
+#include "program/bytecode/code.hpp"
 
 namespace sysid {
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <tuple>
 
-#include "core/diagnostic.hpp"
-#include "core/solver.hpp"
+#include "core/setting/solver.hpp"
+#include "core/text/diagnostic.hpp"
 #include "program/algebra.hpp"
 #include "program/embedded.hpp"
 #include "program/emit.hpp"

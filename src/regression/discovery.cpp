@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "regression/dependence.hpp"
-#include "regression/triangle.hpp"
+#include "regression/choice/triangle.hpp"
+#include "regression/column/dependence.hpp"
 
 namespace sysid::regression {
 namespace {

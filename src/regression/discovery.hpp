@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "core/settings.hpp"
+#include "core/setting/settings.hpp"
 #include "data/experiment.hpp"
-#include "regression/columns.hpp"
-#include "regression/concern.hpp"
-#include "regression/dictionary.hpp"
-#include "regression/selector.hpp"
+#include "regression/choice/selector.hpp"
+#include "regression/column/columns.hpp"
+#include "regression/column/concern.hpp"
+#include "regression/column/dictionary.hpp"
 
 namespace sysid::regression {
 

@@ -1,8 +1,8 @@
 // The ways to have derivatives, one line each.
-#include "core/table.hpp"
-#include "regression/columns.hpp"
-#include "regression/sampled.hpp"
-#include "regression/weak.hpp"
+#include "core/setting/table.hpp"
+#include "regression/column/columns.hpp"
+#include "regression/column/sampled.hpp"
+#include "regression/weak/weak.hpp"
 
 namespace sysid::regression {
 namespace {

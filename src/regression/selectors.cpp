@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/elementary.hpp"
-#include "core/table.hpp"
-#include "regression/ard.hpp"
-#include "regression/selector.hpp"
-#include "regression/spike_slab.hpp"
-#include "regression/threshold.hpp"
-#include "regression/triangle.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/setting/table.hpp"
+#include "regression/choice/ard.hpp"
+#include "regression/choice/selector.hpp"
+#include "regression/choice/spike_slab.hpp"
+#include "regression/choice/threshold.hpp"
+#include "regression/choice/triangle.hpp"
 
 namespace sysid::regression {
 namespace {

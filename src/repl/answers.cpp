@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "inference/convergence.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/convergence.hpp"
 #include "repl/workbench.hpp"
-#include "report/number.hpp"
+#include "report/text/summary_text.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid::repl {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "report/number.hpp"
+#include "core/text/number.hpp"
 
 namespace sysid::repl {
 namespace {

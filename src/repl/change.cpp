@@ -6,10 +6,10 @@
 #include <optional>
 #include <set>
 
-#include "check/walk.hpp"
 #include "repl/entry.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid::repl {
 namespace {

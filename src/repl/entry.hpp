@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid::repl {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "app/pipeline.hpp"
-#include "core/files.hpp"
+#include "core/system/files.hpp"
+#include "core/text/number.hpp"
 #include "data/table.hpp"
+#include "load/load.hpp"
 #include "repl/workbench.hpp"
-#include "report/number.hpp"
 #include "syntax/format.hpp"
 #include "syntax/parse.hpp"
 

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "app/explain.hpp"
-#include "app/lists.hpp"
-#include "app/module_page.hpp"
-#include "core/wrapped.hpp"
+#include "app/catalogue/explain.hpp"
+#include "app/catalogue/lists.hpp"
+#include "app/catalogue/module_page.hpp"
+#include "core/text/wrapped.hpp"
 #include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"

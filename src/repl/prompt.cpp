@@ -6,10 +6,10 @@
 
 #include <iostream>
 
-#include "core/colour.hpp"
-#include "core/files.hpp"
-#include "core/progress_terminal.hpp"
-#include "core/wrapped.hpp"
+#include "core/system/colour.hpp"
+#include "core/system/files.hpp"
+#include "core/system/progress_terminal.hpp"
+#include "core/text/wrapped.hpp"
 #include "repl/state.hpp"
 
 namespace sysid::repl {

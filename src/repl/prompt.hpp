@@ -3,8 +3,8 @@
 #include <istream>
 #include <string>
 
-#include "app/options.hpp"
-#include "core/progress.hpp"
+#include "app/session/options.hpp"
+#include "core/system/progress.hpp"
 #include "repl/workbench.hpp"
 
 namespace sysid::repl {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/scope.hpp"
-#include "check/walk.hpp"
+#include "check/expression/scope.hpp"
 #include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid::repl {
 namespace {

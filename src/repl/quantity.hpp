@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/diagnostic.hpp"
-#include "core/unit.hpp"
+#include "core/numeric/unit.hpp"
+#include "core/text/diagnostic.hpp"
 #include "repl/result.hpp"
 #include "syntax/ast.hpp"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/files.hpp"
-#include "report/number_table.hpp"
+#include "core/system/files.hpp"
+#include "report/file/number_table.hpp"
 
 namespace sysid::repl {
 namespace {

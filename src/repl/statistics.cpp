@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "inference/convergence.hpp"
+#include "core/numeric/statistics.hpp"
 
 namespace sysid::repl {
 namespace {

@@ -5,11 +5,11 @@
 #include <map>
 #include <set>
 
-#include "app/check_file.hpp"
-#include "app/compare.hpp"
+#include "app/preflight/check_file.hpp"
+#include "app/run/compare.hpp"
 #include "repl/words.hpp"
 #include "repl/workbench.hpp"
-#include "report/check_page.hpp"
+#include "report/page/check_page.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/parse.hpp"
 

@@ -5,13 +5,13 @@
 #include <random>
 #include <sstream>
 
-#include "app/pipeline.hpp"
-#include "app/results.hpp"
-#include "app/stored_draws.hpp"
-#include "core/interrupt.hpp"
-#include "core/wrapped.hpp"
+#include "app/run/pipeline.hpp"
+#include "app/session/results.hpp"
+#include "app/session/stored_draws.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/text/wrapped.hpp"
 #include "repl/workbench.hpp"
-#include "report/result.hpp"
+#include "report/file/result_folder.hpp"
 
 namespace sysid::repl {
 namespace {

@@ -13,12 +13,12 @@
 #include <iostream>
 #include <memory>
 
-#include "core/interrupt.hpp"
-#include "core/wrapped.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/text/number.hpp"
+#include "core/text/wrapped.hpp"
 #include "repl/completion.hpp"
 #include "repl/prompt.hpp"
 #include "repl/state.hpp"
-#include "report/number.hpp"
 #include "syntax/entry.hpp"
 
 namespace sysid::repl {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/parse.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid::repl {

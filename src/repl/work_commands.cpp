@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "app/lists.hpp"
-#include "core/wrapped.hpp"
+#include "app/catalogue/lists.hpp"
+#include "core/text/number.hpp"
+#include "core/text/wrapped.hpp"
 #include "repl/change.hpp"
 #include "repl/help.hpp"
 #include "repl/workbench.hpp"
-#include "report/number.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/format.hpp"
 

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <new>
 
-#include "app/experiments.hpp"
-#include "app/pipeline.hpp"
-#include "app/readiness.hpp"
-#include "core/wrapped.hpp"
+#include "app/session/preconditions.hpp"
+#include "core/text/wrapped.hpp"
 #include "data/table.hpp"
+#include "experiment/experiments.hpp"
+#include "load/load.hpp"
 #include "repl/change.hpp"
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "app/options.hpp"
-#include "app/session.hpp"
-#include "core/diagnostic.hpp"
-#include "core/progress.hpp"
+#include "app/session/options.hpp"
+#include "app/session/session.hpp"
+#include "core/system/progress.hpp"
+#include "core/text/diagnostic.hpp"
 #include "repl/canvas.hpp"
 #include "repl/entry.hpp"
 #include "repl/quantity.hpp"

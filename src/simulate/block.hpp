@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "core/numeric/lanes.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
 #include "simulate/schedule.hpp"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/diagnostic.hpp"
-#include "core/lanes.hpp"
+#include "core/numeric/lanes.hpp"
+#include "core/text/diagnostic.hpp"
 #include "program/embedded.hpp"
 
 namespace sysid {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/solver.hpp"
+#include "core/setting/solver.hpp"
 #include "data/experiment.hpp"
 #include "program/simulation_program.hpp"
 

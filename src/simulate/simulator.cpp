@@ -6,7 +6,7 @@
 #include <limits>
 #include <thread>
 
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "simulate/block.hpp"
 #include "simulate/thread_pool.hpp"
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/lanes.hpp"
-#include "core/ledger.hpp"
+#include "core/numeric/lanes.hpp"
+#include "core/system/ledger.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
 #include "simulate/schedule.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "simulate/adaptive_lanes.hpp"
 #include "simulate/lane_solver.hpp"
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <optional>
 
-#include "core/lanes.hpp"
-#include "core/ledger.hpp"
+#include "core/numeric/lanes.hpp"
+#include "core/system/ledger.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
 #include "simulate/schedule.hpp"

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "simulate/algebraic_states.hpp"
 #include "simulate/sundials_lane.hpp"
 

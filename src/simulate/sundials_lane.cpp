@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "simulate/state_sizes.hpp"
 
 namespace sysid {

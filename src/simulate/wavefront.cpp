@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "simulate/block.hpp"
 
 namespace sysid {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "core/lanes.hpp"
+#include "core/numeric/lanes.hpp"
 #include "simulate/simulator.hpp"
 
 namespace sysid {

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 
 namespace sysid::ast {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 
 namespace sysid {
 

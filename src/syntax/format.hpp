@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 

@@ -1,7 +1,7 @@
 // MathML Core, and well-formed as XML: characters in place of named entities.
 #include <fmt/format.h>
 
-#include "core/xml.hpp"
+#include "core/text/xml.hpp"
 #include "typeset/notation.hpp"
 #include "typeset/symbol.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "core/source.hpp"
-#include "core/xml.hpp"
+#include "core/text/source.hpp"
+#include "core/text/xml.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/parse.hpp"
 #include "typeset/formula.hpp"

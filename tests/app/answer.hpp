@@ -5,9 +5,9 @@
 #include <sstream>
 #include <string>
 
-#include "app/experiments.hpp"
-#include "app/pipeline.hpp"
-#include "app/readiness.hpp"
+#include "app/run/pipeline.hpp"
+#include "app/session/preconditions.hpp"
+#include "experiment/experiments.hpp"
 #include "temporary_folder.hpp"
 
 namespace sysid::test {

@@ -1,6 +1,8 @@
 // `sysid check`: silent on what is sound, and naming what is planted: null directions, wild priors, coarse steps, data that are not
 // there. SYSID_BLESS=1 rewrites the recorded pages.
-#include "app/check_file.hpp"
+#include "app/preflight/check_file.hpp"
+#include "diagnostics/verdict.hpp"
+#include "report/page/check_page.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // `sysid check` of Gaussian processes at samples: silent on priors that suit the data, and naming those that do not.
-#include "app/check_process.hpp"
+#include "app/preflight/check_process.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "app/checking.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;

@@ -6,6 +6,8 @@
 
 #include "app/checking.hpp"
 #include "app/running.hpp"
+#include "diagnostics/verdict.hpp"
+#include "report/page/check_page.hpp"
 
 using namespace sysid;
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/check_file.hpp"
-#include "app/pipeline.hpp"
-#include "core/files.hpp"
+#include "app/preflight/check_file.hpp"
+#include "core/system/files.hpp"
+#include "load/load.hpp"
 
 namespace sysid {
 

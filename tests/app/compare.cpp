@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/compare.hpp"
-#include "app/report_results.hpp"
+#include "app/run/compare.hpp"
+#include "app/run/report_results.hpp"
 #include "app/running.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

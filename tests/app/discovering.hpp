@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "app/readiness.hpp"
 #include "app/running.hpp"
-#include "core/random.hpp"
+#include "app/session/preconditions.hpp"
+#include "core/numeric/random.hpp"
 
 namespace sysid::test {
 

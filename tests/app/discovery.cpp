@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "app/check_file.hpp"
 #include "app/discovered.hpp"
-#include "app/session.hpp"
+#include "app/preflight/check_file.hpp"
+#include "app/session/session.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

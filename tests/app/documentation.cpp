@@ -20,14 +20,14 @@
 #include <map>
 #include <regex>
 
-#include "app/check_file.hpp"
 #include "app/markdown.hpp"
-#include "app/pipeline.hpp"
+#include "app/preflight/check_file.hpp"
+#include "app/run/pipeline.hpp"
 #include "app/running.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
-#include "inference/backend.hpp"
-#include "inference/selector.hpp"
+#include "inference/table.hpp"
+#include "report/page/check_page.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;
@@ -257,7 +257,8 @@ TEST_CASE("the reference names every distribution, function, back end, setting a
 
 TEST_CASE("findings that the methods page lists are made somewhere") {
   std::string source;
-  for (char const* folder : {"src/app", "src/inference"})
+  for (char const* folder :
+       {"src/app", "src/diagnostics", "src/discovery", "src/experiment", "src/inference", "src/mechanics", "src/search"})
     for (auto const& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.is_regular_file()) source += read_file(entry.path());
   int count = 0;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "function/primitive.hpp"
-#include "inference/backend.hpp"
+#include "inference/backend/backend.hpp"
 #include "inference/targets.hpp"
 #include "program/integrator.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {

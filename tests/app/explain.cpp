@@ -1,5 +1,5 @@
 // The pages of docs/errors: every code has a section, its bad example gives the code and its mended twin does not.
-#include "app/explain.hpp"
+#include "app/catalogue/explain.hpp"
 
 #include <doctest/doctest.h>
 
@@ -44,7 +44,8 @@ std::set<std::string> findings_in_sources() {
   std::set<std::string> codes;
   std::regex const code(
       "(?:(?:Severity::(?:error|warning|note)|severity),\\s*|code == |loud \\? |: |check\\()\"([a-z]+_[a-z_]+|interrupted)\"");
-  for (char const* folder : {"src/app", "src/inference"})
+  for (char const* folder :
+       {"src/app", "src/diagnostics", "src/discovery", "src/experiment", "src/inference", "src/mechanics", "src/search"})
     for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
       if (entry.path().extension() != ".cpp") continue;
       std::string const text = content(entry.path());

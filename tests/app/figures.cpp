@@ -6,10 +6,10 @@
 #include <functional>
 #include <sstream>
 
-#include "app/report_results.hpp"
-#include "app/second_difference.hpp"
+#include "app/run/report_results.hpp"
 #include "app/stored_pages.hpp"
-#include "app/truth.hpp"
+#include "experiment/true_parameters.hpp"
+#include "mechanics/second_difference.hpp"
 #include "running.hpp"
 
 using namespace sysid;

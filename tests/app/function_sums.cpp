@@ -8,7 +8,7 @@
 
 #include "app/running.hpp"
 #include "app/tables.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "gaussian_process/dense.hpp"
 
 using namespace sysid;

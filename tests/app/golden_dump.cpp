@@ -4,8 +4,8 @@
 
 #include <cstdlib>
 
-#include "app/pipeline.hpp"
-#include "core/files.hpp"
+#include "app/run/pipeline.hpp"
+#include "core/system/files.hpp"
 
 using namespace sysid;
 

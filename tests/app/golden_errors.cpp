@@ -34,7 +34,7 @@ std::string expected_for(std::filesystem::path example) { return content(example
 std::set<std::string> codes_in_sources() {
   std::set<std::string> codes;
   std::regex const code("\"(E[2-6][0-9]{3})\"");
-  for (char const* folder : {"src/check", "src/data", "src/app", "src/distribution"})
+  for (char const* folder : {"src/check", "src/data", "src/app", "src/distribution", "src/experiment", "src/load"})
     for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
       if (entry.path().extension() != ".cpp") continue;
       std::string const text = content(entry.path());

@@ -1,85 +1,238 @@
-// The layers: which folder may include which, and who alone may include Boost.Spirit, SUNDIALS and NLopt. Read from the #include
-// lines.
+// The layers: which room (a folder of src/, or the grammar) may include which, and who alone may include Boost.Spirit, SUNDIALS,
+// NLopt and netCDF. Read from the #include lines.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 
 namespace {
 
-using Folders = std::set<std::string>;
-
-std::map<std::string, Folders> const allowed = {
-    {"core", {"core"}},
-    {"data", {"data", "core"}},
-    {"expression", {"expression", "core"}},
-    {"function", {"function", "expression", "core"}},
-    {"distribution", {"distribution", "function", "expression", "core"}},
-    {"model", {"model", "gaussian_process", "distribution", "function", "expression", "core"}},
-    {"syntax", {"syntax", "core"}},
-    {"grammar", {"grammar", "syntax", "core"}},
+/// A room and the rooms that it may include beside itself; "core": all of core/. From the bottom up: a room rests on earlier ones.
+std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
+    {"core/text", {}},
+    {"core/numeric", {"core/text"}},
+    {"core/system", {"core/text"}},
+    {"core/setting", {"core/text"}},
+    {"linear_algebra", {"core"}},
+    {"result", {"core"}},
+    {"report/text", {"core", "result"}},
+    {"data", {"core"}},
+    {"expression", {"core"}},
+    {"function", {"core", "expression"}},
+    {"gaussian_process", {"core", "linear_algebra", "expression", "function"}},
+    {"distribution", {"core", "expression", "function"}},
+    {"model", {"core", "expression", "gaussian_process", "distribution"}},
+    {"syntax", {"core"}},
+    {"grammar", {"core", "syntax"}},
+    {"grammar/format", {"syntax", "grammar"}},
+    {"regression/column", {"core", "linear_algebra", "data", "expression"}},
+    {"regression/weak", {"core", "linear_algebra", "data", "regression/column"}},
+    {"regression/choice", {"core", "linear_algebra"}},
+    {"regression", {"core", "data", "regression/column", "regression/weak", "regression/choice"}},
+    {"program/bytecode", {"expression"}},
+    {"program/interpreter", {"core", "program/bytecode"}},
+    {"program", {"core", "expression", "program/bytecode", "program/interpreter"}},
+    {"simulate", {"core", "data", "expression", "program/interpreter", "program"}},
+    {"likelihood", {"core", "linear_algebra", "result", "model", "program", "simulate"}},
+    {"likelihood/process", {"core", "gaussian_process", "model", "simulate", "likelihood"}},
+    {"likelihood/segments", {"core", "linear_algebra", "simulate", "likelihood"}},
+    {"likelihood/selection", {"core", "simulate", "likelihood"}},
+    {"check/message", {"core", "function", "distribution", "syntax"}},
+    {"check/elaborate", {"core", "function", "syntax", "check/message"}},
+    {"check/checked", {"core", "data", "model", "syntax", "regression/column"}},
+    {"check/units", {"core", "expression", "syntax", "check/message"}},
+    {"check/expression",
+     {"core", "expression", "function", "distribution", "model", "syntax", "check/message", "check/checked", "check/units"}},
+    {"check/process",
+     {"core", "expression", "gaussian_process", "model", "syntax", "check/message", "check/elaborate", "check/units",
+      "check/expression"}},
+    {"check/model", {"core", "expression", "model", "syntax", "check/message", "check/units", "check/expression", "check/process"}},
+    {"check/dictionary",
+     {"core", "expression", "function", "syntax", "regression/column", "check/message", "check/elaborate", "check/checked",
+      "check/units", "check/expression"}},
+    {"check/data", {"core", "data", "syntax", "check/message", "check/checked", "check/units", "check/expression"}},
+    {"check/task",
+     {"core", "syntax", "check/message", "check/elaborate", "check/checked", "check/expression", "check/model", "check/data"}},
     {"check",
-     {"check", "regression", "syntax", "model", "gaussian_process", "data", "distribution", "function", "expression", "core"}},
-    {"program", {"program", "model", "distribution", "function", "expression", "core"}},
-    {"simulate", {"simulate", "program", "data", "expression", "core"}},
-    {"likelihood",
-     {"likelihood", "simulate", "program", "model", "gaussian_process", "linear_algebra", "data", "distribution", "function",
-      "expression", "core"}},
-    {"regression", {"regression", "linear_algebra", "data", "expression", "core"}},
-    {"linear_algebra", {"linear_algebra", "core"}},
-    {"gaussian_process", {"gaussian_process", "linear_algebra", "function", "expression", "core"}},
-    {"inference", {"inference", "likelihood", "gaussian_process", "linear_algebra", "core"}},
+     {"core", "syntax", "check/message", "check/elaborate", "check/checked", "check/units", "check/model", "check/dictionary",
+      "check/data", "check/task"}},
+    {"search", {"core", "linear_algebra", "result", "gaussian_process", "likelihood"}},
+    {"diagnostics", {"core", "linear_algebra", "result", "data", "distribution", "likelihood", "search"}},
+    {"inference/backend", {"core", "result", "likelihood", "likelihood/selection", "search", "diagnostics"}},
+    {"inference/chain", {"core", "linear_algebra", "likelihood", "search", "diagnostics", "inference/backend"}},
+    {"inference/abc", {"core", "linear_algebra", "likelihood/selection", "inference/backend"}},
+    {"inference",
+     {"core", "linear_algebra", "result", "likelihood", "search", "inference/backend", "inference/chain", "inference/abc"}},
+    {"load",
+     {"core", "syntax", "regression/column", "regression/choice", "check/message", "check/elaborate", "check", "inference"}},
+    {"experiment",
+     {"core", "result", "data", "model", "syntax", "regression/column", "likelihood", "check/checked", "check/units"}},
+    {"mechanics", {"core", "result", "data", "model", "likelihood"}},
+    {"discovery",
+     {"core", "linear_algebra", "result", "report/text", "data", "syntax", "regression/column", "regression", "simulate",
+      "likelihood/segments", "check/elaborate", "check/checked", "check/expression", "diagnostics", "load", "experiment"}},
+    {"typeset", {"core", "syntax"}},
+    {"report/figure", {"core", "result", "report/text", "diagnostics"}},
+    {"report/page", {"core", "result", "report/text", "diagnostics", "typeset", "report/figure"}},
+    {"report/file", {"core", "result", "report/text", "diagnostics", "report/figure", "report/page"}},
+    {"app/session",
+     {"core",
+      "result",
+      "data",
+      "gaussian_process",
+      "model",
+      "syntax",
+      "regression/column",
+      "regression/choice",
+      "program",
+      "simulate",
+      "likelihood",
+      "likelihood/process",
+      "check/checked",
+      "search",
+      "diagnostics",
+      "inference/backend",
+      "inference",
+      "experiment",
+      "typeset",
+      "report/figure",
+      "report/page",
+      "report/file"}},
+    {"app/process",
+     {"core", "linear_algebra", "result", "data", "gaussian_process", "likelihood/process", "search", "diagnostics", "experiment",
+      "app/session"}},
+    {"app/selection",
+     {"core", "result", "data", "likelihood", "likelihood/selection", "search", "diagnostics", "inference/backend",
+      "inference/chain", "experiment", "mechanics", "app/session"}},
+    {"app/preflight",
+     {"core", "linear_algebra", "result", "expression", "gaussian_process", "syntax", "simulate", "likelihood", "check/expression",
+      "diagnostics", "experiment", "discovery", "app/session", "app/process"}},
+    {"app/task", {"core",          "data",        "gaussian_process", "model",
+                  "syntax",        "regression",  "likelihood",       "likelihood/process",
+                  "check/checked", "search",      "diagnostics",      "inference/backend",
+                  "load",          "experiment",  "mechanics",        "discovery",
+                  "report/file",   "app/session", "app/process",      "app/preflight"}},
+    {"app/catalogue",
+     {"core", "function", "gaussian_process", "distribution", "syntax", "regression/column", "regression/choice", "check/elaborate",
+      "check/dictionary", "inference", "load"}},
+    {"app/run",
+     {"core", "model", "syntax", "likelihood", "load", "experiment", "report/figure", "report/page", "report/file", "app/session",
+      "app/selection", "app/preflight", "app/task"}},
+    {"exchange",
+     {"core", "result", "expression", "simulate", "likelihood", "diagnostics", "experiment", "report/file", "app/session",
+      "app/process", "app/selection"}},
     {"assist",
-     {"assist", "app", "check", "grammar", "syntax", "inference", "regression", "gaussian_process", "distribution", "function",
-      "data", "core"}},
-    {"lsp", {"lsp", "assist", "syntax", "core"}},
-    {"repl", {"repl", "assist", "app", "check", "syntax", "report", "inference", "data", "core"}},
-    {"app",
-     {"app", "report", "typeset", "check", "syntax", "regression", "inference", "likelihood", "gaussian_process", "simulate",
-      "program", "model", "linear_algebra", "data", "distribution", "function", "expression", "core"}},
-    {"typeset", {"typeset", "syntax", "core"}},
-    {"report", {"report", "typeset", "inference", "likelihood", "core"}},
-    {"cli", {"cli", "exchange", "repl", "lsp", "app", "report", "typeset", "syntax", "core"}},
-    {"exchange", {"exchange", "app", "report", "typeset", "inference", "likelihood", "simulate", "expression", "syntax", "core"}},
+     {"core", "data", "function", "gaussian_process", "distribution", "syntax", "grammar", "regression/column", "regression/choice",
+      "check/elaborate", "check/units", "check/expression", "check/model", "check/dictionary", "check/task", "inference", "load",
+      "app/session", "app/catalogue"}},
+    {"repl",
+     {"core", "report/text", "data", "syntax", "check/expression", "diagnostics", "load", "experiment", "report/page",
+      "report/file", "app/session", "app/preflight", "app/catalogue", "app/run", "assist"}},
+    {"lsp", {"core", "syntax", "assist"}},
+    {"cli",
+     {"core", "syntax", "diagnostics", "load", "experiment", "typeset", "report/figure", "report/page", "app/session",
+      "app/preflight", "app/catalogue", "app/run", "exchange", "repl", "lsp"}},
 };
+
+/// The one room that may include headers that begin like this.
+std::pair<std::string, std::string> const owned[] = {
+    {"<boost/spirit", "grammar"}, {"<nlopt", "gaussian_process"}, {"<netcdf", "exchange"},  {"<cvode", "simulate"},
+    {"<ida", "simulate"},         {"<arkode", "simulate"},        {"<nvector", "simulate"}, {"<sunmatrix", "simulate"},
+    {"<sunlinsol", "simulate"},   {"<sundials", "simulate"},
+};
+
+std::set<std::string> const* allowed(std::string const& room) {
+  auto const row = std::find_if(rooms.begin(), rooms.end(), [&](auto const& each) { return each.first == room; });
+  return row == rooms.end() ? nullptr : &row->second;
+}
+
+/// What is wrong with a line of a file in `room`; empty: nothing.
+std::string wrong(std::string const& room, std::string const& line) {
+  static std::regex const own("^#include \"([a-z_/]+)/[^/\"]*\"");
+  for (auto const& [header, owner] : owned)
+    if (line.starts_with("#include " + header) && room != owner) return room + " includes " + header + ", which is for " + owner;
+  std::smatch match;
+  if (!std::regex_search(line, match, own) || match[1] == room) return {};
+  std::set<std::string> const* may = allowed(room);
+  if (may == nullptr) return room + " is not listed";
+  if (may->contains(match[1])) return {};
+  if (match[1].str().starts_with("core/") && may->contains("core")) return {};
+  return room + " includes " + match[1].str();
+}
 
 }  // namespace
 
-TEST_CASE("includes point one way, Boost.Spirit stays in grammar/ and SUNDIALS in src/simulate/") {
+TEST_CASE("a room rests on rooms below it") {
+  std::set<std::string> below;
+  for (auto const& [room, may] : rooms) {
+    CAPTURE(room);
+    for (std::string const& each : may) {
+      CAPTURE(each);
+      CHECK((below.contains(each) || (each == "core" && below.contains("core/setting"))));
+    }
+    CHECK(below.insert(room).second);
+  }
+}
+
+TEST_CASE("includes point one way, and every folder of sources is a room") {
   std::filesystem::path const root(SYSID_SOURCE_DIR);
-  std::regex const own("^#include \"([a-z_]+)/[^\"]*\"");
   int lines = 0;
-  for (auto const& [folder, may] : allowed) {
-    auto const place = folder == "grammar" ? root / folder : root / "src" / folder;
+  std::set<std::string> seen;
+  for (std::filesystem::path const& place : {root / "src", root / "grammar"})
     for (auto const& entry : std::filesystem::recursive_directory_iterator(place)) {
       std::string const extension = entry.path().extension().string();
       if (extension != ".cpp" && extension != ".hpp") continue;
+      std::string const room = entry.path().parent_path().lexically_relative(place == root / "src" ? place : root).string();
+      CAPTURE(entry.path().string());
+      CHECK(allowed(room) != nullptr);
+      seen.insert(room);
       std::istringstream text(sysid::read_file(entry.path()));
       for (std::string line; std::getline(text, line);) {
-        CAPTURE(entry.path().string());
-        CAPTURE(line);
-        std::smatch match;
-        if (std::regex_search(line, match, own)) {
-          ++lines;
-          CHECK(may.contains(match[1].str()));
-          // A back end sees one header of likelihood/ beside the further views.
-          if (folder == "inference" || folder == "report")
-            if (match[1].str() == "likelihood")
-              CHECK((line.find("likelihood/target.hpp") != std::string::npos ||
-                     line.find("likelihood/selection_target.hpp") != std::string::npos));
-        }
-        if (line.starts_with("#include <boost/spirit")) CHECK(folder == "grammar");
-        if (line.starts_with("#include <nlopt")) CHECK(folder == "gaussian_process");
-        if (line.starts_with("#include <netcdf")) CHECK(folder == "exchange");
-        for (char const* header : {"<cvode", "<ida", "<arkode", "<nvector", "<sunmatrix", "<sunlinsol", "<sundials"})
-          if (line.starts_with(std::string("#include ") + header)) CHECK(folder == "simulate");
+        if (!line.starts_with("#include")) continue;
+        ++lines;
+        CHECK(wrong(room, line) == "");
+        // What samplers see of a model, and no more: neither the language nor the model itself.
+        if (room.starts_with("inference") && line.starts_with("#include \"likelihood/"))
+          CHECK((line.find("likelihood/target.hpp") != line.npos || line.find("selection/selection_target.hpp") != line.npos));
       }
     }
+  CHECK(lines > 3000);
+  for (auto const& [room, may] : rooms) {
+    CAPTURE(room);
+    CHECK(seen.contains(room));
   }
-  CHECK(lines > 300);
+}
+
+TEST_CASE("an include that points upwards is found") {
+  CHECK(wrong("result", "#include \"report/page/html.hpp\"") == "result includes report/page");
+  CHECK(wrong("model", "#include \"syntax/ast.hpp\"") == "model includes syntax");
+  CHECK(wrong("core/text", "#include \"core/numeric/unit.hpp\"") == "core/text includes core/numeric");
+  CHECK(wrong("cellar", "#include \"core/text/source.hpp\"") == "cellar is not listed");
+  CHECK(wrong("check", "#include <boost/spirit/home/x3.hpp>") == "check includes <boost/spirit, which is for grammar");
+  CHECK(wrong("check", "#include \"core/text/source.hpp\"").empty());
+}
+
+TEST_CASE("a folder of sources is small enough to find a thing in") {
+  std::filesystem::path const root(SYSID_SOURCE_DIR);
+  for (auto const& [room, may] : rooms) {
+    std::filesystem::path const place = room.starts_with("grammar") ? root / room : root / "src" / room;
+    int files = 0, lines = 0;
+    for (auto const& entry : std::filesystem::directory_iterator(place)) {
+      if (!entry.is_regular_file()) continue;
+      ++files;
+      std::string const text = sysid::read_file(entry.path());
+      if (entry.path().extension() != ".json") lines += static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+    }
+    CAPTURE(room);
+    CHECK(files <= 40);
+    CHECK(lines <= 4000);
+  }
 }

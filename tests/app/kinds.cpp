@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "app/running.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/running.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 namespace sysid::testing {
 

@@ -1,5 +1,5 @@
 // A fit that is run again leaves its former prediction behind, and the page and the table say so.
-#include "app/made_from.hpp"
+#include "app/session/made_from.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "answer.hpp"
-#include "app/compare.hpp"
-#include "app/report_results.hpp"
+#include "app/run/compare.hpp"
+#include "app/run/report_results.hpp"
 #include "app/running.hpp"
-#include "report/comparison.hpp"
+#include "report/page/comparison.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

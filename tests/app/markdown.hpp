@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 
 namespace sysid::testing {
 

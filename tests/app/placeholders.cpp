@@ -1,5 +1,5 @@
 // Numbers written where a sensor gave none, in inputs and in what is measured: `check` names their rows, and so does a fit.
-#include "app/placeholders.hpp"
+#include "experiment/placeholders.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 
 #include "app/checking.hpp"
 #include "app/running.hpp"
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 using namespace sysid;
 

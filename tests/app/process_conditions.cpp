@@ -6,7 +6,7 @@
 
 #include "app/running.hpp"
 #include "app/tables.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

@@ -7,7 +7,7 @@
 
 #include "app/running.hpp"
 #include "app/tables.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "gaussian_process/dense.hpp"
 #include "gaussian_process/regression.hpp"
 

@@ -1,5 +1,5 @@
 // `report`: pages of folders, and what is said of folders that hold none, or hold them no longer.
-#include "app/report_results.hpp"
+#include "app/run/report_results.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "answer.hpp"
-#include "app/reporting.hpp"
 #include "app/running.hpp"
+#include "app/session/reporting.hpp"
 #include "app/stored_pages.hpp"
-#include "report/gnuplot.hpp"
+#include "report/figure/gnuplot.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 using nlohmann::json;

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/pipeline.hpp"
-#include "core/files.hpp"
-#include "core/interrupt.hpp"
+#include "app/run/pipeline.hpp"
+#include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
 #include "temporary_folder.hpp"
 
 namespace sysid {

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "app/running.hpp"
-#include "core/instruction_set.hpp"
+#include "core/numeric/instruction_set.hpp"
 
 using namespace sysid;
 

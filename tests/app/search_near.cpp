@@ -1,5 +1,6 @@
 // `search = near(FIT)`: the same optimum from where an earlier fit ended, with a changed prior, a term more, or a unit changed.
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
 

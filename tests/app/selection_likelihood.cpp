@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/likelihood_check.hpp"
 #include "app/line.hpp"
+#include "app/selection/likelihood_check.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

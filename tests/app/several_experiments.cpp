@@ -7,8 +7,8 @@
 #include <set>
 
 #include "app/running.hpp"
-#include "core/random.hpp"
-#include "report/number.hpp"
+#include "core/numeric/random.hpp"
+#include "core/text/number.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <set>
 
+#include "app/catalogue/module_page.hpp"
 #include "app/markdown.hpp"
-#include "app/module_page.hpp"
-#include "app/modules.hpp"
 #include "check/checking.hpp"
+#include "load/modules.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

@@ -1,12 +1,12 @@
 // Pages written by a run against pages made from its folder.
 #include "app/stored_pages.hpp"
 
-#include "app/prior_density.hpp"
-#include "app/report_results.hpp"
-#include "core/files.hpp"
+#include "app/run/report_results.hpp"
+#include "core/system/files.hpp"
+#include "experiment/prior_density.hpp"
 #include "page_rules.hpp"
-#include "report/figures.hpp"
-#include "report/stored.hpp"
+#include "report/figure/figures.hpp"
+#include "report/file/stored_report.hpp"
 #include "temporary_folder.hpp"
 
 namespace sysid::test {

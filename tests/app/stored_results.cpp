@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "answer.hpp"
-#include "core/interrupt.hpp"
+#include "core/system/interrupt.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

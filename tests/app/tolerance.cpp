@@ -1,12 +1,12 @@
 // The tolerance guard on targets whose optimum depends on the solver in a known way.
-#include "app/tolerance.hpp"
+#include "diagnostics/tolerance.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-#include "inference/search.hpp"
 #include "inference/targets.hpp"
+#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

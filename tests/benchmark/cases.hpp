@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "baseline.hpp"
-#include "core/elementary.hpp"
-#include "core/random.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
 #include "simulate/simulator.hpp"
 #include "simulate/systems.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "lsp/documents.hpp"
 #include "lsp/server.hpp"
 

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "cases.hpp"
-#include "core/instruction_set.hpp"
+#include "core/numeric/instruction_set.hpp"
 #include "program/interpreter/executor.hpp"
 
 using namespace benchmark_cases;

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "core/files.hpp"
-#include "core/progress.hpp"
+#include "core/system/files.hpp"
+#include "core/system/progress.hpp"
 #include "repl/completion.hpp"
 #include "repl/workbench.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "app/report_results.hpp"
+#include "app/run/report_results.hpp"
 #include "report/example.hpp"
-#include "report/result.hpp"
+#include "report/file/result_folder.hpp"
 #include "temporary_folder.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // Candidate models: what a set expands to, what its probabilities are, and what a selection works from.
-#include "check/non_negative.hpp"
+#include "check/expression/non_negative.hpp"
 #include "checking.hpp"
 
 using namespace sysid;

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "app/pipeline.hpp"
+#include "load/load.hpp"
 
 namespace sysid::test {
 

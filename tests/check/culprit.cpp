@@ -1,5 +1,5 @@
 // One wrong declaration gives one message, which names it; mistakes that no declaration explains keep theirs.
-#include "check/culprit.hpp"
+#include "check/model/unit_blame.hpp"
 
 #include "check/checking.hpp"
 

@@ -6,9 +6,9 @@
 #include <set>
 #include <sstream>
 
-#include "check/walk.hpp"
 #include "checking.hpp"
 #include "syntax/parse.hpp"
+#include "syntax/walk.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

@@ -1,10 +1,10 @@
 // What people write for a unit, and how it is to be written.
-#include "check/unit_slips.hpp"
+#include "check/message/unit_slips.hpp"
 
 #include <doctest/doctest.h>
 
 #include "check/checking.hpp"
-#include "core/unit.hpp"
+#include "core/numeric/unit.hpp"
 
 using namespace sysid;
 

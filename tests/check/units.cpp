@@ -1,5 +1,5 @@
 // Units are compared wherever two of them meet: what is refused and where, what passes, and what is said to do.
-#include "check/units.hpp"
+#include "check/units/units.hpp"
 
 #include "checking.hpp"
 

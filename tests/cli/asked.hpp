@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "said_by.hpp"
 #include "temporary_folder.hpp"
 

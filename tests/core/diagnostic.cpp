@@ -1,5 +1,5 @@
 // Diagnostics as the user sees them: places, carets, order, number, and near names.
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 #include <doctest/doctest.h>
 

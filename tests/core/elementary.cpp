@@ -1,5 +1,5 @@
 // Elementary functions: bit-equal in every form, within an ulp of the exact value, and right at their special arguments.
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/instruction_set.hpp"
-#include "core/random.hpp"
+#include "core/numeric/instruction_set.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

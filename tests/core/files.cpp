@@ -1,5 +1,5 @@
 // Files: whole or not at all, and failures that name path and reason.
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
@@ -7,7 +7,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;

@@ -1,12 +1,12 @@
 // The transform against its defining sum.
-#include "core/fourier.hpp"
+#include "core/numeric/fourier.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

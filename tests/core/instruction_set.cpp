@@ -1,5 +1,5 @@
 // The choice of vector instructions.
-#include "core/instruction_set.hpp"
+#include "core/numeric/instruction_set.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The interrupt flag: set by the signals, cleared on request.
-#include "core/interrupt.hpp"
+#include "core/system/interrupt.hpp"
 
 #include <doctest/doctest.h>
 

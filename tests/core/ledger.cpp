@@ -1,5 +1,5 @@
 // The ledger: failures are counted by class and place, the first example of each is kept.
-#include "core/ledger.hpp"
+#include "core/system/ledger.hpp"
 
 #include <doctest/doctest.h>
 

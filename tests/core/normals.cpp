@@ -1,5 +1,5 @@
 // Normal numbers in lanes against one stream after another.
-#include "core/normals.hpp"
+#include "core/numeric/normals.hpp"
 
 #include <doctest/doctest.h>
 

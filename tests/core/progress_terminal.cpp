@@ -1,5 +1,5 @@
 // The progress bar and lines against a clock and a screen of our own.
-#include "core/progress_terminal.hpp"
+#include "core/system/progress_terminal.hpp"
 
 #include <doctest/doctest.h>
 

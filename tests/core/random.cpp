@@ -1,5 +1,5 @@
 // Random streams: known answers of Philox, independence of position from history, and moments of the variates.
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,12 +1,12 @@
 // Settings: defaults come from the table, wrong values are refused with a reason, wrong reads are faults of ours.
-#include "core/settings.hpp"
+#include "core/setting/settings.hpp"
 
 #include <doctest/doctest.h>
 
 #include <limits>
 
-#include "core/diagnostic.hpp"
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "core/text/diagnostic.hpp"
 
 using namespace sysid;
 

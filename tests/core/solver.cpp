@@ -1,9 +1,9 @@
 // Solvers as values: text, refinement, settings there and back.
-#include "core/solver.hpp"
+#include "core/setting/solver.hpp"
 
 #include <doctest/doctest.h>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 using namespace sysid;
 

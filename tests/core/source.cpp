@@ -1,5 +1,5 @@
 // Places in a text: lines, columns in UTF-8 characters, line ends of every system.
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Units: what the atoms are worth in SI, their algebra, and the conversions that must be refused.
-#include "core/unit.hpp"
+#include "core/numeric/unit.hpp"
 
 #include <doctest/doctest.h>
 

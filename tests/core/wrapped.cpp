@@ -1,11 +1,11 @@
 // Prose goes on below, between words; what has columns stays whole.
-#include "core/wrapped.hpp"
+#include "core/text/wrapped.hpp"
 
 #include <doctest/doctest.h>
 
 #include <sstream>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 using namespace sysid;
 

@@ -1,4 +1,4 @@
-#include "core/xml.hpp"
+#include "core/text/xml.hpp"
 
 #include <doctest/doctest.h>
 

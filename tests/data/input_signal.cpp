@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "data/experiment.hpp"
 
 using namespace sysid;

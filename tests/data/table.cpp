@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/diagnostic.hpp"
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
+#include "core/text/diagnostic.hpp"
 #include "temporary_file.hpp"
 
 using namespace sysid;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "distribution/distribution.hpp"
 
 namespace sysid::test {

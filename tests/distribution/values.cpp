@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "distribution/rows.hpp"
 
 using namespace sysid;

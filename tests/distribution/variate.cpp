@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "distribution/rows.hpp"
 
 using namespace sysid;

@@ -3,10 +3,11 @@
 
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "exchange/exported.hpp"
-#include "report/csv.hpp"
+#include "report/file/csv.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

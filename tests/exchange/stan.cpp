@@ -2,15 +2,16 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "app/experiments.hpp"
-#include "app/fit_target.hpp"
+#include "app/session/fit_target.hpp"
 #include "data/digest.hpp"
 #include "exchange/exported.hpp"
 #include "exchange/stan_names.hpp"
 #include "exchange/stan_program.hpp"
 #include "exchange/stan_text.hpp"
-#include "report/csv.hpp"
+#include "experiment/experiments.hpp"
+#include "report/file/csv.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

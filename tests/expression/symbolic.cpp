@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "expression/function.hpp"
 #include "expression/graph.hpp"
 

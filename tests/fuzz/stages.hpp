@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "app/modules.hpp"
 #include "check/check.hpp"
 #include "check/elaborate/elaborate.hpp"
-#include "core/diagnostic.hpp"
-#include "core/unit.hpp"
+#include "core/numeric/unit.hpp"
+#include "core/text/diagnostic.hpp"
 #include "data/record.hpp"
 #include "data/table.hpp"
 #include "likelihood/compiled_model.hpp"
-#include "likelihood/process_model.hpp"
+#include "likelihood/process/process_model.hpp"
+#include "load/modules.hpp"
 #include "model/past.hpp"
 #include "simulate/simulator.hpp"
 #include "syntax/format.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "gaussian_process/made.hpp"
 #include "gaussian_process/textbook.hpp"
 

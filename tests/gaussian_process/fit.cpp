@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "gaussian_process/dense.hpp"
 #include "gaussian_process/made.hpp"
 #include "gaussian_process/maximise.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "gaussian_process/covariance.hpp"
 
 namespace sysid::gaussian_process {

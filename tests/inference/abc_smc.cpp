@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "inference/abc/kernel.hpp"
@@ -16,6 +17,11 @@
 using namespace sysid;
 
 namespace {
+
+/// As it comes back from a file.
+std::shared_ptr<nlohmann::json const> kept(nlohmann::json const& state) {
+  return std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(nlohmann::json::to_cbor(state)));
+}
 
 using testing::Prior;
 using testing::size_of_first;
@@ -296,7 +302,7 @@ TEST_CASE("an interrupted run goes on to the same bytes, within populations and 
       CHECK(part.interrupted);
     }
     Ledger ledger;
-    RunContext context{5, silent, ledger, {}, {}, 60, nlohmann::json::from_cbor(nlohmann::json::to_cbor(stored)), {}, {}};
+    RunContext context{5, silent, ledger, {}, {}, 60, kept(stored), {}, {}};
     SelectionResult const resumed = abc::run(toy, settings, context);
     REQUIRE(resumed.populations.size() == whole.populations.size());
     CHECK(std::bit_cast<std::uint64_t>(resumed.threshold) == std::bit_cast<std::uint64_t>(whole.threshold));
@@ -310,7 +316,7 @@ TEST_CASE("an interrupted run goes on to the same bytes, within populations and 
   nlohmann::json stored;
   RunContext first{5, silent, ledger, [] { return true; }, [&](nlohmann::json const& state) { stored = state; }, 1e9, {}, {}, {}};
   abc::run(toy, settings, first);
-  RunContext other{6, silent, ledger, {}, {}, 60, stored, {}, {}};
+  RunContext other{6, silent, ledger, {}, {}, 60, kept(stored), {}, {}};
   CHECK(abc::run(toy, settings, other).failure);
 }
 
@@ -341,8 +347,7 @@ Broken break_when(SelectionTarget const& toy, Settings const& settings, std::fun
       {}, {},    {}};
   broken.part = abc::run(toy, settings, first);
   SilentProgress silent;
-  RunContext second{5,  silent, broken.ledger, {}, {}, 60, nlohmann::json::from_cbor(nlohmann::json::to_cbor(broken.checkpoint)),
-                    {}, {}};
+  RunContext second{5, silent, broken.ledger, {}, {}, 60, kept(broken.checkpoint), {}, {}};
   broken.resumed = abc::run(toy, settings, second);
   return broken;
 }

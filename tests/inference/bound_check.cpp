@@ -1,5 +1,5 @@
 // The bound check fires where a bound decides the posterior, and only there.
-#include "inference/bound_check.hpp"
+#include "diagnostics/bound_check.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "core/not_finite.hpp"
-#include "core/random.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

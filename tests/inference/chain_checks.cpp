@@ -1,12 +1,13 @@
 // Each chain check fires on its planted fault and is silent on sound chains.
-#include "inference/chain_checks.hpp"
+#include "diagnostics/chain_checks.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
+#include "diagnostics/convergence.hpp"
 
 using namespace sysid;
 

@@ -1,10 +1,11 @@
 // Checkpoints come back bit for bit, through text and through CBOR.
-#include "inference/checkpoint.hpp"
+#include "inference/backend/checkpoint.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "inference/targets.hpp"
 

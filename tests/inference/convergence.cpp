@@ -1,6 +1,6 @@
 // Convergence diagnostics against what the R package `posterior` said of recorded draws (fixtures/make_fixtures.R), and at their
 // edges.
-#include "inference/convergence.hpp"
+#include "diagnostics/convergence.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@
 #include <map>
 #include <sstream>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

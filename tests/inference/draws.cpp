@@ -1,5 +1,5 @@
 // Draws that stand for all: spread evenly over the chains, never more of one than of another by two.
-#include "inference/draws.hpp"
+#include "result/draws.hpp"
 
 #include <doctest/doctest.h>
 

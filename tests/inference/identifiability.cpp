@@ -1,13 +1,13 @@
 // Slopes of functions whose derivatives are known, and null spaces of matrices made to have them.
-#include "inference/identifiability.hpp"
+#include "diagnostics/identifiability.hpp"
 
 #include <doctest/doctest.h>
 #include <Eigen/Dense>
 
 #include <cmath>
 
-#include "core/elementary.hpp"
-#include "core/random.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

@@ -1,13 +1,13 @@
 // Local searches from given places: each mode once, searches that meet counted and not paid for twice.
-#include "inference/local_searches.hpp"
+#include "search/local_searches.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "inference/search.hpp"
 #include "inference/targets.hpp"
+#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

@@ -1,9 +1,9 @@
 // One Metropolis step: proposals of the stated shape, detailed balance, failures rejected, lanes independent.
-#include "inference/metropolis.hpp"
+#include "inference/chain/metropolis.hpp"
 
 #include <doctest/doctest.h>
 
-#include "inference/adaptation.hpp"
+#include "inference/chain/adaptation.hpp"
 #include "inference/targets.hpp"
 
 using namespace sysid;

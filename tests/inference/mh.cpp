@@ -1,13 +1,15 @@
 // Metropolis-Hastings against posteriors known in closed form; resuming, reproducing, and refusing to pass off a standing chain.
-#include "inference/mh.hpp"
+#include "inference/chain/mh.hpp"
 
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
+#include "diagnostics/convergence.hpp"
+#include "diagnostics/verdict.hpp"
 #include "inference/targets.hpp"
-#include "inference/verdict.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -250,7 +252,7 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
     REQUIRE(part.interrupted);
     CHECK(part.draws.total() < unbroken.draws.total());
     Bench second(9);
-    second.context.resume = nlohmann::json::parse(saved);
+    second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::parse(saved));
     FitResult const resumed = mh::run(known.target, settings, second.context);
     CHECK_FALSE(resumed.interrupted);
     CHECK(same_draws(unbroken, resumed));
@@ -273,7 +275,7 @@ TEST_CASE("every checkpoint on the way leads to the same end") {
   REQUIRE(saved.size() > 25);
   for (nlohmann::json const& state : saved) {
     Bench again(9);
-    again.context.resume = state;
+    again.context.resume = std::make_shared<nlohmann::json const>(state);
     CHECK(same_draws(unbroken, mh::run(known.target, settings, again.context)));
   }
 }
@@ -288,16 +290,16 @@ TEST_CASE("a checkpoint of another run is refused with its reason") {
   mh::run(known.target, chosen(600, 200), first.context);
   REQUIRE(saved.contains("next"));
   Bench other_seed(10);
-  other_seed.context.resume = saved;
+  other_seed.context.resume = std::make_shared<nlohmann::json const>(saved);
   FitResult const refused = mh::run(known.target, chosen(600, 200), other_seed.context);
   REQUIRE(refused.failure);
   CHECK(refused.failure->message.find("seed") != std::string::npos);
   Bench other_settings(9);
-  other_settings.context.resume = saved;
+  other_settings.context.resume = std::make_shared<nlohmann::json const>(saved);
   REQUIRE(mh::run(known.target, chosen(700, 200), other_settings.context).failure);
   saved["theta"] = "?";
   Bench damaged(9);
-  damaged.context.resume = saved;
+  damaged.context.resume = std::make_shared<nlohmann::json const>(saved);
   CHECK(mh::run(known.target, chosen(600, 200), damaged.context).failure->code == "checkpoint_mismatch");
 }
 

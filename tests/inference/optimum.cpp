@@ -4,10 +4,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
-#include "inference/search.hpp"
+#include "diagnostics/verdict.hpp"
+#include "inference/table.hpp"
 #include "inference/targets.hpp"
-#include "inference/verdict.hpp"
+#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -125,8 +127,8 @@ TEST_CASE("a point estimate stopped in its search starts again to the same answe
   first.context.interrupted = [&] { return ++asked > 2; };
   first.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
   REQUIRE(optimum::run_map(target, Settings{}, first.context).interrupted);
-  second.context.resume = saved;
+  second.context.resume = std::make_shared<nlohmann::json const>(saved);
   CHECK(optimum::run_map(target, Settings{}, second.context).draws.chains[0].values == unbroken.draws.chains[0].values);
-  other.context.resume = saved;
+  other.context.resume = std::make_shared<nlohmann::json const>(saved);
   CHECK(optimum::run_map(target, Settings{}, other.context).failure);
 }

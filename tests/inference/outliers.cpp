@@ -1,11 +1,11 @@
 // Samples that do not belong: found where they are few, whatever they have done to the estimated noise, and nowhere else.
-#include "inference/outliers.hpp"
+#include "diagnostics/outliers.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

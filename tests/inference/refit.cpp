@@ -1,10 +1,10 @@
 // Modes followed to a neighbouring target.
-#include "inference/refit.hpp"
+#include "search/refit.hpp"
 
 #include <doctest/doctest.h>
 
-#include "inference/search.hpp"
 #include "inference/targets.hpp"
+#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

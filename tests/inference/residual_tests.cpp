@@ -1,12 +1,12 @@
 // Residual tests: each fires on the fault it is for and stays silent on noise.
-#include "inference/residual_tests.hpp"
+#include "diagnostics/residual_tests.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

@@ -1,13 +1,13 @@
 // The global search: finds the optimum from the prior alone, weighs modes, spreads chains, and says when there is nothing to find.
-#include "inference/search.hpp"
+#include "search/search.hpp"
 
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
 #include <set>
 
-#include "inference/laplace.hpp"
 #include "inference/targets.hpp"
+#include "search/laplace.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

@@ -10,7 +10,7 @@
 
 #include "inference/abc/settings.hpp"
 #include "inference/targets.hpp"
-#include "likelihood/selection_target.hpp"
+#include "likelihood/selection/selection_target.hpp"
 
 namespace sysid::testing {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/elementary.hpp"
-#include "core/not_finite.hpp"
-#include "inference/backend.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "inference/backend/backend.hpp"
 #include "likelihood/target.hpp"
 
 namespace sysid::testing {

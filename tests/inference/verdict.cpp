@@ -1,5 +1,5 @@
 // The verdict: errors fail, warnings and notes do not, everything is said in order of weight.
-#include "inference/verdict.hpp"
+#include "diagnostics/verdict.hpp"
 
 #include <doctest/doctest.h>
 

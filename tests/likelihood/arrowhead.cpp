@@ -1,12 +1,12 @@
 // Elimination of starts against one dense system, damping included.
-#include "likelihood/arrowhead.hpp"
+#include "likelihood/segments/arrowhead.hpp"
 
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

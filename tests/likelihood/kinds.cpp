@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "app/experiments.hpp"
-#include "app/pipeline.hpp"
+#include "experiment/experiments.hpp"
 #include "likelihood/model_target.hpp"
 #include "likelihood/output.hpp"
+#include "load/load.hpp"
 
 using namespace sysid;
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/pipeline.hpp"
 #include "likelihood/model_target.hpp"
+#include "load/load.hpp"
 
 using namespace sysid;
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/pipeline.hpp"
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
+#include "load/load.hpp"
 
 using namespace sysid;
 

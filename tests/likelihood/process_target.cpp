@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "app/pipeline.hpp"
 #include "gaussian_process/textbook.hpp"
-#include "likelihood/process_target.hpp"
+#include "likelihood/process/process_target.hpp"
+#include "load/load.hpp"
 
 using namespace sysid;
 namespace gp = gaussian_process;

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "app/pipeline.hpp"
 #include "likelihood/model_target.hpp"
+#include "load/load.hpp"
 
 using namespace sysid;
 

@@ -1,6 +1,6 @@
 // Coefficients from a record in segments: against a dense least squares of the same problem, over gaps and experiments, on a
 // chaotic record, and the same bytes however it is run.
-#include "likelihood/shooting.hpp"
+#include "likelihood/segments/shooting.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "check/checking.hpp"
-#include "core/random.hpp"
-#include "likelihood/segment_starts.hpp"
+#include "core/numeric/random.hpp"
+#include "likelihood/segments/segment_starts.hpp"
 #include "simulate/thread_pool.hpp"
 
 using namespace sysid;

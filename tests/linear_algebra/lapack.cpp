@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "client.hpp"
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;

@@ -1,9 +1,9 @@
 // Every request that the server claims, by a scripted client.
 #include <doctest/doctest.h>
 
-#include "app/modules.hpp"
 #include "client.hpp"
-#include "core/files.hpp"
+#include "core/system/files.hpp"
+#include "load/modules.hpp"
 #include "syntax/format.hpp"
 #include "temporary_folder.hpp"
 

@@ -6,11 +6,11 @@
 #include <random>
 #include <set>
 
-#include "app/pipeline.hpp"
 #include "assist/analysis.hpp"
 #include "assist/rename.hpp"
 #include "client.hpp"
 #include "grammar/layout.hpp"
+#include "load/load.hpp"
 #include "syntax/format.hpp"
 #include "syntax/words.hpp"
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/elementary.hpp"
-#include "core/random.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
 #include "program/random_expressions.hpp"
 
 using namespace sysid;

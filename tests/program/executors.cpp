@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/instruction_set.hpp"
-#include "core/lanes.hpp"
+#include "core/numeric/instruction_set.hpp"
+#include "core/numeric/lanes.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/kernel.hpp"
 #include "program/random_expressions.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/diagnostic.hpp"
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/text/diagnostic.hpp"
 
 using namespace sysid;
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "expression/function.hpp"
 #include "expression/graph.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "simulate/systems.hpp"
 
 using namespace sysid;

@@ -1,11 +1,11 @@
 // The banded factorisation against the dense one.
-#include "regression/band_matrix.hpp"
+#include "linear_algebra/band_matrix.hpp"
 
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 using regression::BandMatrix;

@@ -1,12 +1,12 @@
 // What columns cannot tell, each named with its terms.
-#include "regression/dependence.hpp"
+#include "regression/column/dependence.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 using namespace sysid::regression;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "data/table.hpp"
 #include "expression/term.hpp"
 #include "regression/discovery.hpp"

@@ -1,5 +1,5 @@
 // Selectors on problems small enough for formulas, and against an independent implementation.
-#include "regression/selector.hpp"
+#include "regression/choice/selector.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "data/table.hpp"
-#include "regression/triangle.hpp"
+#include "regression/choice/triangle.hpp"
 
 using namespace sysid;
 using namespace sysid::regression;

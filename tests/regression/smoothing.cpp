@@ -1,13 +1,13 @@
 // Filters on signals whose derivatives are known.
-#include "regression/smoothing.hpp"
+#include "regression/column/smoothing.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/random.hpp"
-#include "regression/signals.hpp"
+#include "core/numeric/random.hpp"
+#include "regression/column/signals.hpp"
 
 using namespace sysid;
 using namespace sysid::regression;

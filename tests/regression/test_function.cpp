@@ -1,5 +1,5 @@
 // The bump: its integral, its ends, its derivatives.
-#include "regression/test_function.hpp"
+#include "regression/weak/test_function.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The weak form on signals whose integrals are known, and its covariance against the dense one.
-#include "regression/weak.hpp"
+#include "regression/weak/weak.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "regression/problems.hpp"
-#include "regression/test_function.hpp"
-#include "regression/weak_pieces.hpp"
+#include "regression/weak/pieces.hpp"
+#include "regression/weak/test_function.hpp"
 
 using namespace sysid;
 using namespace sysid::regression;

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "repl/workbench.hpp"
 #include "temporary_folder.hpp"
 

@@ -7,15 +7,14 @@
 #include <set>
 #include <sstream>
 
-#include "check/generators.hpp"
-#include "core/solver.hpp"
+#include "check/dictionary/generators.hpp"
+#include "core/setting/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
-#include "inference/backend.hpp"
-#include "inference/selector.hpp"
-#include "regression/columns.hpp"
-#include "regression/selector.hpp"
+#include "inference/table.hpp"
+#include "regression/choice/selector.hpp"
+#include "regression/column/columns.hpp"
 #include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"

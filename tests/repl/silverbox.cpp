@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "pseudo_terminal.hpp"
 #include "temporary_folder.hpp"
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/pipeline.hpp"
-#include "core/interrupt.hpp"
+#include "app/run/pipeline.hpp"
+#include "core/system/interrupt.hpp"
 #include "dialogue.hpp"
 #include "repl/prompt.hpp"
 

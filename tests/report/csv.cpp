@@ -1,5 +1,5 @@
 // CSV files read back by the simplest reader there is.
-#include "report/csv.hpp"
+#include "report/file/csv.hpp"
 
 #include <doctest/doctest.h>
 

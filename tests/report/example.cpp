@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
+#include "diagnostics/convergence.hpp"
+#include "diagnostics/scores.hpp"
 
 namespace sysid::example {
 

@@ -1,6 +1,6 @@
 // A report as a Duffing fit would fill it, with draws made up from a known normal: for the tests of all writers.
 #pragma once
-#include "report/report.hpp"
+#include "result/report.hpp"
 
 namespace sysid::example {
 

@@ -1,5 +1,5 @@
 // Figures: which there are, what they hold, and that gnuplot draws every one of them the same way twice.
-#include "report/figures.hpp"
+#include "report/figure/figures.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,10 +9,12 @@
 #include <regex>
 #include <sstream>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/convergence.hpp"
+#include "diagnostics/residual_tests.hpp"
 #include "example.hpp"
-#include "inference/residual_tests.hpp"
-#include "report/gnuplot.hpp"
+#include "report/figure/gnuplot.hpp"
 
 using namespace sysid;
 

@@ -1,5 +1,5 @@
 // The page: self-contained, escaped, and honest about figures that are missing.
-#include "report/html.hpp"
+#include "report/page/html.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,10 @@
 
 #include "example.hpp"
 #include "page_rules.hpp"
-#include "report/figures.hpp"
-#include "report/html_style.hpp"
+#include "report/figure/figures.hpp"
+#include "report/file/discovery.hpp"
+#include "report/file/selection.hpp"
+#include "report/page/html_style.hpp"
 
 using namespace sysid;
 

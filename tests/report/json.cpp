@@ -1,5 +1,5 @@
 // summary.json: complete, strict and the same twice.
-#include "report/json.hpp"
+#include "report/file/json.hpp"
 
 #include <doctest/doctest.h>
 

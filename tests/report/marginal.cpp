@@ -1,5 +1,5 @@
 // Kernel estimates of known densities.
-#include "report/marginal.hpp"
+#include "report/figure/marginal.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/not_finite.hpp"
-#include "core/random.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

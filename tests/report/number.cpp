@@ -1,5 +1,6 @@
 // Numbers as text: exact for files, cut at the Monte Carlo error for people.
-#include "report/number.hpp"
+#include "core/text/number.hpp"
+#include "report/text/summary_text.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

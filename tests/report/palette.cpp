@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "report/plot.hpp"
+#include "report/figure/plot.hpp"
 
 using namespace sysid;
 

@@ -1,5 +1,5 @@
 // Axes and script pieces.
-#include "report/plot.hpp"
+#include "report/figure/plot.hpp"
 
 #include <doctest/doctest.h>
 
@@ -87,8 +87,8 @@ TEST_CASE("names of files and identifiers are plain") {
 }
 
 TEST_CASE("the range ignores what is not finite") {
-  CHECK(range({std::nan(""), 2, -1, INFINITY}) == std::pair(-1.0, 2.0));
-  CHECK(range({std::nan("")}) == std::pair(0.0, 1.0));
+  CHECK(finite_range({std::nan(""), 2, -1, INFINITY}) == std::pair(-1.0, 2.0));
+  CHECK(finite_range({std::nan("")}) == std::pair(0.0, 1.0));
 }
 
 TEST_CASE("numbers that would run into each other are left out, zero keeps its own") {

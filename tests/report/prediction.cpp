@@ -1,11 +1,11 @@
 // Bands over draws and scores against data, by hand-made numbers.
-#include "report/prediction.hpp"
+#include "diagnostics/scores.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 

@@ -1,14 +1,14 @@
 // The result folder: complete, never overwritten unasked, the same bytes twice.
-#include "report/result.hpp"
+#include "report/file/result_folder.hpp"
 
 #include <doctest/doctest.h>
 
 #include <map>
 
-#include "core/diagnostic.hpp"
-#include "core/files.hpp"
+#include "core/system/files.hpp"
+#include "core/text/diagnostic.hpp"
 #include "example.hpp"
-#include "report/gnuplot.hpp"
+#include "report/figure/gnuplot.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;

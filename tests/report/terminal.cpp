@@ -1,5 +1,5 @@
 // The page for stdout.
-#include "report/terminal.hpp"
+#include "report/page/terminal.hpp"
 
 #include <doctest/doctest.h>
 

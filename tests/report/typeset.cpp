@@ -1,5 +1,5 @@
 // Statements of the user as HTML.
-#include "report/typeset.hpp"
+#include "report/page/typeset.hpp"
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/simulator.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/simulator.hpp"
 #include "simulate/systems.hpp"

@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
-#include "core/instruction_set.hpp"
-#include "core/random.hpp"
+#include "core/numeric/instruction_set.hpp"
+#include "core/numeric/random.hpp"
 #include "program/interpreter/executor.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/systems.hpp"

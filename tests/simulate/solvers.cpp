@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/simulator.hpp"
 #include "simulate/systems.hpp"

@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/systems.hpp"
 

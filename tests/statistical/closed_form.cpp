@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
+#include "core/text/number.hpp"
 #include "fits.hpp"
-#include "report/number.hpp"
 
 using namespace sysid;
 

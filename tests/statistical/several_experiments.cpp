@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/random.hpp"
+#include "core/numeric/random.hpp"
+#include "core/text/number.hpp"
 #include "fits.hpp"
-#include "report/number.hpp"
 
 using namespace sysid;
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <filesystem>
 
-#include "core/files.hpp"
+#include "core/system/files.hpp"
 #include "grammar/layout.hpp"
 #include "parsing.hpp"
 #include "random_tree.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 #include "syntax/parse.hpp"
 #include "typeset/typeset.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/source.hpp"
+#include "core/text/source.hpp"
 #include "syntax/parse.hpp"
 #include "typeset/typeset.hpp"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <span>
 
-#include "check/elaborate/errors.hpp"
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors_reuse.hpp"
 
 namespace sysid {
 namespace {

@@ -4,23 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
+#include "syntax/shape.hpp"
 
 namespace sysid {
-
-/// rank 0: a number; 1: a vector of `rows`; 2: a matrix. A vector counts as a column.
-struct Shape {
-  int rank = 0;
-  int rows = 1, columns = 1;
-
-  std::size_t count() const { return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns); }
-  /// "a number", "a vector of 3", "a 2 by 3 matrix".
-  std::string text() const;
-  friend bool operator==(Shape const&, Shape const&) = default;
-};
-Shape vector_of(int rows);
-Shape matrix_of(int rows, int columns);
 
 /// "q[2]", "M[1, 2]"; the name itself where the shape is a number. element: row by row, from 0.
 std::string element_name(std::string const& name, Shape const& shape, std::size_t element);

@@ -1,9 +1,9 @@
 // The product of the values of each argument.
 #include "check/elaborate/candidates.hpp"
 
-#include "check/elaborate/errors.hpp"
 #include "check/elaborate/tree.hpp"
 #include "check/elaborate/whole_number.hpp"
+#include "check/message/errors_reuse.hpp"
 
 namespace sysid {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "check/walk.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "check/elaborate/candidates.hpp"
 #include "check/elaborate/dictionary_functions.hpp"
-#include "check/elaborate/errors.hpp"
 #include "check/elaborate/flatten.hpp"
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors_reuse.hpp"
 
 namespace sysid {
 namespace {

@@ -1,7 +1,7 @@
 // Names of files: first everybody's own, then what they take over from the modules they use.
 #include "check/elaborate/environment.hpp"
 
-#include "check/elaborate/errors.hpp"
+#include "check/message/errors_reuse.hpp"
 
 namespace sysid {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "check/elaborate/array_functions.hpp"
-#include "check/elaborate/errors.hpp"
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors_reuse.hpp"
 #include "function/table.hpp"
 
 namespace sysid {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <set>
 
-#include "check/elaborate/errors.hpp"
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/part_noise.hpp"
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors_reuse.hpp"
 
 namespace sysid {
 namespace {

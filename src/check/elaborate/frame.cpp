@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "check/elaborate/errors.hpp"
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors_reuse.hpp"
 
 namespace sysid {
 namespace {

@@ -7,14 +7,15 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
-#include "core/elementary.hpp"
-#include "core/not_finite.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "inference/abc/findings.hpp"
 #include "inference/abc/proposals.hpp"
 #include "inference/abc/state.hpp"
 #include "inference/abc/stops.hpp"
-#include "inference/checkpoint.hpp"
+#include "inference/backend/checkpoint.hpp"
 
 namespace sysid::abc {
 namespace {

@@ -1,7 +1,7 @@
 // Approximate Bayesian computation by sequential Monte Carlo over models and parameters: the tutorial's Algorithm 1, with the
 // weights that it needs.
 #pragma once
-#include "inference/selector.hpp"
+#include "inference/backend/selector.hpp"
 
 namespace sysid::abc {
 

@@ -1,6 +1,6 @@
 // Words for what populations show.
 #include "inference/abc/findings.hpp"
-#include "inference/failed_places.hpp"
+#include "core/system/failed_places.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // What an ABC-SMC run says about itself.
 #pragma once
 #include "inference/abc/plan.hpp"
-#include "inference/selector.hpp"
+#include "inference/backend/selector.hpp"
 
 namespace sysid::abc {
 

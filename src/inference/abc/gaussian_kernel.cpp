@@ -1,8 +1,8 @@
 // Normal moves of one covariance for all centres.
 #include <vector>
 
-#include "core/elementary.hpp"
-#include "core/normals.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/normals.hpp"
 #include "inference/abc/kernel.hpp"
 #include "inference/abc/kernel_numerics.hpp"
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "core/lanes.hpp"
-#include "core/random.hpp"
+#include "core/numeric/lanes.hpp"
+#include "core/numeric/random.hpp"
 #include "inference/abc/plan.hpp"
 
 namespace sysid::abc {

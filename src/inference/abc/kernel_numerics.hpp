@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "core/lanes.hpp"
+#include "core/numeric/lanes.hpp"
 
 namespace sysid::abc {
 

@@ -3,8 +3,8 @@
 #include <numeric>
 #include <vector>
 
-#include "core/elementary.hpp"
-#include "core/normals.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/normals.hpp"
 #include "inference/abc/kernel.hpp"
 #include "inference/abc/kernel_numerics.hpp"
 #include "linear_algebra/decompositions.hpp"

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "inference/abc/kernel.hpp"
 
 namespace sysid::abc {

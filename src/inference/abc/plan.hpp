@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/settings.hpp"
+#include "core/setting/settings.hpp"
 
 namespace sysid::abc {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "core/numeric/lanes.hpp"
 #include "inference/abc/kernel.hpp"
 
 namespace sysid::abc {

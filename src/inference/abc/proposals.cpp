@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 namespace sysid::abc {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "inference/abc/population.hpp"
 #include "inference/abc/walk.hpp"
-#include "likelihood/selection_target.hpp"
+#include "likelihood/selection/selection_target.hpp"
 
 namespace sysid::abc {
 

@@ -1,7 +1,7 @@
 // The table of settings, and values that do not go together.
 #include "inference/abc/settings.hpp"
 
-#include "core/not_finite.hpp"
+#include "core/numeric/not_finite.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "core/settings.hpp"
+#include "core/setting/settings.hpp"
 
 namespace sysid::abc {
 

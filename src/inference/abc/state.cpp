@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "inference/checkpoint.hpp"
+#include "inference/backend/checkpoint.hpp"
 
 namespace sysid::abc {
 namespace {

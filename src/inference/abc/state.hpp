@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "core/ledger.hpp"
+#include "core/system/ledger.hpp"
 #include "inference/abc/population.hpp"
-#include "inference/selector.hpp"
+#include "inference/backend/selector.hpp"
 
 namespace sysid::abc {
 

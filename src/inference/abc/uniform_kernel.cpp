@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 #include "inference/abc/kernel.hpp"
 
 namespace sysid::abc {

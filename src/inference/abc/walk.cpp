@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/elementary.hpp"
+#include "core/numeric/elementary.hpp"
 
 namespace sysid::abc {
 namespace {

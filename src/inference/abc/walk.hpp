@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "inference/abc/plan.hpp"
-#include "likelihood/selection_target.hpp"
+#include "likelihood/selection/selection_target.hpp"
 
 namespace sysid::abc {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 namespace {

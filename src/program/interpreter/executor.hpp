@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/instruction_set.hpp"
-#include "program/code.hpp"
+#include "core/numeric/instruction_set.hpp"
+#include "program/bytecode/code.hpp"
 #include "program/interpreter/step.hpp"
 
 namespace sysid {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/diagnostic.hpp"
+#include "core/text/diagnostic.hpp"
 #include "program/interpreter/executor.hpp"
 
 namespace sysid {

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "program/opcode.hpp"
+#include "program/bytecode/opcode.hpp"
 
 namespace sysid {
 

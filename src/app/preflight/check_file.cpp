@@ -1,0 +1,151 @@
+// The checks of a file in order, each task on its own.
+#include "app/preflight/check_file.hpp"
+
+#include <fmt/format.h>
+
+#include "app/session/preconditions.hpp"
+#include "app/session/provenance.hpp"
+#include "experiment/experiments.hpp"
+#include "syntax/parse.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double band_limited_reach_of_rate = 0.45;  // as InputSignal says
+
+// The data of a task that are there, each described; nothing when some are still to be made.
+std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData const& task, TaskPage& page) {
+  bool complete = true;
+  std::vector<ExperimentUse> there;
+  for (ExperimentUse const& use : *task.experiments) {
+    DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+    Task const* made = maker(session, block);
+    if (made == nullptr || std::filesystem::exists(session.folder() / block.path)) {
+      there.push_back(use);
+      continue;
+    }
+    complete = false;
+    CoveragePage coverage;
+    coverage.name = data_name(block, use.part);
+    coverage.file = block.path;
+    coverage.made_by = made->name;
+    page.coverage.push_back(std::move(coverage));
+  }
+  Model const& model = *task.model;
+  std::vector<ExperimentData> data = load_experiments(session, there, model, task.start, task.prediction);
+  for (ExperimentData const& each : data) {
+    page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
+    look_at_data(session.file, each, model, page.findings);
+  }
+  if (!complete) return std::nullopt;
+  return data;
+}
+
+void check_bands(TaskPage& page) {
+  for (CoveragePage const& coverage : page.coverage)
+    for (CoveragePage::Input const& input : coverage.inputs)
+      if (input.rule == rule_name(InputRule::band_limited) && input.high > band_limited_reach_of_rate * coverage.rate)
+        page.findings.push_back(
+            {Severity::warning, "input_band",
+             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `band_limited` is exact to 0.45 of "
+                         "it only",
+                         input.name, coverage.name, input.high, input.high / coverage.rate),
+             "was it held between the samples, or sampled without a filter against aliases?"});
+}
+
+// Each candidate as the fit of it would be, unless the selection cannot begin.
+void look_ahead_at_candidates(Session& session, Task const& task, SelectTask const& selection, TaskPage& page) {
+  std::vector<std::vector<ExperimentData>> data;
+  for (FitTask const& fit : selection.fits)
+    data.push_back(load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
+                                    fit.prediction));
+  for (std::size_t k = 0; k < data.size(); ++k)
+    for (ExperimentData const& each : data[k])
+      look_at_data(session.file, each, session.file.models[static_cast<std::size_t>(selection.fits[k].model)], page.findings);
+  if (refusal(task, selection, session.file.models, data)) return;
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
+  for (std::size_t k = 0; k < selection.fits.size(); ++k) {
+    page.outlooks.emplace_back().candidate = set.models[k].name;
+    look_ahead(session, selection.fits[k], data[k], page.outlooks.back());
+  }
+}
+
+TaskPage check_task(Session& session, Task const& task) {
+  CheckedFile const& file = session.file;
+  TaskPage page;
+  page.name = task.name;
+  auto const data = data_of(file, task);  // of a selection and its predictions the same for each candidate
+  if (auto const* made = std::get_if<SimulateTask>(&task.what)) {
+    page.what = fmt::format("simulate {}: {} samples at {:.6g} Hz into {}", file.models[static_cast<std::size_t>(made->model)].name,
+                            made->samples, 1 / made->step, made->file);
+  } else if (auto const* fit = std::get_if<FitTask>(&task.what)) {
+    Model const& model = file.models[static_cast<std::size_t>(fit->model)];
+    page.what = fmt::format("fit {} to {} with {}", model.name, data_names(file, fit->experiments), fit->backend);
+    auto const experiments = cover(session, data.front(), page);
+    check_bands(page);
+    if (experiments && !refusal(task, *fit, model, *experiments))
+      look_ahead(session, *fit, *experiments, page.outlooks.emplace_back());
+  } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
+    CandidateSet const& set = file.candidates[static_cast<std::size_t>(selection->candidates)];
+    page.what =
+        fmt::format("select {} ({} {}) to {} with {}", set.name, set.models.size(), set.models.size() == 1 ? "model" : "models",
+                    data_names(file, selection->fits.front().experiments), selection->backend);
+    auto const experiments = cover(session, data.front(), page);
+    check_bands(page);
+    if (experiments) look_ahead_at_candidates(session, task, *selection, page);
+  } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
+    page.what = fmt::format("discover {} from {} with {}, derivatives = {}",
+                            file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].name,
+                            data_names(file, discovery->experiments), discovery->selector, discovery->form);
+    cover(session, data.front(), page);
+    check_bands(page);
+  } else {
+    auto const& prediction = std::get<PredictTask>(task.what);
+    page.what = fmt::format("predict {} on {}", file.tasks[static_cast<std::size_t>(prediction.fit)].name,
+                            data_names(file, prediction.experiments));
+    cover(session, data.front(), page);
+  }
+  return page;
+}
+
+/// Several tasks read one record: what is told of it is told once.
+void tell_once(std::vector<TaskPage>& pages) {
+  Findings told;
+  for (TaskPage& page : pages)
+    std::erase_if(page.findings, [&](Finding const& each) {
+      if (each.code != "looks_missing") return false;
+      if (std::find(told.begin(), told.end(), each) != told.end()) return true;
+      told.push_back(each);
+      return false;
+    });
+}
+
+}  // namespace
+
+CheckResult check_file(Session& session) {
+  CheckResult result;
+  result.page.file = session.source.name();
+  result.page.data_blocks = static_cast<int>(session.file.data.size());
+  Diagnostics known_to_parse;
+  if (auto const written = parse(session.source, known_to_parse))
+    for (Model const& model : session.file.models)
+      result.page.models.push_back(describe_structure(*written, session.file.tree, model));
+  for (CheckedDictionary const& dictionary : session.file.dictionaries)
+    result.page.dictionaries.push_back(describe_dictionary(dictionary));
+  Readiness const readiness = check_readiness(session);
+  result.diagnostics = readiness.diagnostics;
+  result.unreadable = readiness.unreadable;
+  for (Task const& task : session.file.tasks) {
+    try {
+      result.page.tasks.push_back(check_task(session, task));
+    } catch (IoError const&) {  // said by `readiness`
+      result.page.tasks.push_back({task.name, "its data cannot be read", {}, {}, {}});
+    } catch (UserError const&) {
+      result.page.tasks.push_back({task.name, "its data cannot be used", {}, {}, {}});
+    }
+  }
+  tell_once(result.page.tasks);
+  return result;
+}
+
+}  // namespace sysid

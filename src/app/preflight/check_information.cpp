@@ -1,0 +1,187 @@
+// Findings about identifiability: named once each, with the number of draws that show them.
+#include "app/preflight/check_information.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sysid {
+namespace {
+
+constexpr double barely_narrowed = 0.5;
+constexpr double informed = 0.5;  // sd of a logarithm, a factor of 1.6: a prior narrower than this is knowledge, meant to be kept
+constexpr double strong_correlation = 0.99;
+constexpr double still_unknown = 0.25;  // of the prior's sd: what a confounded pair may keep before it is worth a warning
+
+class Description {
+ public:
+  Description(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals, std::string const& channels,
+              Outlook& page)
+      : coordinates_(coordinates), locals_(locals), channels_(channels), page_(page) {
+    for (JudgedParameter const& each : coordinates)
+      if (each.role == ParameterRole::response) {
+        asked_.push_back(each.words);
+        if (!each.coefficient) named_ = asked_.size();
+      }
+    null_.assign(asked_.size(), false);
+    for (LocalSlopes const& local : locals) expectations_.push_back(expect(local));
+  }
+
+  void fill() {
+    name_null_directions();
+    std::size_t i = 0;
+    for (JudgedParameter const& coordinate : coordinates_) {
+      if (coordinate.coefficient) {
+        count_coefficient(coordinate.words.name);
+        continue;
+      }
+      InformationPage::Line line{coordinate.words.name, coordinate.words.unit, coordinate.relative, 0, 0, 0, {}};
+      line.prior_width = coordinate.relative ? coordinate.spread : coordinate.spread / coordinate.words.scale;
+      if (coordinate.role == ParameterRole::response)
+        expect_knowledge(i++, line);
+      else
+        line.instead = unasked(coordinate);
+      page_.information->lines.push_back(std::move(line));
+    }
+    for (std::size_t a = 0; a < named_; ++a)
+      for (std::size_t b = a + 1; b < named_; ++b)
+        if (!null_[a] && !null_[b]) name_correlation(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
+
+ private:
+  // Which candidate is probable does not hang on parameters that the data leave open, so a candidate's weigh a step less.
+  void add(Severity severity, std::string code, std::string message, std::string help) {
+    if (!page_.candidate.empty()) severity = severity == Severity::error ? Severity::warning : Severity::note;
+    page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
+  }
+
+  // An unknown function is one line, whatever the number of its coefficients.
+  void count_coefficient(std::string const& name) {
+    std::string const function = name.substr(0, name.find('['));
+    std::vector<InformationPage::Line>& lines = page_.information->lines;
+    coefficients_ = lines.empty() || lines.back().name != function ? 1 : coefficients_ + 1;
+    if (coefficients_ == 1) lines.push_back({function, "", false, 1, 0, 0, {}});
+    lines.back().instead = fmt::format("an unknown function: {} coefficients", coefficients_);
+  }
+
+  // Slopes in all but coefficients, which are free as far as their prior lets them. They stand last, so of a triangular factor the
+  // leading block is the factor of the others.
+  LocalSlopes without_coefficients(LocalSlopes local) const {
+    auto const n = static_cast<Eigen::Index>(named_);
+    local.sensitivity.slopes = local.sensitivity.slopes.topLeftCorner(n, n).eval();
+    local.sensitivity.error = local.sensitivity.error.head(n).eval();
+    local.sensitivity.others = local.sensitivity.others.topRows(std::min(n, local.sensitivity.others.rows())).eval();
+    local.value = local.value.head(n).eval();
+    local.scale = local.scale.head(n).eval();
+    local.spread = local.spread.head(n).eval();
+    return local;
+  }
+
+  void name_null_directions() {
+    std::vector<LocalSlopes> locals;
+    for (LocalSlopes const& local : locals_) locals.push_back(without_coefficients(local));
+    NullSpace const space = find_null_space(locals);
+    for (NullDirection const& direction : space.directions) {
+      std::string const text = words(direction, asked_, channels_);
+      page_.information->null_directions.push_back(text);
+      for (NullDirection::Part const& part : direction.parts) null_[static_cast<std::size_t>(part.parameter)] = true;
+      add(Severity::error, "not_identifiable", fmt::format("{} (at {} of {} prior draws)", text, space.draws, space.draws),
+          direction.kind == NullDirection::Kind::no_influence
+              ? "fix it to a value (`=` in place of `~`), measure what it acts on, or excite it"
+              : "fix one of them to a known value (`=` in place of `~`), or measure what tells them apart");
+    }
+    int const size = static_cast<int>(named_);
+    page_.information->rank_low = page_.information->rank_high = size;
+    if (space.dimensions.empty()) return;
+    auto const [least, most] = std::minmax_element(space.dimensions.begin(), space.dimensions.end());
+    page_.information->rank_low = size - *most;
+    page_.information->rank_high = size - *least;
+  }
+
+  // The expected sd of asked parameter i over the draws.
+  void expect_knowledge(std::size_t i, InformationPage::Line& line) {
+    double least = 1, most = 0;
+    for (Expectation const& each : expectations_) {
+      least = std::min(least, each.shrinkage(static_cast<Eigen::Index>(i)));
+      most = std::max(most, each.shrinkage(static_cast<Eigen::Index>(i)));
+    }
+    line.low = least * line.prior_width;
+    line.high = most * line.prior_width;
+    if (null_[i]) line.instead = "not determined";
+    bool const vague = !line.relative || line.prior_width > informed;
+    if (!null_[i] && vague && least > barely_narrowed)
+      add(Severity::warning, "barely_narrowed",
+          fmt::format("the data will hardly narrow {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} prior draws)",
+                      line.name, 100 * least, 100 * most, locals_.size(), locals_.size()),
+          "its posterior will be its prior: state what is known of it, or fix it");
+  }
+
+  std::string unasked(JudgedParameter const& coordinate) {
+    if (coordinate.role == ParameterRole::noise) return "from the residuals";
+    if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
+    if (coordinate.role == ParameterRole::none) return "used nowhere";  // the checker has warned of it
+    add(Severity::error, "not_identifiable",
+        fmt::format("only derived quantities read {}: the data say nothing of it", coordinate.words.name),
+        "fix it to a value (`=` in place of `~`), or use it in an equation");
+    return "read by derived quantities alone";
+  }
+
+  // A pair of which little but a combination is known: at every draw, or at most of them with the same combination each time.
+  void name_correlation(Eigen::Index i, Eigen::Index j) {
+    std::vector<double> sizes, slopes;  // at the draws where they are confounded; dp_j / dp_i along the long axis, SI
+    double widest = 0;                  // of both, there, in sds of the prior
+    for (std::size_t d = 0; d < locals_.size(); ++d) {
+      Expectation const& each = expectations_[d];
+      double const correlation = each.correlation(i, j);
+      if (std::abs(correlation) < strong_correlation) continue;
+      auto const sd = [&](Eigen::Index p) { return each.shrinkage(p) * locals_[d].spread(p) * locals_[d].scale(p); };
+      sizes.push_back(std::abs(correlation));
+      widest = std::max({widest, each.shrinkage(i), each.shrinkage(j)});
+      slopes.push_back((correlation > 0 ? 1 : -1) * sd(j) / sd(i));
+    }
+    if (2 * sizes.size() <= locals_.size()) return;
+    auto const [least, most] = std::minmax_element(slopes.begin(), slopes.end());
+    double const middle = (*least + *most) / 2;
+    bool const same = *most - *least < 0.2 * std::abs(middle);
+    if (!same && sizes.size() < locals_.size()) return;
+    std::string combination;
+    if (same) {
+      double slope = middle;
+      for (double const simple : {1.0, 2.0, 0.5})
+        if (std::abs(std::abs(middle) / simple - 1) < 0.1) slope = middle > 0 ? simple : -simple;
+      NullDirection const direction{NullDirection::Kind::sum, {{static_cast<int>(i), 1, 1}, {static_cast<int>(j), slope, slope}}};
+      combination = fmt::format("nearly only {} is determined, ", determined_combination(direction, asked_));
+    }
+    std::string const pair = fmt::format("{} and {} trade against each other", asked_[static_cast<std::size_t>(i)].name,
+                                         asked_[static_cast<std::size_t>(j)].name);
+    std::string const size = fmt::format("expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
+                                         *std::min_element(sizes.begin(), sizes.end()),
+                                         *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
+    if (widest < still_unknown) {
+      page_.information->ridges.push_back(fmt::format("{}, yet both are narrowed: {}", pair, size));
+      return;
+    }
+    add(Severity::warning, "nearly_confounded", fmt::format("{}: {}{}", pair, combination, size),
+        "fix one of them, or record what tells them apart; what depends on their combination alone is well known");
+  }
+
+  std::vector<JudgedParameter> const& coordinates_;
+  std::vector<LocalSlopes> const& locals_;
+  std::string const& channels_;
+  Outlook& page_;
+  std::vector<ParameterWords> asked_;  // those that may show in the response
+  std::size_t named_ = 0;              // of them, that are no coefficients
+  int coefficients_ = 0;               // of the function whose line is the last
+  std::vector<bool> null_;             // of them, part of a null direction
+  std::vector<Expectation> expectations_;
+};
+
+}  // namespace
+
+void describe_information(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
+                          std::string const& channels, Outlook& page) {
+  Description(coordinates, locals, channels, page).fill();
+}
+
+}  // namespace sysid

@@ -1,0 +1,25 @@
+// What slopes at prior draws say about the parameters of a fit, in words: null directions, expected sds, confounded pairs.
+#pragma once
+#include <vector>
+
+#include "diagnostics/identifiability.hpp"
+#include "likelihood/output.hpp"
+#include "result/check_page.hpp"
+
+namespace sysid {
+
+/// A sampled parameter of a fit, as it is judged here.
+struct JudgedParameter {
+  ParameterWords words;
+  ParameterRole role = ParameterRole::response;
+  bool relative = false;     // by its logarithm
+  double spread = 0;         // the prior's sd: of the logarithm, or SI
+  bool coefficient = false;  // of an unknown function; these stand last
+};
+
+/// Fills lines, rank and null directions of `page.information` and adds findings. locals: at two draws or more, with respect to the
+/// coordinates whose role is `response`, in their order. channels: "displacement", for sentences.
+void describe_information(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
+                          std::string const& channels, Outlook& page);
+
+}  // namespace sysid

@@ -1,0 +1,166 @@
+// What draws of the prior predict with the actual input: do they simulate, and are they of the size measured?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/preflight/preflight.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
+#include "core/text/words.hpp"
+#include "diagnostics/prior_data_conflict.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double many_wild = 0.5;     // share of the draws
+constexpr double bare_mention = 3.2;  // a Bayes factor "not worth more than a bare mention" (Kass and Raftery 1995)
+
+struct Draw {
+  int lane;
+  double mismatch;  // sum over channels of |log(predicted range / measured range)|
+};
+
+PriorPage counts(LookedAt const& look, SettledDraws const& settled) {
+  PriorPage page;
+  page.draws = look.effort.prior_draws;
+  page.stated = look.what.solver.text();
+  page.failed_as_stated = settled.failed_as_stated;
+  page.failed = static_cast<int>(std::count(settled.followed.begin(), settled.followed.end(), false));
+  page.failures = settled.ledger.failures();
+  page.untraced = settled.untraced;
+  return page;
+}
+
+void judge_failures(LookedAt const& look) {
+  PriorPage const& page = *look.page.prior;
+  double const share = static_cast<double>(page.failed) / page.draws;
+  double const lost = static_cast<double>(page.failed_as_stated - page.failed) / page.draws;
+  if (page.failed == page.draws)
+    look.add(Severity::error, "prior_fails", fmt::format("the simulation fails at every one of {} prior draws", page.draws),
+             "look at the priors, the units of the input and the equation at the place named");
+  else if (share > many_failures)
+    look.add(!look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, "prior_fails",
+             fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
+                         look.candidate()
+                             ? fmt::format(": they cost the candidate a factor of {:.2g} in probability, if all else is equal",
+                                           1 / (1 - share))
+                             : ""),
+             "narrow the priors, or look at the equation at the place named");
+  if (!look.settles() && lost > many_failures)
+    look.add(Severity::warning, "integration_step",
+             fmt::format("with {} {:.0f} % of the prior draws leave the range of numbers that adaptive steps follow",
+                         look.what.solver.text(), 100 * lost),
+             fmt::format("{}: take shorter steps, or `solver = dopri5` or `cvode`",
+                         look.candidate() ? "what fails is never accepted" : "the search does not see what fails"));
+}
+
+void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double apart) {
+  if (line.middle == 0) return;  // held constant by the model, in whatever unit
+  double const ratio = line.middle / line.measured;
+  std::string size;
+  if (ratio > wild || ratio < 1 / wild)
+    size = fmt::format("half of the prior draws predict a range of {} {} than the one measured", line.name, times_apart(ratio));
+  else if (apart >= many_wild)
+    size =
+        fmt::format("{:.0f} % of the prior draws predict a range of {} more than {} times larger or smaller than the one measured",
+                    100 * apart, line.name, wild);
+  if (size.empty()) return;
+  look.page.findings.push_back(prior_far_from_data(size));
+}
+
+double range(auto const& value, int first, int end) {
+  double low = value(first), high = low;
+  for (int r = first; r < end; ++r) {
+    low = std::min(low, value(r));
+    high = std::max(high, value(r));
+  }
+  return high - low;
+}
+
+// One channel of one experiment: rows [first, end) of the predictions.
+void compare(LookedAt const& look, int first, int end, LaneArray const& centres, std::vector<Draw>& draws) {
+  std::vector<Output::Place> const& places = look.outputs.front().places();
+  double const measured = range([&](int r) { return places[static_cast<std::size_t>(r)].measured; }, first, end);
+  std::vector<double> finite;
+  double apart = 0;  // draws
+  for (Draw& draw : draws) {
+    double const predicted = range([&](int r) { return centres(r, draw.lane); }, first, end);
+    // A record that stays where it is says nothing of size.
+    double const mismatch = measured > 0 ? std::abs(elementary::log(predicted / measured)) : 0 * predicted;
+    bool const near = mismatch <= elementary::log(wild);
+    draw.mismatch += near ? mismatch : std::nan("");
+    if (!std::isfinite(predicted)) continue;
+    finite.push_back(predicted);
+    apart += near ? 0 : 1;
+  }
+  if (finite.empty()) return;
+  Output::Place const& place = places[static_cast<std::size_t>(first)];
+  Channel const& channel = look.model().channels[static_cast<std::size_t>(place.channel)];
+  std::string name = channel.name;
+  if (look.experiments.size() > 1) name += " on " + look.experiments[static_cast<std::size_t>(place.experiment)].name;
+  PriorPage::Channel line{name,
+                          channel.unit_text(),
+                          channel.from_si(quantile(finite, 0.05)),
+                          channel.from_si(quantile(finite, 0.5)),
+                          channel.from_si(quantile(finite, 0.95)),
+                          channel.from_si(measured)};
+  if (measured > 0) judge_ranges(look, line, apart / static_cast<double>(finite.size()));
+  look.page.prior->channels.push_back(std::move(line));
+}
+
+}  // namespace
+
+PriorDraws draw_prior(LookedAt const& look) {
+  int const count = look.effort.prior_draws;
+  ParameterSpace const& space = *look.space;
+  PriorDraws prior;
+  LaneArray theta(space.dimension(), count), declared(space.dimension(), count);
+  space.sample_prior({look.session.options.seed.value_or(look.what.seed.value_or(1)), Purpose::prior, 0, 0}, theta);
+  space.constrain(theta, declared);
+  std::vector<ParameterRole> const roles = parameter_roles(look.model());
+  std::vector<std::string> noise;
+  for (int k = 0; k < space.dimension(); ++k) {
+    FittedParameter const& row = space.rows()[static_cast<std::size_t>(space.sampled()[static_cast<std::size_t>(k)])];
+    ParameterInfo const& info = space.infos()[static_cast<std::size_t>(k)];
+    auto const values = declared.row(k);
+    JudgedParameter coordinate{
+        {row.name, info.unit, row.to_si(1)}, roles[static_cast<std::size_t>(row.parameter)], info.lower >= 0, 0, info.coefficient};
+    std::vector<double> scaled;
+    for (double const value : values) scaled.push_back(coordinate.relative ? elementary::log(value) : row.to_si(value));
+    coordinate.spread = (quantile(scaled, 0.84) - quantile(scaled, 0.16)) / 2;  // heavy tails leave it alone
+    if (coordinate.role == ParameterRole::noise) {
+      double const middle = quantile(std::vector<double>(values.begin(), values.end()), 0.5);
+      std::fill(values.begin(), values.end(), middle);
+      noise.push_back(fmt::format("{} = {}{}", row.name, significant(middle, 2), info.unit.empty() ? "" : " " + info.unit));
+    }
+    prior.coordinates.push_back(std::move(coordinate));
+  }
+  prior.noise = listed(noise);
+  Output const& stated = look.outputs.front();
+  LaneArray const values = space.values_of_declared(declared);
+  prior.points = LaneArray(stated.point_rows(), count);
+  for (int r = 0; r < values.rows(); ++r)
+    for (int w = 0; w < count; ++w) prior.points(r, w) = values(r, w);
+  stated.start(prior.points);
+  prior.settled = settle_draws(look.session, look.what, look.compiled, look.space, look.experiments, stated, theta, prior.points);
+  return prior;
+}
+
+std::vector<int> describe_prior(LookedAt const& look, PriorDraws const& prior) {
+  look.page.prior = counts(look, prior.settled);
+  judge_failures(look);
+  std::vector<Draw> draws;
+  for (int w = 0; w < look.effort.prior_draws; ++w)
+    if (prior.settled.followed[static_cast<std::size_t>(w)]) draws.push_back({w, 0});
+  for (auto const& [first, end] : look.responses()) compare(look, first, end, prior.settled.centres, draws);
+  std::erase_if(draws, [](Draw const& draw) { return !std::isfinite(draw.mismatch); });
+  std::stable_sort(draws.begin(), draws.end(), [](Draw const& a, Draw const& b) { return a.mismatch < b.mismatch; });
+  std::vector<int> lanes;
+  for (Draw const& draw : draws) lanes.push_back(draw.lane);
+  return lanes;
+}
+
+}  // namespace sysid

@@ -1,0 +1,217 @@
+// Hyper-parameters of draws beside the regressions that they would be used in.
+#include "app/preflight/check_process.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "app/process/process_fit.hpp"
+#include "app/session/fit_target.hpp"
+#include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/prior_data_conflict.hpp"
+#include "gaussian_process/regression.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int draws = 64;
+constexpr double nearly_straight = 30;  // a length so many times the range of its input
+constexpr double most = 0.5;            // share of the draws
+
+ProcessPage::Spread spread_of(std::vector<double> const& values) {
+  return {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95)};
+}
+
+double share(std::vector<double> const& values, auto const& condition) {
+  return static_cast<double>(std::count_if(values.begin(), values.end(), condition)) / static_cast<double>(values.size());
+}
+
+/// The places of one input along all records, sorted, each once.
+struct Places {
+  std::vector<double> distinct;
+
+  explicit Places(Eigen::VectorXd const& column) : distinct(column.begin(), column.end()) {
+    std::sort(distinct.begin(), distinct.end());
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  }
+  double range() const { return distinct.back() - distinct.front(); }
+  /// The middle of the gaps between neighbours; 0 of a constant.
+  double spacing() const {
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < distinct.size(); ++i) gaps.push_back(distinct[i] - distinct[i - 1]);
+    return gaps.empty() ? 0 : quantile(gaps, 0.5);
+  }
+};
+
+/// Rows whose inputs are those of an earlier one.
+int repeated_rows(Eigen::MatrixXd const& inputs) {
+  std::vector<std::vector<double>> rows;
+  for (Eigen::Index i = 0; i < inputs.rows(); ++i) rows.emplace_back(inputs.row(i).begin(), inputs.row(i).end());
+  std::sort(rows.begin(), rows.end());
+  return static_cast<int>(rows.end() - std::unique(rows.begin(), rows.end()));
+}
+
+class Look {
+ public:
+  Look(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page)
+      : page_(page),
+        model_(process_model(session, what, what.prediction)),
+        target_(process_target(what, model_, data, what.solver, session.options.execution)),
+        experiments_(static_cast<int>(data.size())),
+        seed_(session.options.seed.value_or(what.seed.value_or(1))) {}
+
+  void run() {
+    for (int c = 0; c < static_cast<int>(model_->channels().size()); ++c) channel(c);
+  }
+
+ private:
+  using Regression = ProcessTarget::Regression;
+
+  void channel(int c) {
+    std::vector<Regression> const drawn = regressions(c);
+    page_.processes.emplace_back();
+    ProcessPage& out = page_.processes.back();
+    ProcessChannel const& layout = model_->channels()[static_cast<std::size_t>(c)];
+    Channel const& declared = model_->model().channels[static_cast<std::size_t>(layout.channel)];
+    out.channel = declared.name;
+    out.draws = draws;
+    out.failed = draws - static_cast<int>(drawn.size());
+    if (out.failed > many_failures * draws)
+      add(out.failed == draws ? Severity::error : Severity::warning, "prior_fails",
+          fmt::format("{} of {} prior draws leave no likelihood of {}: {}", out.failed, draws, declared.name,
+                      model_->model().integrated() ? "the simulation fails, or a hyper-parameter is not positive"
+                                                   : "a hyper-parameter or the noise is not positive"),
+          "narrow the priors: amplitudes, lengths and noise are positive");
+    if (drawn.empty()) return;
+    Regression const& first = drawn.front();
+    out.rows = static_cast<int>(first.observations.values.size());
+    out.repeated = repeated_rows(first.observations.inputs);
+    out.filtered = gaussian_process::filters(layout.covariance, first.observations);
+    double const measured = std::sqrt(target_->measured_variance(c));
+    out.measured_sd = width(declared, measured);
+    out.unit = declared.unit_text();
+    std::size_t k = 0;
+    Eigen::Index column = 0;
+    for (Process const& process : model_->model().processes) {
+      if (process.channel != layout.channel) continue;
+      for (KernelUse const& kernel : process.kernels)
+        for (gaussian_process::HyperParameterRow const& row : kernel.row->hyper_parameters)
+          for (std::size_t d = 0; d < (row.per_input ? kernel.inputs.size() : 1); ++d, ++k)
+            hyper_parameter(process, row, kernel.inputs.empty() ? 0 : kernel.inputs[d], column, values(drawn, k), measured, first,
+                            out);
+      column += static_cast<Eigen::Index>(process.inputs.size());
+    }
+    std::vector<double> const noise = values(drawn, k);
+    ProcessPage::Line line{"noise of " + declared.name, "sd", declared.unit_text(), {}, {}};
+    std::vector<double> shown;
+    for (double const each : noise) shown.push_back(width(declared, each));
+    line.prior = spread_of(shown);
+    out.lines.push_back(std::move(line));
+    far_from_data("the noise of " + declared.name, noise, measured, declared.name);
+  }
+
+  /// Of one channel at prior draws, where there is one.
+  std::vector<Regression> regressions(int c) const {
+    ParameterSpace const& space = *target_->space();
+    LaneArray theta(space.dimension(), draws);
+    space.sample_prior({seed_, Purpose::prior, 0, 0}, theta);
+    LaneArray const values = space.values(theta);
+    std::vector<Regression> found;
+    LaneArray all(static_cast<int>(model_->model().parameters.size()), draws), own(all.rows(), experiments_);
+    std::vector<LaneArray> of_experiment;
+    for (int e = 0; e < experiments_; ++e) {
+      space.select(values, e, all);
+      of_experiment.push_back(all);
+    }
+    for (int w = 0; w < draws; ++w) {
+      for (int e = 0; e < experiments_; ++e)
+        for (int p = 0; p < own.rows(); ++p) own(p, e) = of_experiment[static_cast<std::size_t>(e)](p, w);
+      if (auto regression = target_->regression(own, c, false)) found.push_back(std::move(*regression));
+    }
+    return found;
+  }
+
+  static std::vector<double> values(std::vector<Regression> const& drawn, std::size_t k) {
+    std::vector<double> result;
+    for (Regression const& each : drawn) result.push_back(each.parameters[k]);
+    return result;
+  }
+
+  /// A difference in the declared unit.
+  static double width(Quantity const& quantity, double si) { return quantity.from_si(si) - quantity.from_si(0); }
+
+  void hyper_parameter(Process const& process, gaussian_process::HyperParameterRow const& row, int input, Eigen::Index column,
+                       std::vector<double> const& drawn, double measured, Regression const& first, ProcessPage& out) {
+    bool const amplitude = row.unit.output == 1 && row.unit.input == 0, length = row.per_input && row.unit.input == 1;
+    if (!amplitude && !length) return;
+    Quantity const& quantity = length ? process.inputs[static_cast<std::size_t>(input)] : static_cast<Quantity const&>(process);
+    std::vector<double> shown;
+    for (double const each : drawn) shown.push_back(width(quantity, each));
+    ProcessPage::Line line{process.name, std::string(row.name), quantity.unit_text(), spread_of(shown), {}};
+    if (amplitude) {
+      far_from_data(fmt::format("`{}`", process.name), drawn, measured, out.channel);
+    } else {
+      Places const places(first.observations.inputs.col(column + input));
+      line.name += " in " + quantity.name;
+      line.inputs = ProcessPage::Inputs{width(quantity, places.range()), width(quantity, places.spacing()),
+                                        static_cast<int>(places.distinct.size())};
+      lengths(process, quantity, drawn, places);
+    }
+    // Lags of one input share a length.
+    bool const said = std::any_of(out.lines.begin(), out.lines.end(), [&](ProcessPage::Line const& other) {
+      return other.name == line.name && other.what == line.what && other.prior.middle == line.prior.middle;
+    });
+    if (!said) out.lines.push_back(std::move(line));
+  }
+
+  void lengths(Process const& process, Quantity const& input, std::vector<double> const& drawn, Places const& places) {
+    if (places.distinct.size() < 2)
+      return add(Severity::warning, "length_and_inputs",
+                 fmt::format("{} of `{}` is constant along the data: nothing tells its length", input.name, process.name),
+                 "leave it out of the function, or add a record along which it changes");
+    double const spacing = places.spacing(), range = places.range();
+    if (double const part = share(drawn, [&](double length) { return length < spacing; }); part >= most)
+      add(Severity::warning, "length_and_inputs",
+          fmt::format(
+              "{:.0f} % of the prior draws have a length of `{}` in {} below the spacing of its inputs: the function is another "
+              "noise there",
+              100 * part, process.name, input.name),
+          "look at the unit of the input, and at the prior of the length");
+    else if (double const flat = share(drawn, [&](double length) { return length > nearly_straight * range; }); flat >= most)
+      add(Severity::warning, "length_and_inputs",
+          fmt::format("{:.0f} % of the prior draws have a length of `{}` in {} of more than {} times the range of its inputs: the "
+                      "function is nearly straight there",
+                      100 * flat, process.name, input.name, nearly_straight),
+          "look at the unit of the input, and at the prior of the length");
+  }
+
+  void far_from_data(std::string const& what, std::vector<double> const& drawn, double measured, std::string const& channel) {
+    if (!(measured > 0)) return;
+    double const ratio = quantile(drawn, 0.5) / measured;
+    bool const is_noise = what.starts_with("the");
+    if (ratio > wild || (!is_noise && ratio < 1 / wild))
+      page_.findings.push_back(prior_far_from_data(
+          fmt::format("half of the prior draws give {} a width {} than the sd of {}", what, times_apart(ratio), channel)));
+  }
+
+  void add(Severity severity, std::string code, std::string message, std::string help) {
+    page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
+  }
+
+  Outlook& page_;
+  std::shared_ptr<ProcessModel const> model_;
+  std::unique_ptr<ProcessTarget> target_;
+  int experiments_;
+  std::uint64_t seed_;
+};
+
+}  // namespace
+
+void look_at_processes(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
+  Look(session, what, data, page).run();
+}
+
+}  // namespace sysid

@@ -1,0 +1,13 @@
+// What `check` says of Gaussian processes at samples before a fit: their priors against the data that are to tell of them.
+#pragma once
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
+#include "result/check_page.hpp"
+
+namespace sysid {
+
+/// Draws of the prior against the sd of what is measured and against range and spacing of the processes' inputs, and what one
+/// likelihood takes, onto the page. Every prior can be drawn from.
+void look_at_processes(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page);
+
+}  // namespace sysid

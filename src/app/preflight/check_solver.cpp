@@ -1,0 +1,87 @@
+// Which solver the result needs: by moves of parameters, and in a selection by what it does to distances.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/preflight/preflight.hpp"
+#include "diagnostics/tolerance.hpp"
+#include "linear_algebra/decompositions.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double visible_shift = 0.05;  // of the distance that noise leaves; what a selection checks at its end
+constexpr double gross_move = 0.1;      // of a response's sd: an nmse of 1, which a model is called excellent below
+
+// By how many of its expected sds the worst parameter moves with the finer solver, to first order.
+double move_of(LocalSlopes const& local, Eigen::Index level) {
+  Eigen::VectorXd const change = local.sensitivity.others.col(level);
+  if (!change.allFinite()) return std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd const slopes = local.sensitivity.slopes * local.spread.asDiagonal();
+  SingularValues const svd = singular_values(slopes);
+  Eigen::VectorXd const& s = svd.values;
+  Eigen::VectorXd const gain = s.array() / (s.array().square() + 1);
+  Eigen::VectorXd const move = svd.right * gain.asDiagonal() * svd.left.transpose() * change;
+  return (move.cwiseAbs().array() / expect(local).shrinkage.array()).maxCoeff();
+}
+
+// The middle one; what is not finite comes last.
+double middle(std::vector<double> values) {
+  for (double& value : values)
+    if (!std::isfinite(value)) value = std::numeric_limits<double>::infinity();
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+// What a selection compares are distances, and its thresholds end where noise or the best model leaves them: so the integrator is
+// judged by what it does to those.
+void describe_distances(LookedAt const& look, PriorDraws const& prior, double response_move, double shift) {
+  look.page.information->response_move = response_move;
+  std::string const help =
+      look.page.information->advised.empty() ? "take a finer solver" : fmt::format("take {}", look.page.information->advised);
+  if (!(response_move <= gross_move))
+    look.add(Severity::warning, "integration_step",
+             fmt::format("with {} the solver shapes the distances: {} moves the middle response by {} of its sd",
+                         look.what.solver.text(), look.what.solver.finer_words(),
+                         std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than all"),
+             help);
+  else if (prior.noise.empty() && shift > visible_shift)
+    look.add(Severity::warning, "integration_step",
+             fmt::format("with {} the solver shapes the distances: {} moves them by {:.2g} of what the stated noise leaves",
+                         look.what.solver.text(), look.what.solver.finer_words(), shift),
+             help);
+}
+
+}  // namespace
+
+void describe_solvers(LookedAt const& look, PriorDraws const& prior, std::vector<LocalResponse> const& responses) {
+  std::vector<double> moves(look.solvers.size() - 1, 0.0), response_moves, shifts;
+  if (moves.empty()) return;
+  for (LocalResponse const& each : responses) {
+    for (std::size_t level = 0; level < moves.size(); ++level)
+      moves[level] = std::max(moves[level], move_of(each.slopes, static_cast<Eigen::Index>(level)));
+    response_moves.push_back(each.moved);
+    shifts.push_back(each.shift);
+  }
+  InformationPage& information = *look.page.information;
+  information.refinement = look.what.solver.finer_words();
+  if (!look.settles()) information.taken = look.what.solver.text();
+  for (std::size_t level = 0; level < moves.size(); ++level) {
+    information.moves.emplace_back(look.solvers[level].text(), moves[level]);
+    if (moves[level] > tolerable_move) continue;
+    information.advised = look.solvers[level].text();
+    break;
+  }
+  if (!look.what.settle && !look.candidate() && moves.front() > tolerable_move)
+    look.add(Severity::warning, "integration_step",
+             fmt::format("with {} the solver shapes the result: with {} parameters move by up to {}", look.what.solver.text(),
+                         look.what.solver.finer_words(), moves.front() > 5 ? "many sds" : fmt::format("{:.2g} sd", moves.front())),
+             information.advised.empty()
+                 ? "leave its settings out and they are chosen"
+                 : fmt::format("take {}, or leave its settings out and they are chosen", information.advised));
+  if (look.candidate()) describe_distances(look, prior, middle(std::move(response_moves)), middle(std::move(shifts)));
+}
+
+}  // namespace sysid

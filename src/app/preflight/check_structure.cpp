@@ -1,0 +1,116 @@
+// A model as declared: names and units from the checked model, priors and expressions as the user wrote them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "app/preflight/check_file.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+struct Texts {
+  std::vector<std::string> equations;
+  std::map<std::string, std::string> parameters, channels, derived;
+};
+
+// What is said of a name first stays.
+void add_texts(ast::File const& tree, std::string const& model, bool equations, Texts& texts) {
+  auto const call = [](ast::Call const& use) { return unparse(ast::Expression{{}, ast::Box<ast::Call>(use)}); };
+  for (ast::Item const& item : tree.items) {
+    auto const* found = std::get_if<ast::Model>(&item);
+    if (found == nullptr || found->name.text != model) continue;
+    for (ast::ModelStatement const& statement : found->statements) {
+      if (auto const* equation = std::get_if<ast::Equation>(&statement); equation != nullptr && equations)
+        texts.equations.push_back(unparse(equation->left) + " = " + unparse(equation->right));
+      if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
+        texts.parameters.try_emplace(parameter->name.name.text, parameter->prior   ? "~ " + call(*parameter->prior)
+                                                                : parameter->value ? "= " + unparse(*parameter->value)
+                                                                                   : std::string());
+      if (auto const* observation = std::get_if<ast::Observation>(&statement))
+        texts.channels.try_emplace(observation->channel.name.text, "~ " + call(observation->noise));
+      if (auto const* definition = std::get_if<ast::Definition>(&statement))
+        texts.derived.try_emplace(definition->name.name.text, "= " + unparse(definition->value));
+    }
+  }
+}
+
+// The user's own text first; what that leaves open from the model with its parts written out: all of one that stands in a module,
+// what parts bring to one of the file.
+Texts texts_of(ast::File const& written, ast::File const& flat, std::string const& model) {
+  Texts texts;
+  add_texts(written, model, true, texts);
+  add_texts(flat, model, texts.equations.empty() && texts.channels.empty(), texts);
+  return texts;
+}
+
+// "y", "y'", "y''" are one state of order 3; its unknown is y'''. Beside those there may be algebraic ones.
+void add_orders(Model const& model, ModelPage& page) {
+  std::vector<std::pair<State const*, int>> orders;
+  for (State const& state : model.states) {
+    if (orders.empty() || !state.name.ends_with('\''))
+      orders.emplace_back(&state, 1);
+    else
+      ++orders.back().second;
+  }
+  for (auto const& [state, order] : orders) {
+    page.states.push_back({state->name, state->unit_text(), fmt::format("order {}", order)});
+    if (model.unknowns.empty()) page.unknowns.push_back(state->name + std::string(static_cast<std::size_t>(order), '\''));
+  }
+  for (Unknown const& unknown : model.unknowns) page.unknowns.push_back(unknown.name);
+}
+
+// Each state has an equation for its present sample, however many past ones are remembered.
+void add_pasts(Model const& model, ModelPage& page) {
+  for (Past const& past : model.pasts) {
+    if (past.channel >= 0) continue;
+    std::size_t const lags = past.registers.size();
+    page.states.push_back(
+        {past.name, past.unit_text(), lags == 0 ? std::string() : fmt::format("{} past sample{}", lags, lags == 1 ? "" : "s")});
+    page.unknowns.push_back(past.name);
+  }
+}
+
+/// What is said of a name; of an element, `m[1]`, what is said of all.
+std::string text_of(std::map<std::string, std::string> const& texts, std::string const& name) {
+  auto place = texts.find(name);
+  if (place == texts.end()) place = texts.find(name.substr(0, name.find('[')));
+  return place == texts.end() ? std::string() : place->second;
+}
+
+}  // namespace
+
+ModelPage describe_structure(ast::File const& written, ast::File const& flat, Model const& model) {
+  ModelPage page;
+  page.name = model.name;
+  page.title = model.title;
+  Texts texts = texts_of(written, flat, model.name);
+  page.equations = std::move(texts.equations);
+  if (model.dynamics == Dynamics::discrete)
+    add_pasts(model, page);
+  else
+    add_orders(model, page);
+  for (Unchecked const& each : model.unchecked) page.unchecked.push_back(fmt::format("`{}`: {}", each.what, each.why));
+  for (Quantity const& input : model.inputs) page.inputs.push_back({input.name, input.unit_text(), {}});
+  for (Channel const& channel : model.channels)
+    page.channels.push_back({channel.name, channel.unit_text(), text_of(texts.channels, channel.name)});
+  for (Parameter const& parameter : model.parameters)
+    if (!parameter.coefficient)
+      page.parameters.push_back({parameter.name, parameter.unit_text(), text_of(texts.parameters, parameter.name)});
+  for (Expansion const& expansion : model.expansions) {
+    std::vector<std::string> inputs;
+    for (Expansion::Input const& input : expansion.inputs) inputs.push_back(input.name);
+    page.parameters.push_back(
+        {expansion.name, expansion.unit_text(),
+         fmt::format("an unknown function of {}: {} coefficients", fmt::join(inputs, ", "), expansion.coefficients.size())});
+  }
+  auto const is_state = [&](Derived const& derived) {  // its present sample, in discrete time
+    return std::any_of(model.pasts.begin(), model.pasts.end(), [&](Past const& past) { return past.name == derived.name; });
+  };
+  for (Derived const& derived : model.derived)
+    if (!is_state(derived)) page.derived.push_back({derived.name, derived.unit_text(), text_of(texts.derived, derived.name)});
+  return page;
+}
+
+}  // namespace sysid

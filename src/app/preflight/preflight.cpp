@@ -1,0 +1,118 @@
+// Data cut to what is looked at, solvers from coarse to fine, and the work that all of it would be.
+#include "app/preflight/preflight.hpp"
+
+#include <algorithm>
+
+#include "expression/switching.hpp"
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::size_t most_steps = 1U << 20;  // of one trajectory
+constexpr int enough_candidates = 12;         // fewer than that cost more than a refinement less
+constexpr double most_work = 1.2e9;           // operations of the equations at the steps of all trajectories: about a second
+
+// The experiment up to its so many scored rows: enough to look ahead, and done in a second.
+Experiment shortened_to_scored(Experiment experiment) {
+  std::size_t rows = 0, counted = 0;
+  while (rows < experiment.time.size() && counted < LookedAt::most_scored) counted += experiment.scored[rows++] != 0;
+  if (rows == experiment.time.size()) return experiment;
+  experiment.time.resize(rows);
+  experiment.scored.resize(rows);
+  for (InputSignal& input : experiment.inputs) input = input.view(0, static_cast<int>(rows));
+  for (auto& channel : experiment.measured)
+    if (!channel.empty()) channel.resize(rows);
+  return experiment;
+}
+
+// Whether states switch an equation from one branch to another that does not begin where the first ends. A fixed step that passes
+// the place makes no difference between a little earlier and a little later: the response is constant in what moves the place, but
+// for leaps from one step to the next, and its slopes mean nothing.
+bool jumps(Model const& model) {
+  if (!model.integrated() || model.implicit) return false;
+  Graph graph = model.graph;
+  std::vector<NodeId> derivatives;
+  for (State const& state : model.states) derivatives.push_back(state.derivative);
+  std::vector<SwitchingSurface> const surfaces = switching_surfaces(graph, derivatives);
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [](SwitchingSurface const& each) { return each.reads_states && each.jumps; });
+}
+
+// Operations of the equations along the records, with one step per sample.
+double work_of(Model const& model, std::vector<Experiment> const& experiments) {
+  std::vector<NodeId> roots = model.residuals;
+  roots.insert(roots.end(), model.memories.begin(), model.memories.end());
+  for (State const& state : model.states) roots.push_back(state.derivative);
+  for (Channel const& channel : model.channels)
+    roots.insert(roots.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+  std::size_t samples = 0;
+  for (Experiment const& each : experiments) samples += each.time.size();
+  return static_cast<double>(model.graph.reachable(roots).size()) * static_cast<double>(samples);
+}
+
+// Shares of the work: a quarter for draws, each tried by several solvers; a quarter for finer and finer solvers; half for slopes,
+// which take 16 trajectories for each coordinate.
+Effort effort_of(double work, int coordinates, Effort effort) {
+  double const trajectories = most_work / std::max(1.0, work);
+  auto const within = [](double wanted, int least, int most) {
+    return static_cast<int>(std::clamp(wanted, static_cast<double>(least), static_cast<double>(most)));
+  };
+  effort.prior_draws = within(trajectories / 4 / 8, 16, effort.prior_draws);
+  auto const refined = [&] { return trajectories / 4 / static_cast<double>(1 << (effort.refinements + 1)); };
+  while (effort.refinements > 2 && refined() < enough_candidates) --effort.refinements;
+  effort.candidates = within(refined(), std::min(4, effort.candidates), effort.candidates);
+  double const slopes = trajectories / 2 / (1 + 16.0 * coordinates);
+  effort.looked_at = slopes < 1 ? 0 : within(slopes, 2, std::min(effort.looked_at, effort.candidates));
+  return effort;
+}
+
+}  // namespace
+
+LookedAt::LookedAt(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page)
+    : session(session),
+      what(what),
+      page(page),
+      compiled(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+      space(parameter_space(compiled->model, what.experiments)) {
+  std::size_t longest = 0;
+  for (ExperimentData const& each : data) {
+    experiments.push_back(shortened_to_scored(each.experiment));
+    longest = std::max(longest, experiments.back().time.size());
+    shortened = shortened || experiments.back().time.size() < each.experiment.time.size();
+  }
+  // To 64 times the steps, fewer on records that would take long; to a 1e-4 of the tolerances. What no solver integrates is exact
+  // as it stands.
+  effort.refinements = !model().integrated() ? 0 : what.solver.fixed_step() ? 6 : 2;
+  while (effort.refinements > 2 && (longest * static_cast<std::size_t>(what.solver.substeps)) << effort.refinements > most_steps)
+    --effort.refinements;
+  effort = effort_of(work_of(model(), experiments) * what.solver.substeps, space->dimension(), effort);
+  auto const pool = make_pool(session.options.execution);
+  solvers.push_back(what.solver);
+  while (static_cast<int>(solvers.size()) <= effort.refinements) solvers.push_back(solvers.back().finer());
+  for (SolverSettings const& solver : solvers)
+    outputs.emplace_back(compiled, space, experiments, solver, start_rows(what.start), session.options.execution, pool);
+  if (what.solver.fixed_step() && jumps(model()))
+    on_jumps.emplace(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, "dopri5", what.prediction), space,
+                     experiments, SolverSettings{.method = "dopri5", .relative = smooth_enough}, start_rows(what.start),
+                     session.options.execution, pool);
+}
+
+void LookedAt::add(Severity severity, std::string code, std::string message, std::string help) const {
+  page.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
+}
+
+std::vector<std::pair<int, int>> LookedAt::responses() const {
+  std::vector<std::pair<int, int>> all;
+  std::vector<Output::Place> const& places = outputs.front().places();
+  for (int r = 0; r < static_cast<int>(places.size()); ++r) {
+    Output::Place const& place = places[static_cast<std::size_t>(r)];
+    if (all.empty() || places[static_cast<std::size_t>(all.back().first)].experiment != place.experiment ||
+        places[static_cast<std::size_t>(all.back().first)].channel != place.channel)
+      all.emplace_back(r, r);
+    all.back().second = r + 1;
+  }
+  return all;
+}
+
+}  // namespace sysid

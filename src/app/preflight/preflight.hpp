@@ -1,0 +1,80 @@
+// One model of a task while `check` looks ahead: its data, its solvers from coarse to fine, and how much work that may be.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/preflight/check_information.hpp"
+#include "app/preflight/prior_simulations.hpp"
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
+#include "likelihood/output.hpp"
+#include "result/check_page.hpp"
+
+namespace sysid {
+
+/// How much is looked at, so that a check of a large model ends about when that of a small one does.
+struct Effort {
+  int prior_draws = 128;
+  int candidates = 24;  // draws among which those are sought whose slopes are taken,
+  int looked_at = 8;    // so many; 0: slopes would take too long
+  int refinements = 6;  // of the solver
+};
+
+class LookedAt {
+ public:
+  LookedAt(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page);
+
+  Session& session;
+  FitTask const& what;
+  Outlook& page;
+  std::shared_ptr<CompiledModel const> compiled;
+  std::shared_ptr<ParameterSpace const> space;
+  std::vector<Experiment> experiments;
+  bool shortened = false;  // to their first `most_scored` scored rows
+  Effort effort;
+  std::vector<SolverSettings> solvers;  // as stated, then ever finer
+  std::vector<Output> outputs;          // of each
+  std::optional<Output> on_jumps;       // ends its steps where the equations jump; of models that do
+
+  static constexpr std::size_t most_scored = 10000;  // rows of an experiment that are looked at
+  static constexpr double smooth_enough = 1e-8;      // tolerance of adaptive steps under differences
+
+  Model const& model() const { return compiled->model; }
+  bool candidate() const { return !page.candidate.empty(); }
+  /// Whether the task makes the solver finer until it settles the result: fits do, selections take theirs as it is.
+  bool settles() const { return what.settle && !candidate(); }
+  void add(Severity severity, std::string code, std::string message, std::string help) const;
+  /// Rows [first, end) of the predictions: one channel of one experiment each.
+  std::vector<std::pair<int, int>> responses() const;
+};
+
+/// Draws of the prior in SI, all rows of a point; what only the noise reads at its median, so that one level of noise stands for
+/// all.
+struct PriorDraws {
+  LaneArray points;  // [point rows x draws]
+  SettledDraws settled;
+  std::vector<JudgedParameter> coordinates;
+  std::string noise;  // the level of noise taken, in words; empty: stated
+};
+PriorDraws draw_prior(LookedAt const& look);
+
+/// Ranges and failures of the draws, with findings, onto the page; the draws that predict all channels of about the size measured,
+/// nearest first.
+std::vector<int> describe_prior(LookedAt const& look, PriorDraws const& prior);
+
+/// A draw whose response ever finer solvers leave where it is, with its slopes.
+struct LocalResponse {
+  LocalSlopes slopes;
+  double moved = 0;  // by the first refinement: of a channel's response, the largest part of its sd
+  double shift = 0;  // the same as a mean square in units of the noise
+};
+/// Up to Effort::looked_at of the draws given, in their order.
+std::vector<LocalResponse> local_responses(LookedAt const& look, PriorDraws const& prior, std::vector<int> const& draws);
+
+/// Which solver the result needs, or the distances of a selection do; fills page.information, which is there.
+void describe_solvers(LookedAt const& look, PriorDraws const& prior, std::vector<LocalResponse> const& responses);
+
+}  // namespace sysid

@@ -1,0 +1,138 @@
+// The task's own solver, then dopri5 for all draws, then cvode for those that are still open.
+#include "app/preflight/prior_simulations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double comparable = 1e-4;                                        // of a range that is compared within orders of magnitude
+constexpr std::size_t explicit_steps = 200'000, implicit_steps = 200'000;  // in all: a lane each, all lanes together
+constexpr std::size_t many_states = 64;
+constexpr std::size_t fewest_steps = 20;  // between two samples: less is no attempt
+
+LaneArray gathered(ConstLanes from, std::vector<int> const& lanes) {
+  LaneArray to(from.rows(), static_cast<int>(lanes.size()));
+  for (int r = 0; r < to.rows(); ++r)
+    for (std::size_t w = 0; w < lanes.size(); ++w) to(r, static_cast<int>(w)) = from(r, lanes[w]);
+  return to;
+}
+
+class Settling {
+ public:
+  Settling(Session& session, FitTask const& what, std::shared_ptr<ParameterSpace const> const& space,
+           std::vector<Experiment> const& experiments, std::shared_ptr<CompiledModel const> const& compiled, ConstLanes theta,
+           ConstLanes points, SettledDraws& result)
+      : session_(session),
+        what_(what),
+        last_compiled_(compiled),
+        last_solver_(what.solver),
+        space_(space),
+        experiments_(experiments),
+        theta_(theta),
+        points_(points),
+        result_(result),
+        pool_(make_pool(session.options.execution)) {
+    for (Experiment const& each : experiments) samples_ += each.time.size();
+  }
+
+  // Tries the lanes; where the method follows one, its response is the answer.
+  void attempt(std::string const& method, std::size_t budget, std::vector<int> const& lanes) {
+    std::size_t const steps = budget / std::max<std::size_t>(1, samples_);
+    if (lanes.empty() || steps < fewest_steps) return;
+    auto const compiled = session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, method, what_.prediction);
+    SolverSettings const solver{
+        .method = method, .relative = comparable, .steps = static_cast<int>(std::min<std::size_t>(steps, 10'000))};
+    LaneArray const theta = gathered(theta_, lanes);
+    LaneArray points = gathered(points_, lanes);
+    std::vector<double> density(lanes.size());
+    Ledger ledger;
+    make_fit_target(session_, what_, compiled, space_, experiments_, solver, session_.options.execution)
+        ->log_likelihood(theta, density, ledger);
+    last_compiled_ = compiled;
+    last_solver_ = solver;
+    Output const output(compiled, space_, experiments_, solver, start_rows(what_.start), session_.options.execution, pool_);
+    LaneArray centres(result_.centres.rows(), points.width());
+    output.start(points);
+    output.centres(points, centres);
+    for (std::size_t w = 0; w < lanes.size(); ++w) {
+      if (!std::isfinite(density[w])) continue;
+      result_.followed[static_cast<std::size_t>(lanes[w])] = true;
+      for (int r = 0; r < centres.rows(); ++r) result_.centres(r, lanes[w]) = centres(r, static_cast<int>(w));
+    }
+  }
+
+  // Where the draws fail that nothing follows, each counted once.
+  void trace() {
+    constexpr std::size_t traced = 8;
+    std::vector<int> const lanes = open();
+    auto const target =
+        make_fit_target(session_, what_, last_compiled_, space_, experiments_, last_solver_, session_.options.execution);
+    for (std::size_t i = 0; i < std::min(traced, lanes.size()); ++i) {
+      double density = 0;
+      Ledger solves;
+      target->log_likelihood(gathered(theta_, {lanes[i]}), {&density, 1}, solves);
+      if (solves.failures().empty()) {
+        result_.ledger.add_failure(FailureClass::non_finite, "the likelihood of what is simulated", 0, {});
+        continue;
+      }
+      Failure const& first = solves.failures().front();
+      result_.ledger.add_failure(first.kind, first.where, first.time, first.example);
+    }
+    result_.untraced = static_cast<int>(lanes.size() - std::min(traced, lanes.size()));
+  }
+
+  std::vector<int> open() const {
+    std::vector<int> lanes;
+    for (std::size_t w = 0; w < result_.followed.size(); ++w)
+      if (!result_.followed[w]) lanes.push_back(static_cast<int>(w));
+    return lanes;
+  }
+
+ private:
+  Session& session_;
+  FitTask const& what_;
+  std::shared_ptr<CompiledModel const> last_compiled_;
+  SolverSettings last_solver_;
+  std::shared_ptr<ParameterSpace const> space_;
+  std::vector<Experiment> const& experiments_;
+  ConstLanes theta_, points_;
+  SettledDraws& result_;
+  std::shared_ptr<ThreadPool> pool_;
+  std::size_t samples_ = 0;
+};
+
+}  // namespace
+
+SettledDraws settle_draws(Session& session, FitTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
+                          std::shared_ptr<ParameterSpace const> const& space, std::vector<Experiment> const& experiments,
+                          Output const& stated, ConstLanes theta, ConstLanes points) {
+  auto const width = static_cast<std::size_t>(theta.width());
+  SettledDraws result{LaneArray(static_cast<int>(stated.places().size()), theta.width()), std::vector<bool>(width), 0, {}, 0};
+  std::vector<double> density(width);
+  Ledger untold;
+  make_fit_target(session, what, compiled, space, experiments, what.solver, session.options.execution)
+      ->log_likelihood(theta, density, untold);
+  stated.centres(points, result.centres);
+  for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(density[w]);
+  result.failed_as_stated = static_cast<int>(std::count(result.followed.begin(), result.followed.end(), false));
+  Model const& model = compiled->model;
+  Settling settling(session, what, space, experiments, compiled, theta, points, result);
+  if (model.integrated() && !model.implicit && what.solver.fixed_step()) {
+    // Where adaptive steps begin they take a Jacobian, which many states make dear: there only what fixed steps lose is tried.
+    std::vector<int> lanes(width);
+    std::iota(lanes.begin(), lanes.end(), 0);
+    if (model.states.size() > many_states) lanes = settling.open();
+    settling.attempt("dopri5", explicit_steps, lanes);
+    std::vector<int> const left = settling.open();
+    if (!left.empty()) settling.attempt("cvode", implicit_steps / left.size(), left);
+  }
+  settling.trace();
+  return result;
+}
+
+}  // namespace sysid

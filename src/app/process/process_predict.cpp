@@ -1,0 +1,98 @@
+// `predict` with Gaussian processes: of each draw the functions that its samples leave possible, along other records.
+#include <fmt/format.h>
+
+#include "app/process/process_draws.hpp"
+#include "app/process/process_trajectories.hpp"
+#include "app/session/provenance.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/resolved.hpp"
+#include "app/session/solver_record.hpp"
+#include "data/start_rule.hpp"
+#include "diagnostics/bands.hpp"
+#include "diagnostics/coverage.hpp"
+#include "diagnostics/verdict.hpp"
+
+namespace sysid {
+namespace {
+
+class ProcessPredict {
+ public:
+  ProcessPredict(Session& session, Task const& task, PredictTask const& what)
+      : session_(session),
+        task_(task),
+        what_(what),
+        fit_task_(session.file.tasks[static_cast<std::size_t>(what.fit)]),
+        seed_(session.seed(task, what.seed)),
+        trajectories_(session, what, seed_) {}
+
+  ExitCode run() {
+    Model const& model = trajectories_.model();
+    Report report = begin_report(
+        session_, task_, std::get<FitTask>(fit_task_.what).model,
+        fmt::format(
+            "predict {} on {} with draws({}){}", fit_task_.name, data_names(session_.file, what_.experiments), what_.draws,
+            model.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model, what_.prediction)) : std::string()),
+        seed_);
+    if (trajectories_.fitted().draws.total() == 1)
+      report.findings.push_back(
+          {Severity::note, "optimum_alone",
+           fmt::format("`{}` is an optimum, not a posterior: the bands hold what the process leaves open, not "
+                       "how well its hyper-parameters are known",
+                       fit_task_.name),
+           "fit with mh for bands that hold both"});
+    for (int e = 0; e < static_cast<int>(trajectories_.data().size()); ++e) predict(e, report);
+    add_source(session_.result_folder(fit_task_), report);
+    report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
+    if (model.integrated()) add_solver(trajectories_.fitted().solver, report.settings);
+    if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));
+    bool const missed = add_coverage(report, feeds_back(model));
+    report.verdict = prediction_verdict(report, missed);
+    keep_result(session_, task_, report);
+    return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
+  }
+
+ private:
+  void predict(int e, Report& report) const {
+    ExperimentData const& data = trajectories_.data()[static_cast<std::size_t>(e)];
+    bool const several = trajectories_.data().size() > 1;
+    add_data(session_.file, data, trajectories_.model(), report);
+    ProcessForecast const forecast = trajectories_.forecast(e);
+    LaneArray const own = trajectories_.parameters(e);
+    Trajectory::Result const result = trajectories_.run(e, forecast, own);
+    report.predictions.push_back(bands_along(forecast.quantities(), result, data.experiment, trajectories_.model()));
+    report.ledger.merge(result.ledger);
+    if (result.failed() > 0)
+      report.findings.push_back({failure_severity(result.ledger.failed(), result.ledger.solves()), "failed_predictions",
+                                 fmt::format("{} of {} trajectories{} are left out of the bands", result.failed(),
+                                             result.ledger.solves(), several ? " on " + data.experiment.name : ""),
+                                 "the free run leaves the range of numbers, or the covariance cannot be decomposed"});
+    say_reach(forecast, own, several ? " on " + data.experiment.name : "", report);
+  }
+
+  // Outside the inputs that were fitted a process says what its mean and kernel say, not what was measured.
+  void say_reach(ProcessForecast const& forecast, LaneArray const& own, std::string const& where, Report& report) const {
+    LaneArray const draws = trajectories_.draws();
+    std::vector<double> declared;
+    for (int p = 0; p < draws.rows(); ++p) declared.push_back(draws(p, 0));
+    for (auto const& each : forecast.reach(fitted_parameters(trajectories_.space(), declared), own.view().columns(0, 1)))
+      report.findings.push_back({Severity::warning, "far_outside",
+                                 fmt::format("`{}` of `{}` lies up to {:.2g} times the width of its fitted range outside it{}",
+                                             each.input, each.process, each.widths, where),
+                                 "there the process returns to the white part, and its band tells the kernel's prior, not data"});
+  }
+
+  Session& session_;
+  Task const& task_;
+  PredictTask const& what_;
+  Task const& fit_task_;
+  std::uint64_t seed_;
+  ProcessTrajectories trajectories_;
+};
+
+}  // namespace
+
+ExitCode run_process_predict(Session& session, Task const& task, PredictTask const& what) {
+  return ProcessPredict(session, task, what).run();
+}
+
+}  // namespace sysid

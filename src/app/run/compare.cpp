@@ -1,0 +1,278 @@
+// StoredSummary folders to tables; what cannot be compared is refused.
+#include "app/run/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/session/made_from.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/system/files.hpp"
+#include "core/text/diagnostic.hpp"
+#include "core/text/number.hpp"
+
+namespace sysid {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::json;
+
+constexpr double rough = 0.5;  // nats
+
+struct StoredSummary {
+  fs::path folder;
+  std::string name;
+  json summary;
+  std::string model;               // as it is called here
+  std::optional<Finding> earlier;  // that it was made from a fit which has been run again
+
+  bool is(std::string_view verb) const { return summary.value("what", std::string()).starts_with(std::string(verb) + " "); }
+  int warnings() const {
+    json const findings = summary.value("findings", json::array());
+    return static_cast<int>(std::count_if(findings.begin(), findings.end(),
+                                          [](json const& each) { return each.value("severity", "") == "warning"; })) +
+           (earlier ? 1 : 0);
+  }
+  bool pass() const { return !summary.contains("verdict") || summary["verdict"].value("pass", true); }
+};
+
+UserError refused(std::string message, std::string help) {
+  return UserError({Severity::error, "", std::move(message), std::nullopt, {}, std::move(help)});
+}
+
+StoredSummary read_summary(fs::path const& folder) {
+  StoredSummary result{folder,
+                       folder.lexically_normal().filename().string(),
+                       json::parse(read_file(folder / "summary.json"), nullptr, false),
+                       {},
+                       made_from_earlier(folder)};
+  if (result.name.empty()) result.name = folder.lexically_normal().parent_path().filename().string();
+  bool const whole = result.summary.is_object() && result.summary.contains("what") && result.summary["what"].is_string() &&
+                     result.summary.value("data", json::array()).is_array();
+  if (!whole)
+    throw refused(fmt::format("`{}` is no result of a task", (folder / "summary.json").string()),
+                  "run the task again with --force");
+  result.model = result.summary.value("model", std::string());
+  return result;
+}
+
+/// Those of one folder: its own, or of a whole run those of its tasks, by name.
+std::vector<StoredSummary> results_in(fs::path const& folder) {
+  if (!fs::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
+  std::vector<StoredSummary> found;
+  if (fs::exists(folder / "summary.json")) {
+    found.push_back(read_summary(folder));
+  } else {
+    std::set<fs::path> tasks;
+    for (fs::directory_entry const& entry : fs::directory_iterator(folder))
+      if (fs::exists(entry.path() / "summary.json")) tasks.insert(entry.path());
+    for (fs::path const& task : tasks) found.push_back(read_summary(task));
+  }
+  std::erase_if(found, [](StoredSummary const& each) { return !each.is("fit") && !each.is("predict"); });
+  if (found.empty())
+    throw refused(fmt::format("`{}` holds no result of a fit or a prediction", folder.string()),
+                  "give folders of tasks, such as results/posterior, or of whole runs, such as results");
+  return found;
+}
+
+/// Tasks of one name are told apart by their folders.
+void tell_apart(std::vector<StoredSummary>& results) {
+  std::map<std::string, int> count;
+  for (StoredSummary const& each : results) ++count[each.name];
+  for (StoredSummary& each : results)
+    if (count[each.name] > 1) each.name = each.folder.string();
+}
+
+/// "flume.train, rows 101..500 (400)".
+std::string data_text(StoredSummary const& result) {
+  std::string text;
+  for (json const& data : result.summary["data"])
+    text += fmt::format("{}{}, rows {} ({})", text.empty() ? "" : "; ", data.value("name", ""), data.value("scored_rows", ""),
+                        data.value("scored", 0));
+  return text;
+}
+
+std::string samples_of(StoredSummary const& result) {
+  std::string all;
+  for (json const& data : result.summary["data"]) {
+    std::string const digest = data.value("samples_sha256", "");
+    if (digest.empty())
+      throw refused(fmt::format("`{}` does not say which samples it was fitted to", result.folder.string()),
+                    "it was written by an earlier program: run the task again with --force");
+    all += digest + "\n";
+  }
+  return all;
+}
+
+void require_same_samples(StoredSummary const& one, StoredSummary const& other) {
+  if (samples_of(one) == samples_of(other)) return;
+  std::string const message = fmt::format("`{}` and `{}` are fitted to different samples: {} and {}", one.name, other.name,
+                                          data_text(one), data_text(other));
+  if (data_text(one) != data_text(other)) {
+    bool looks_back = false;
+    for (StoredSummary const* each : {&one, &other})
+      for (json const& data : each->summary["data"])
+        for (json const& note : data.value("notes", json::array()))
+          looks_back = looks_back || (note.is_string() && note.get<std::string>().find("looks back") != std::string::npos);
+    throw refused(message, looks_back ? "evidences are densities of the samples: let the part begin behind the longest lag of all "
+                                        "models, and each is fitted to the same rows"
+                                      : "evidences are densities of the samples: name folders of fits to the same rows");
+  }
+  throw refused(message + " of other files, channels or units",
+                "evidences are densities of the samples: name folders of fits to the same ones");
+}
+
+std::string noise_text(json const& summary) {
+  std::string text;
+  for (json const& name : summary.value("noise", json::array())) {
+    json const& parameter = summary["parameters"].value(name.get<std::string>(), json::object());
+    if (!parameter.contains("mean") || !parameter["mean"].is_number()) continue;
+    std::string const unit = parameter.value("unit", "");
+    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", name.get<std::string>(),
+                        significant(parameter["mean"].get<double>(), 3), unit.empty() ? "" : " ", unit);
+  }
+  return text;
+}
+
+ComparedFit compared_fit(StoredSummary const& result) {
+  json const& summary = result.summary;
+  ComparedFit fit;
+  fit.name = result.name;
+  fit.model = result.model;
+  fit.pass = result.pass();
+  fit.warnings = result.warnings();
+  fit.parameters = summary.value("parameter_count", 0);
+  fit.noise = noise_text(summary);
+  json const evidence = summary.value("evidence", json::object());
+  if (evidence.contains("log_evidence") && evidence["log_evidence"].is_number()) {
+    fit.log_evidence = evidence["log_evidence"].get<double>();
+    double const along = evidence.value("along_axes", 0.0);
+    if (std::fabs(along) >= rough) fit.rough = along;
+  } else {
+    fit.without = evidence.value("reason", std::string("the run was interrupted"));
+  }
+  return fit;
+}
+
+std::string model_text(StoredSummary const& result) {
+  return result.summary.value("versions", json::object()).value("model_sha256", "");
+}
+
+/// A model, how its likelihood reads the record, and the inputs that it is given: fits that agree in it are of one and the same
+/// model.
+std::string identity(StoredSummary const& result) {
+  json const settings = result.summary.value("settings", json::object());
+  std::string all = model_text(result) + settings.value("prediction", "") + settings.value("start_state", "");
+  for (json const& data : result.summary["data"]) all += data.value("sha256", "") + data.value("notes", json::array()).dump();
+  return all;
+}
+
+/// Which fits of models of one name are not of the same, as an equation before and after a change.
+std::vector<std::string> models_of_one_name(std::vector<StoredSummary> const& results) {
+  std::vector<std::string> notes;
+  std::set<std::string> told;
+  for (StoredSummary const& first : results) {
+    if (!told.insert(first.model).second) continue;
+    std::vector<std::string> identities, fits;  // one entry each per model of this name
+    bool other_text = false;
+    for (StoredSummary const& each : results) {
+      if (each.model != first.model) continue;
+      other_text = other_text || model_text(each) != model_text(first);
+      std::string const own = identity(each);
+      auto const known = std::find(identities.begin(), identities.end(), own);
+      if (known == identities.end()) {
+        identities.push_back(own);
+        fits.push_back(each.name);
+      } else {
+        fits[static_cast<std::size_t>(known - identities.begin())] += ", " + each.name;
+      }
+    }
+    if (fits.size() > 1)
+      notes.push_back(fmt::format("the fits of `{}` are of different {}: {}", first.model,
+                                  other_text ? "models" : "starts, rules of prediction or inputs", fmt::join(fits, "; ")));
+  }
+  return notes;
+}
+
+void add_probabilities(std::vector<StoredSummary> const& results, std::vector<ComparedFit>& fits) {
+  std::map<std::string, double> of_model;  // the first fit of it that has an evidence stands for all
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t f = 0; f < fits.size(); ++f)
+    if (fits[f].log_evidence) {
+      of_model.emplace(identity(results[f]), *fits[f].log_evidence);
+      highest = std::max(highest, *fits[f].log_evidence);
+    }
+  double sum = 0;
+  for (auto const& [model, log_evidence] : of_model) sum += elementary::exp(log_evidence - highest);
+  for (std::size_t f = 0; f < fits.size(); ++f)
+    if (fits[f].log_evidence) fits[f].probability = elementary::exp(of_model.at(identity(results[f])) - highest) / sum;
+}
+
+std::string kind_of(json const& summary) {
+  std::string const rule = summary.value("settings", json::object()).value("prediction", "");
+  if (rule.empty()) return "";
+  return rule.find("a free run") != std::string::npos ? "free run" : "one step";
+}
+
+void add_predictions(StoredSummary const& result, std::vector<ComparedPrediction>& predictions) {
+  json const channels = result.summary.value("fit", json::object()).value("channels", json::object());
+  for (json const& data : result.summary["data"]) {
+    std::string const experiment = data.value("name", "");
+    json const of_experiment = channels.value(experiment, json::object());
+    for (auto const& [channel, scores] : of_experiment.items()) {
+      if (!scores.contains("nmse") || !scores["nmse"].is_number()) continue;
+      ComparedPrediction each{result.name,
+                              result.model,
+                              kind_of(result.summary),
+                              channel + " on " + experiment,
+                              data.value("scored_rows", ""),
+                              scores["nmse"].get<double>(),
+                              {},
+                              result.pass(),
+                              result.warnings(),
+                              data.value("samples_sha256", "")};
+      if (scores.contains("coverage_95") && scores["coverage_95"].is_number()) each.coverage = scores["coverage_95"].get<double>();
+      auto const same = [&](ComparedPrediction const& other) { return other.samples == each.samples && other.on == each.on; };
+      auto const last = std::find_if(predictions.rbegin(), predictions.rend(), same);
+      predictions.insert(last == predictions.rend() ? predictions.end() : last.base(), std::move(each));
+    }
+  }
+}
+
+}  // namespace
+
+Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model_of) {
+  std::vector<StoredSummary> results;
+  for (fs::path const& folder : folders)
+    for (StoredSummary& each : results_in(folder)) {
+      bool const known = std::any_of(results.begin(), results.end(),
+                                     [&](StoredSummary const& other) { return fs::equivalent(other.folder, each.folder); });
+      if (!known) results.push_back(std::move(each));
+    }
+  if (model_of)
+    for (StoredSummary& each : results) each.model = model_of(each.name, each.model);
+  tell_apart(results);
+  Comparison comparison;
+  std::vector<StoredSummary> fits;
+  for (StoredSummary const& each : results) {
+    if (each.is("predict")) {
+      add_predictions(each, comparison.predictions);
+      if (each.earlier) comparison.notes.push_back(fmt::format("{}: {}: {}", each.name, each.earlier->message, each.earlier->help));
+    } else {
+      fits.push_back(each);
+      require_same_samples(fits.front(), each);
+      comparison.fits.push_back(compared_fit(each));
+    }
+  }
+  if (!fits.empty()) comparison.data = data_text(fits.front());
+  add_probabilities(fits, comparison.fits);
+  for (std::string& note : models_of_one_name(fits)) comparison.notes.push_back(std::move(note));
+  return comparison;
+}
+
+}  // namespace sysid

@@ -1,0 +1,102 @@
+// Candidates compiled for their data, and the two targets that are made of them: distances, and each one's likelihood.
+#include "app/selection/candidate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/session/fit_target.hpp"
+#include "core/text/diagnostic.hpp"
+#include "likelihood/simulated_parameters.hpp"
+
+namespace sysid {
+namespace {
+
+/// The distance rule in terms of the channels of candidate k.
+DistanceMeasure measure_of(DistanceRule const& rule, std::size_t k, Model const& model) {
+  DistanceMeasure measure;
+  measure.kind = rule.kind == DistanceRule::Kind::nmse   ? DistanceKind::nmse
+                 : rule.kind == DistanceRule::Kind::rmse ? DistanceKind::rmse
+                                                         : DistanceKind::mean;
+  measure.unit = rule.unit;
+  for (Channel const& channel : model.channels) {
+    auto const found = std::find(rule.channels.begin(), rule.channels.end(), channel.name);
+    auto const c = static_cast<std::size_t>(found - rule.channels.begin());
+    bool const known = found != rule.channels.end();
+    measure.weights.push_back(known ? rule.weights[c] : 0);
+    if (measure.kind == DistanceKind::mean)
+      measure.expressions.push_back(known ? std::optional(rule.expressions[k][c]) : std::nullopt);
+  }
+  return measure;
+}
+
+/// A weight that no sample would carry is refused: the distance would be that of the other channels alone.
+void refuse_idle_weights(DistanceRule const& rule, Candidate const& candidate) {
+  auto const& channels = candidate.compiled->model.channels;
+  for (std::string const& name : rule.weighted) {
+    auto const channel = std::find_if(channels.begin(), channels.end(), [&](Channel const& each) { return each.name == name; });
+    auto const c = static_cast<std::size_t>(channel - channels.begin());
+    bool const sampled = std::any_of(candidate.data.begin(), candidate.data.end(), [&](ExperimentData const& each) {
+      std::vector<double> const& measured = each.experiment.measured[c];
+      for (std::size_t i = 0; i < measured.size(); ++i)
+        if (each.experiment.scored[i] != 0 && std::isfinite(measured[i])) return true;
+      return false;
+    });
+    if (!sampled)
+      throw UserError({Severity::error,
+                       "E6517",
+                       fmt::format("channel `{}` has a weight, but no sample in the scored rows", name),
+                       std::nullopt,
+                       {},
+                       "leave its weight out, or score rows in which it is measured"});
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> prepare_candidates(Session& session, SelectTask const& what, CandidateSet const& set) {
+  std::vector<Candidate> all;
+  for (std::size_t k = 0; k < set.models.size(); ++k) {
+    FitTask const& fit = what.fits[k];
+    Candidate candidate;
+    candidate.what = &set.models[k];
+    candidate.fit = &fit;
+    candidate.compiled =
+        session.compiled(fit.model, fit.start.kind == StartRule::Kind::estimated, fit.solver.method, fit.prediction);
+    candidate.data = load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
+                                      fit.prediction);
+    Model const& model = candidate.compiled->model;
+    candidate.space = parameter_space(model, fit.experiments);
+    candidate.simulated = parameter_space(without_noise_parameters(model), fit.experiments);
+    candidate.measure = measure_of(what.distance, k, model);
+    all.push_back(std::move(candidate));
+  }
+  return all;
+}
+
+ModelSelectionTarget selection_target(Session const& session, SelectTask const& what, std::vector<Candidate> const& candidates,
+                                      bool finer) {
+  refuse_idle_weights(what.distance, candidates.front());
+  std::vector<SelectionCandidate> all;
+  for (Candidate const& each : candidates) {
+    TargetOptions options;
+    options.solver = finer ? each.fit->solver.finer() : each.fit->solver;
+    options.start_rows = start_rows(each.fit->start);
+    options.execution = session.options.execution;
+    options.describe = [&session, model = each.fit->model](NodeId node, Graph const& graph) {
+      return session.describe(model, graph, node);
+    };
+    all.push_back({each.what->name, each.what->probability, each.compiled, each.simulated, experiments_of(each.data), each.measure,
+                   std::move(options)});
+  }
+  return ModelSelectionTarget(std::move(all));
+}
+
+std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
+                                               ExecutionOptions const& execution) {
+  return make_fit_target(session, *candidate.fit, candidate.compiled, candidate.space, experiments_of(candidate.data), solver,
+                         execution);
+}
+
+}  // namespace sysid

@@ -1,0 +1,34 @@
+// One candidate of a selection with all that simulates it.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
+#include "likelihood/model_target.hpp"
+#include "likelihood/selection/distance.hpp"
+#include "likelihood/selection/model_selection_target.hpp"
+
+namespace sysid {
+
+struct Candidate {
+  CandidateModel const* what;
+  FitTask const* fit;
+  std::shared_ptr<CompiledModel const> compiled;
+  std::vector<ExperimentData> data;
+  std::shared_ptr<ParameterSpace const> space, simulated;  // of all parameters; of those that a simulation without noise reads
+  DistanceMeasure measure;
+};
+
+/// All of a set, compiled and with their data; `what` and `set` must outlive them.
+std::vector<Candidate> prepare_candidates(Session& session, SelectTask const& what, CandidateSet const& set);
+
+/// Their distances from the data, simulated as stated or with the next finer solver. UserError E6517 where a channel has none.
+ModelSelectionTarget selection_target(Session const& session, SelectTask const& what, std::vector<Candidate> const& candidates,
+                                      bool finer);
+
+/// The candidate as a fit would see it.
+std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
+                                               ExecutionOptions const& execution);
+
+}  // namespace sysid

@@ -1,0 +1,172 @@
+// From particles to modes, from modes to evidences.
+#include "app/selection/candidate_posterior.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "app/selection/likelihood_check.hpp"
+#include "app/session/fit_target.hpp"
+#include "core/numeric/elementary.hpp"
+#include "diagnostics/tolerance.hpp"
+
+namespace sysid {
+namespace {
+
+/// By so many sds of its posterior the task's solver may put a candidate's particles off: they are spread by more.
+constexpr double tolerable_offset = 0.5;
+
+/// Nats below the most probable model from which on it does not matter how many.
+constexpr double negligible = 30;
+
+/// What a density of one candidate's declared units gains in those of the first candidate: the logarithm of the ratio of units, for
+/// every sample.
+double unit_term(Candidate const& candidate, Candidate const& first) {
+  double term = 0;
+  for (Channel const& channel : candidate.compiled->model.channels) {
+    auto const& others = first.compiled->model.channels;
+    auto const same = std::find_if(others.begin(), others.end(), [&](Channel const& each) { return each.name == channel.name; });
+    if (same == others.end() || !channel.unit || !same->unit || channel.unit->scale == same->unit->scale) continue;
+    auto const c = static_cast<std::size_t>(&channel - candidate.compiled->model.channels.data());
+    double samples = 0;
+    for (ExperimentData const& each : candidate.data)
+      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
+        samples += each.experiment.scored[i] != 0 && std::isfinite(each.experiment.measured[c][i]) ? 1 : 0;
+    term += samples * elementary::log(same->unit->scale / channel.unit->scale);
+  }
+  return term;
+}
+
+/// Follows the modes to finer solvers; a solver that the task states is only asked.
+void settle(Session& session, Candidate const& candidate, std::uint64_t seed, CandidatePosterior& posterior) {
+  if (!candidate.compiled->model.integrated() || posterior.modes.empty() || posterior.modes.front().theta.empty()) return;
+  Ledger extra;
+  if (!candidate.fit->settle) {
+    std::vector<Mode> const weightiest = {posterior.modes.front()};
+    posterior.move = move_to_finer(*likelihood_target(session, candidate, candidate.fit->solver.finer(), session.interruptible()),
+                                   Aim::posterior, weightiest, seed, extra);
+    return;
+  }
+  MakeTarget const make = [&](SolverSettings const& solver) {
+    return likelihood_target(session, candidate, solver, session.interruptible());
+  };
+  SilentProgress silent;  // one line for all candidates is shown already
+  RunContext context{seed, silent, extra, [&] { return session.interrupted(); }, {}, 0, {}, {}, {}};
+  SettledSolver settled = settle_solver(make, Aim::posterior, candidate.fit->solver, std::move(posterior.modes), context);
+  posterior.modes = std::move(settled.modes);
+  if (settled.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none
+  // What is left is weighed as the finer one has it.
+  std::stable_sort(posterior.modes.begin(), posterior.modes.end(),
+                   [](Mode const& a, Mode const& b) { return a.log_mass > b.log_mass; });
+  double const evidence = log_evidence(posterior.modes);
+  for (Mode& mode : posterior.modes) mode.share = elementary::exp(mode.log_mass - evidence);
+  posterior.solver = settled.solver;
+  posterior.settled = settled.settled;
+  if (!settled.moves.empty()) posterior.move = settled.moves.front();
+}
+
+}  // namespace
+
+std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& session, std::vector<Candidate> const& candidates,
+                                                                    SelectionResult const& result, std::uint64_t seed) {
+  std::vector<CandidatePosterior> posteriors(candidates.size());
+  Ledger extra;
+  auto const stopped = [&] {
+    bool const asked = session.interrupted();
+    if (asked) session.progress.end(false);
+    return asked;
+  };
+  session.progress.begin("the likelihood's side", candidates.size());
+  // The most probable one first: it says how much is little.
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return result.models[a].probability > result.models[b].probability; });
+  double best = -std::numeric_limits<double>::infinity();  // of what a model's probability is in proportion to
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    std::size_t const k = order[i];
+    SolverSettings const& solver = candidates[k].fit->solver;
+    double const per_mass = unit_term(candidates[k], candidates.front()) + elementary::log(result.models[k].prior);
+    LocalSearches found = modes_near(*likelihood_target(session, candidates[k], solver, session.interruptible()), result.models[k],
+                                     best - per_mass - negligible, seed, extra, [&] { return session.interrupted(); });
+    if (stopped()) return std::nullopt;
+    best = std::max(best, log_evidence(found.modes) + per_mass);
+    posteriors[k] = {std::move(found.modes), found.given_up, solver, {}, true};
+    session.progress.advance(i + 1, result.models[k].name);
+  }
+  // What a finer solver does to one may make another one worth a look.
+  std::vector<bool> looked_at(candidates.size());
+  std::string finer;  // told once the progress line is closed
+  for (std::size_t k = 0; k < candidates.size();) {
+    auto const checks = evidences(candidates, posteriors, result);
+    bool const worth = result.models[k].probability >= worth_a_look || (checks[k] && checks[k]->probability >= worth_a_look);
+    // What was given up lies too far below for a finer solver to matter, and has no mode to follow.
+    if (looked_at[k] || !worth || posteriors[k].given_up) {
+      ++k;
+      continue;
+    }
+    looked_at[k] = true;
+    settle(session, candidates[k], seed, posteriors[k]);
+    if (posteriors[k].solver != candidates[k].fit->solver)
+      finer +=
+          fmt::format("the likelihood of `{}` with {}: with {} {} with {}\n", candidates[k].what->name, posteriors[k].solver.text(),
+                      candidates[k].fit->solver.text(), moved(*posteriors[k].move), candidates[k].fit->solver.finer_words());
+    if (stopped()) return std::nullopt;
+    k = 0;
+  }
+  session.progress.end();
+  session.notices << finer;
+  return posteriors;
+}
+
+std::vector<std::optional<LikelihoodCheck>> evidences(std::vector<Candidate> const& candidates,
+                                                      std::vector<CandidatePosterior> const& posteriors,
+                                                      SelectionResult const& result) {
+  std::vector<std::optional<LikelihoodCheck>> checks(candidates.size());
+  std::vector<double> logs;  // of what a model's probability is in proportion to
+  double highest = -std::numeric_limits<double>::infinity(), total = 0;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    double const evidence = log_evidence(posteriors[k].modes) + unit_term(candidates[k], candidates.front());
+    logs.push_back(evidence + elementary::log(result.models[k].prior));
+    if (!std::isfinite(logs[k])) continue;  // nothing was found, which says nothing
+    checks[k] = LikelihoodCheck{evidence, 0, {}, posteriors[k].given_up};
+    if (candidates[k].compiled->model.integrated()) checks[k]->solver = posteriors[k].solver.text();
+    highest = std::max(highest, logs[k]);
+  }
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (checks[k]) total += checks[k]->probability = elementary::exp(logs[k] - highest);
+  for (auto& check : checks)
+    if (check) check->probability /= total;
+  return checks;
+}
+
+Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<CandidatePosterior> const& posteriors) {
+  Findings findings;
+  for (std::size_t k = 0; k < posteriors.size(); ++k) {
+    CandidatePosterior const& posterior = posteriors[k];
+    SolverSettings const& stated = candidates[k].fit->solver;
+    if (posterior.move && *posterior.move > tolerable_offset) {
+      std::string const finer = posterior.solver == stated ? stated.finer().option() : posterior.solver.option();
+      findings.push_back({Severity::warning, "integration_step",
+                          fmt::format("with {}, which its particles have, parameters of `{}` lie off by about {} of what the noise "
+                                      "leaves open",
+                                      stated.text(), candidates[k].what->name,
+                                      *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
+                          fmt::format("select again with `{}`", finer)});
+    }
+    if (posterior.settled) continue;
+    std::string const what =
+        posterior.modes.empty()
+            ? fmt::format("with a finer solver than {} the likelihood of `{}` is not finite at any mode near its particles",
+                          posterior.solver.text(), candidates[k].what->name)
+            : fmt::format("even {} does not settle the likelihood of `{}`", posterior.solver.text(), candidates[k].what->name);
+    findings.push_back({Severity::warning, "step_not_settled", what,
+                        "where the model is stiff, take `solver = cvode`; it may be chaotic on this record"});
+  }
+  return findings;
+}
+
+}  // namespace sysid

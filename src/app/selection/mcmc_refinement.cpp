@@ -1,0 +1,68 @@
+// One run of `mh` per model that is worth it.
+#include "app/selection/mcmc_refinement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "diagnostics/convergence.hpp"
+#include "inference/chain/mh.hpp"
+
+namespace sysid {
+namespace {
+
+Settings settings_for(std::int64_t samples) {
+  Settings settings(mh::settings());
+  settings.set("samples", samples);
+  settings.set("burn_in", samples / 5);
+  settings.set("thin", std::max<std::int64_t>(1, samples / 2500));
+  return settings;
+}
+
+}  // namespace
+
+Polish polish_candidates(Session& session, std::vector<Candidate> const& candidates,
+                         std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
+                         SelectionReport& selection) {
+  Polish polish;
+  selection.polished.resize(candidates.size());
+  selection.polished_draws.resize(candidates.size());
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    SelectedModel const& model = selection.result.models[k];
+    if (model.probability < worth_a_look) continue;
+    auto const missed = [&](std::string const& why) {
+      polish.findings.push_back({Severity::warning, "not_polished", fmt::format("`{}` was not polished: {}", model.name, why), ""});
+    };
+    if (candidates[k].space->dimension() == 0) continue;  // one point, which is known
+    if (posteriors[k].modes.empty()) {
+      missed("no climb from its particles ends at a finite likelihood");
+      continue;
+    }
+    if (posteriors[k].given_up) {
+      missed("the climb to its mode was given up, for by the likelihood it is less probable than another by 30 nats and more");
+      continue;
+    }
+    auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.options.execution);
+    Ledger extra;
+    RunContext context{seed, session.progress, extra, [&] { return session.interrupted(); }, {}, 60, {}, posteriors[k].modes, {}};
+    FitResult chains = mh::run(*target, settings_for(samples), context);
+    if (chains.interrupted) {
+      polish.interrupted = true;
+      return polish;
+    }
+    if (chains.failure || chains.draws.total() == 0) {
+      missed(chains.failure ? chains.failure->message : std::string("no draws"));
+      continue;
+    }
+    selection.polished[k] = summarise(chains);
+    selection.polished_draws[k] = std::move(chains.draws);
+    for (Finding finding : chains.findings) {
+      if (finding.severity == Severity::note) continue;
+      finding.message = fmt::format("polishing `{}`: {}", model.name, finding.message);
+      polish.findings.push_back(std::move(finding));
+    }
+  }
+  return polish;
+}
+
+}  // namespace sysid

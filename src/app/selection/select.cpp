@@ -1,0 +1,257 @@
+// `select`: candidates to one target of distances, populations, what the likelihood says of the same, results.
+#include "app/selection/select.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/selection/candidate.hpp"
+#include "app/selection/candidate_posterior.hpp"
+#include "app/selection/mcmc_refinement.hpp"
+#include "app/selection/selection_checks.hpp"
+#include "app/selection/shared_parameters.hpp"
+#include "app/session/fit_target.hpp"
+#include "app/session/preconditions.hpp"
+#include "app/session/provenance.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/resolved.hpp"
+#include "app/session/results.hpp"
+#include "app/session/session.hpp"
+#include "app/session/solver_record.hpp"
+#include "app/session/task_checkpoint.hpp"
+#include "app/session/unknown_functions.hpp"
+#include "core/system/files.hpp"
+#include "core/text/diagnostic.hpp"
+#include "core/text/number.hpp"
+#include "data/start_rule.hpp"
+#include "diagnostics/bands.hpp"
+#include "diagnostics/function_ranges.hpp"
+#include "diagnostics/verdict.hpp"
+#include "inference/table.hpp"
+#include "likelihood/simulated_parameters.hpp"
+#include "likelihood/trajectory.hpp"
+#include "mechanics/restoring_force.hpp"
+#include "report/file/selection.hpp"
+
+namespace sysid {
+namespace {
+
+using json = nlohmann::json;
+
+class Select {
+ public:
+  Select(Session& session, int index, Task const& task, SelectTask const& what)
+      : session_(session),
+        index_(index),
+        task_(task),
+        what_(what),
+        set_(session.file.candidates[static_cast<std::size_t>(what.candidates)]),
+        checkpoint_(session, task, what.seed),
+        seed_(checkpoint_.seed()),
+        began_(std::chrono::steady_clock::now()) {
+    candidates_ = prepare_candidates(session, what, set_);
+    checkpoint_.of_data(candidates_.front().data);
+  }
+
+  ExitCode run() {
+    std::vector<std::vector<ExperimentData>> data;
+    for (Candidate const& each : candidates_) data.push_back(each.data);
+    if (auto const why = refusal(task_, what_, session_.file.models, data)) throw UserError(*why);
+    SelectorRow const& selector = *find_selector(what_.backend);
+    ModelSelectionTarget const target = make_target(false);
+    RunContext context{seed_,
+                       session_.progress,
+                       ledger_,
+                       [this] { return session_.interrupted(); },
+                       [this](json const& state) { checkpoint_.save(state); },
+                       session_.options.checkpoint_interval,
+                       checkpoint_.stored(),
+                       {},
+                       {}};
+    if (context.resume)
+      session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+    else
+      tell_of_data(session_, task_, candidates_.front().data, candidates_.front().compiled->model);
+    SelectionResult result = selector.run(target, what_.settings, context);
+    if (result.failure)
+      throw UserError({Severity::error,
+                       result.failure->code == "no_population" ? "E6518" : "E6206",
+                       result.failure->message,
+                       Label{task_.span, {}},
+                       {},
+                       result.failure->help});
+    if (result.populations.empty()) {
+      session_.notices << fmt::format("{}: interrupted before the first population was whole; --resume goes on from there\n",
+                                      task_.name);
+      return ExitCode::interrupted;
+    }
+    return finish(target, std::move(result));
+  }
+
+ private:
+  /// UserError, placed at the task, where the data do not allow the distance.
+  ModelSelectionTarget make_target(bool finer) const {
+    try {
+      return selection_target(session_, what_, candidates_, finer);
+    } catch (UserError const& error) {
+      Diagnostic placed = error.diagnostic();
+      if (!placed.primary) placed.primary = Label{task_.span, {}};
+      throw UserError(std::move(placed));
+    }
+  }
+
+  // --- the end
+  // --------------------------------------------------------------------------------------------------------------------
+
+  /// Bands of the leading model's particles over the fitted rows, and whether its unknown functions can be believed there.
+  void add_predictions(SelectionReport const& selection, Report& report) const {
+    auto const lead = static_cast<std::size_t>(selection.leader());
+    Candidate const& candidate = candidates_[lead];
+    LaneArray const values = leading_values(selection);
+    for (std::size_t e = 0; e < candidate.data.size(); ++e) {
+      Experiment const& experiment = candidate.data[e].experiment;
+      LaneArray parameters(static_cast<int>(candidate.compiled->model.parameters.size()), values.width());
+      candidate.simulated->select(values, static_cast<int>(e), parameters);
+      Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
+                                  session_.options.execution);
+      Trajectory::Result result = trajectory.run(parameters, prediction_noise(seed_, static_cast<int>(e)));
+      if (candidate.space->dimension() != candidate.simulated->dimension())
+        std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
+      report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, candidate.compiled->model));
+      add_restoring_forces(candidate.compiled->model, trajectory.quantities(), result, parameters, experiment, report.forces);
+      Findings left_out = leave_out_noise(candidate.compiled->model, report.predictions.back());
+      if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
+      for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
+        report.findings.push_back(std::move(finding));
+      for (Finding& finding : check_ranges(candidate.compiled->model, experiment, candidate.fit->solver,
+                                           start_rows(candidate.fit->start), parameters, session_.options.execution))
+        report.findings.push_back(std::move(finding));
+      if (e > 0) continue;
+      for (Finding& finding : check_expansions(candidate.compiled->model, parameters))
+        report.findings.push_back(std::move(finding));
+    }
+  }
+
+  LaneArray leading_values(SelectionReport const& selection) const {
+    auto const lead = static_cast<std::size_t>(selection.leader());
+    return candidates_[lead].simulated->values_of_declared(spread(resampled_draws(selection.result.models[lead], seed_), 100));
+  }
+
+  ExitCode finish(ModelSelectionTarget const& target, SelectionResult result) {
+    bool interrupted = result.interrupted;
+    Candidate const& first = candidates_.front();
+    SelectionReport selection;
+    selection.result = std::move(result);
+    selection.distance = what_.distance.text.empty() ? "nmse" : what_.distance.text;
+    selection.likelihoods.resize(candidates_.size());
+    selection.resampling_seed = seed_;
+    summarise_shared(session_, set_, candidates_, selection);
+    Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
+    Report report = begin_report(
+        session_, task_, leading.fit->model,
+        fmt::format("select {} to {} with {}", set_.name, data_names(session_.file, first.fit->experiments), what_.backend), seed_);
+    report.priors = priors_of(*leading.space, report.priors);
+    report.findings = selection.result.findings;
+    for (ExperimentData const& each : first.data) add_data(session_.file, each, first.compiled->model, report);
+    for (Candidate const& candidate : candidates_)
+      for (ExperimentData const& each : candidate.data)
+        look_at_data(session_.file, each, candidate.compiled->model, report.findings);
+    std::vector<CandidatePosterior> posteriors;
+    if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
+      auto found = candidate_posteriors(session_, candidates_, selection.result, seed_);
+      interrupted = !found;
+      if (found) posteriors = std::move(*found);
+    }
+    bool const checked = !interrupted && what_.settings.flag("cross_check"),
+               polished = !interrupted && what_.settings.flag("polish");
+    auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
+    if (checked) {
+      add_likelihoods(candidates_, posteriors, selection, report.findings);
+      auto const lead = static_cast<std::size_t>(selection.leader());
+      FitCheck check = check_candidate(session_, leading, posteriors[lead]);
+      report.fit = std::move(check.lines);
+      add(check.findings);
+    }
+    if (!interrupted) {
+      add(solver_findings(candidates_, posteriors));
+      add(add_noise_floor(session_, candidates_, target, posteriors, selection));
+      if (leading.compiled->model.integrated() && std::isfinite(selection.result.threshold))
+        add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver));
+    }
+    if (polished) {
+      Polish polish =
+          polish_candidates(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
+      add(polish.findings);
+      interrupted = polish.interrupted;
+    }
+    if (interrupted)
+      report.findings.push_back(interrupted_finding("this is what it had by then"));
+    else if (!selection.result.ran_out)
+      report.findings.push_back({Severity::note, "selection_ended", selection.result.stopped_by, ""});
+    bool const spread = std::any_of(selection.result.models.begin(), selection.result.models.end(),
+                                    [](SelectedModel const& each) { return each.died_in == 0 && !each.parameters.empty(); });
+    if (spread)
+      report.findings.push_back({Severity::note, "width_of_threshold",
+                                 "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
+                                 "after an early stop, smaller after a late one",
+                                 polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
+    if (!interrupted) add_predictions(selection, report);
+    report.settings = {{"backend", what_.backend}};
+    for (auto const& [name, value] : selection.result.settings.all()) report.settings.emplace_back(name, value);
+    report.settings.emplace_back("distance", selection.distance);
+    report.settings.emplace_back("start_state", start_text(first.fit->start));
+    if (first.compiled->model.integrated()) add_solver(first.fit->solver, report.settings);
+    report.resolved_text = resolved_select(session_, task_, what_, seed_);
+    report.ledger = ledger_;
+    report.tables = selection_tables(selection);
+    report.verdict = headline(selection, report.findings);
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
+    report.timing.emplace_back("wall_seconds", wall.count());
+    report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
+    report.timing.emplace_back("lanes", static_cast<std::int64_t>(session_.options.execution.lanes));
+    std::vector<SelectedCandidate>& kept = session_.selected[index_];
+    kept.clear();
+    for (SelectedModel const& model : selection.result.models)
+      kept.push_back({model.probability, model.died_in > 0 ? Draws{} : resampled_draws(model, seed_)});
+    report.selection = std::move(selection);
+    keep_result(session_, task_, report);
+    if (interrupted) {
+      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
+      return ExitCode::interrupted;
+    }
+    remove_file(checkpoint_.path());
+    return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  static std::string headline(SelectionReport const& selection, Findings const& findings) {
+    SelectedModel const& best = selection.result.models[static_cast<std::size_t>(selection.leader())];
+    std::string const floor = selection.floor ? fmt::format(", noise floor {}", significant(*selection.floor, 4)) : "";
+    std::string const at = std::isfinite(selection.result.threshold)
+                               ? fmt::format("threshold {}{}", significant(selection.result.threshold, 4), floor)
+                               : "no threshold: these are draws of the priors";
+    return fmt::format("`{}` has probability {:.3f} at {}; {}", best.name, best.probability, at,
+                       judge(findings).text.substr(0, judge(findings).text.find('\n')));
+  }
+
+  Session& session_;
+  int index_;
+  Task const& task_;
+  SelectTask const& what_;
+  CandidateSet const& set_;
+  TaskCheckpoint checkpoint_;
+  std::uint64_t seed_;
+  std::chrono::steady_clock::time_point began_;
+  std::vector<Candidate> candidates_;
+  Ledger ledger_;
+};
+
+}  // namespace
+
+ExitCode run_select(Session& session, int index, Task const& task, SelectTask const& what) {
+  return Select(session, index, task, what).run();
+}
+
+}  // namespace sysid

@@ -1,0 +1,142 @@
+// Evidences, noise, residuals and integration against what the particles say.
+#include "app/selection/selection_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "app/selection/likelihood_check.hpp"
+#include "app/session/fit_target.hpp"
+#include "core/text/number.hpp"
+#include "likelihood/trajectory.hpp"
+
+namespace sysid {
+namespace {
+
+/// A threshold further above the noise floor than this leaves more than the noise does.
+constexpr double far_above_floor = 1.15;
+
+/// A finer solver may move the median distance by this part of the threshold.
+constexpr double tolerable_shift = 0.05;
+
+/// What noise leaves of a candidate's distance at one of its parameter vectors (declared); nothing but for normal noise.
+struct Floor {
+  double distance;
+  std::string noise;  // "sd 1.2e-6 [m] in displacement"
+};
+
+std::optional<Floor> floor_at(Session const& session, Candidate const& candidate, Distance const& distance, ConstLanes declared) {
+  Model const& model = candidate.compiled->model;
+  Floor floor;
+  std::vector<double> sd(model.channels.size());
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    Channel const& channel = model.channels[c];
+    if (candidate.measure.weights[c] == 0) continue;
+    if (channel.noise.row->name != "normal") return std::nullopt;
+    double sum = 0, count = 0;
+    for (std::size_t e = 0; e < candidate.data.size(); ++e) {
+      Experiment const& experiment = candidate.data[e].experiment;
+      LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
+      candidate.space->select(candidate.space->values_of_declared(declared), static_cast<int>(e), parameters);
+      Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
+                                  session.options.execution);
+      auto const arguments = trajectory.noise_arguments(parameters, static_cast<int>(c));
+      for (std::size_t i = 0; i < arguments.size(); ++i)
+        if (experiment.scored[i] != 0 && !experiment.measured[c].empty() && std::isfinite(experiment.measured[c][i]))
+          sum += arguments[i][1] * arguments[i][1], count += 1;
+    }
+    sd[c] = count > 0 ? std::sqrt(sum / count) : 0;
+    floor.noise += fmt::format("{}sd {}{} in {}", floor.noise.empty() ? "" : ", ", significant(channel.from_si(sd[c]), 3),
+                               channel.unit ? " [" + channel.unit_text() + "]" : "", channel.name);
+  }
+  floor.distance = distance.floor(sd);
+  return std::isfinite(floor.distance) ? std::optional(floor) : std::nullopt;
+}
+
+/// A death that the likelihood confirms was none of chance.
+void confirm_deaths(SelectionReport& selection, Findings& findings) {
+  for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
+    SelectedModel& model = selection.result.models[m];
+    auto const& by_likelihood = selection.likelihoods[m];
+    if (!model.by_chance || !by_likelihood || by_likelihood->probability > tolerable_loss) continue;
+    model.by_chance = false;
+    std::erase_if(findings, [&](Finding const& each) {
+      return each.code == "model_lost_by_chance" && each.message.starts_with("`" + model.name + "`");
+    });
+  }
+}
+
+}  // namespace
+
+void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<CandidatePosterior> const& posteriors,
+                     SelectionReport& selection, Findings& findings) {
+  selection.likelihoods = evidences(candidates, posteriors, selection.result);
+  confirm_deaths(selection, findings);
+  std::vector<std::optional<double>> probabilities;
+  for (auto const& check : selection.likelihoods) probabilities.push_back(check ? std::optional(check->probability) : std::nullopt);
+  for (Finding& finding : compare_probabilities(selection.result, probabilities)) findings.push_back(std::move(finding));
+}
+
+Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
+                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection) {
+  auto const lead = static_cast<std::size_t>(selection.leader());
+  bool const stated = candidates[lead].space->dimension() == candidates[lead].simulated->dimension();
+  std::optional<Floor> lowest;
+  if (stated) {
+    SelectedModel const& best = selection.result.models[lead];
+    LaneArray declared(candidates[lead].space->dimension(), 1);
+    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = best.summaries[static_cast<std::size_t>(d)].mean;
+    lowest = floor_at(session, candidates[lead], target.distance(static_cast<int>(lead)), declared);
+  }
+  // A model that cannot follow the data takes its misfit for noise: the one that needs the least is nearest to the truth.
+  for (std::size_t k = 0; !stated && k < posteriors.size(); ++k) {
+    if (posteriors[k].modes.empty() || posteriors[k].given_up) continue;
+    LaneArray declared(candidates[k].space->dimension(), 1);
+    for (int d = 0; d < declared.rows(); ++d) declared(d, 0) = posteriors[k].modes.front().declared[static_cast<std::size_t>(d)];
+    auto const floor = floor_at(session, candidates[k], target.distance(static_cast<int>(k)), declared);
+    if (floor && (!lowest || floor->distance < lowest->distance)) lowest = floor;
+  }
+  if (!lowest) return {};
+  selection.floor = lowest->distance;
+  selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", lowest->noise);
+  double const threshold = selection.result.threshold;
+  if (!std::isfinite(threshold) || threshold <= far_above_floor * lowest->distance) return {};
+  return {{Severity::warning, "threshold_above_noise",
+           fmt::format("the final threshold {} is {} times what {} leaves of the distance, {}", significant(threshold, 4),
+                       significant(threshold / lowest->distance, 2), selection.floor_words, significant(lowest->distance, 4)),
+           "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or "
+           "none of the models is the right one"}};
+}
+
+FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
+  if (posterior.modes.empty() || posterior.given_up) return {};
+  FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.options.execution),
+                                   posterior.modes.front().declared);
+  for (Finding& finding : check.findings) finding.message = fmt::format("`{}`: {}", candidate.what->name, finding.message);
+  return check;
+}
+
+Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver) {
+  SelectedModel const& selected = result.models[static_cast<std::size_t>(model)];
+  int const count = std::min<int>(100, static_cast<int>(selected.distance.size()));
+  std::vector<double> distance(static_cast<std::size_t>(count)), shift;
+  std::vector<Simulated> ending(static_cast<std::size_t>(count));
+  SelectionTarget::Batch const batch{model, selected.theta.view().columns(0, count), distance, ending};
+  finer.distances({&batch, 1}, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < distance.size(); ++i) shift.push_back(std::abs(distance[i] - selected.distance[i]));
+  std::nth_element(shift.begin(), shift.begin() + count / 2, shift.end());
+  double const median = shift[static_cast<std::size_t>(count / 2)];
+  if (median <= tolerable_shift * result.threshold) return {};
+  std::string const what =
+      !std::isfinite(median) ? std::string("half of the particles or more do not stay finite: what they say is the integrator's")
+      : result.threshold == 0
+          ? fmt::format("distances move by {:.2g} from a threshold of 0: they are the integrator's", median)
+          : fmt::format("distances move by {:.2g} of the threshold: part of them is the integrator's", median / result.threshold);
+  return {{Severity::warning, "step_not_settled", fmt::format("with {} {}", solver.finer_words(), what),
+           "take a finer solver, `substeps = 4` or `solver = dopri5`"}};
+}
+
+}  // namespace sysid

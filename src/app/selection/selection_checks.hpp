@@ -1,0 +1,30 @@
+// What a finished selection is asked: does the likelihood agree, how far is the threshold above the noise, is noise all that the
+// leading model leaves, are distances the integrator's.
+#pragma once
+#include <vector>
+
+#include "app/selection/candidate_posterior.hpp"
+#include "diagnostics/residual_checks.hpp"
+#include "likelihood/selection/model_selection_target.hpp"
+#include "result/selection.hpp"
+
+namespace sysid {
+
+/// Laplace's model probabilities from the modes of each candidate's likelihood, densities in the units of the first candidate;
+/// names each large difference from the particles', and takes back the warning of a death by chance that the likelihood confirms.
+void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<CandidatePosterior> const& posteriors,
+                     SelectionReport& selection, Findings& findings);
+
+/// What noise leaves of the distance: the noise that the leading model states, or where a prior leaves that open the smallest one
+/// that any candidate's mode has found; a place where a climb was given up is none. Normal noise only.
+Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
+                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection);
+
+/// What a candidate leaves of the record at the heaviest mode near its particles, scored and tested as a fit is; findings name
+/// the model. Nothing where the likelihood has no mode there.
+FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior);
+
+/// Particles of a model once more with the next finer solver: their distances must not be those of the integrator.
+Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver);
+
+}  // namespace sysid

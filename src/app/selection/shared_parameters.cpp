@@ -1,0 +1,69 @@
+// Averages over models, and what there is none of.
+#include "app/selection/shared_parameters.hpp"
+
+#include <algorithm>
+
+#include "app/session/reporting.hpp"
+
+namespace sysid {
+namespace {
+
+/// Rows that a name stands for in a model's parameters: itself, or one for each experiment.
+bool stands_for(std::string const& row, std::string const& name) { return row == name || row.starts_with(name + "["); }
+
+std::vector<std::string> rows_of(std::string const& name, std::vector<Candidate> const& candidates) {
+  std::vector<std::string> rows;
+  for (Candidate const& each : candidates)
+    for (ParameterInfo const& info : each.simulated->infos())
+      if (stands_for(info.name, name) && std::find(rows.begin(), rows.end(), info.name) == rows.end()) rows.push_back(info.name);
+  return rows;
+}
+
+std::optional<WeightedSummary> averaged(std::string const& row, SelectionResult const& result) {
+  std::vector<double> values, weights;
+  std::string unit;
+  double total = 0;
+  for (SelectedModel const& model : result.models) {
+    if (model.died_in > 0) continue;
+    for (std::size_t d = 0; d < model.parameters.size(); ++d) {
+      if (model.parameters[d].name != row) continue;
+      unit = model.parameters[d].unit;
+      for (std::size_t j = 0; j < model.weight.size(); ++j) {
+        values.push_back(model.declared(static_cast<int>(d), static_cast<int>(j)));
+        weights.push_back(model.weight[j] * model.probability);
+        total += weights.back();
+      }
+    }
+  }
+  if (!(total > 0)) return std::nullopt;
+  for (double& w : weights) w /= total;
+  return summarise_weighted(row, unit, values, weights);
+}
+
+/// The declared prior of the first candidate that has the parameter: the checker has seen to it that the others have the same.
+SelectionReport::Unmoved unmoved(Session const& session, std::string const& name, std::vector<Candidate> const& candidates,
+                                 std::string why) {
+  for (Candidate const& each : candidates)
+    for (PriorInfo const& prior : declared_priors(session, each.fit->model))
+      if (prior.name == name) return {name, prior.unit, prior.text, std::move(why)};
+  return {name, {}, {}, std::move(why)};
+}
+
+}  // namespace
+
+void summarise_shared(Session const& session, CandidateSet const& set, std::vector<Candidate> const& candidates,
+                      SelectionReport& selection) {
+  for (std::string const& name : set.shared) {
+    std::vector<std::string> const rows = rows_of(name, candidates);
+    std::size_t const before = selection.shared.size();
+    for (std::string const& row : rows)
+      if (auto summary = averaged(row, selection.result)) selection.shared.push_back(std::move(*summary));
+    if (selection.shared.size() > before) continue;
+    selection.shared_unmoved.push_back(unmoved(session, name, candidates,
+                                               rows.empty()
+                                                   ? "only the noise reads it, and a simulation without noise says nothing of it"
+                                                   : "no model that has it is left"));
+  }
+}
+
+}  // namespace sysid

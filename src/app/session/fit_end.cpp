@@ -1,0 +1,97 @@
+// Verdict, files, terminal, exit code.
+#include "app/session/fit_end.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "app/session/reporting.hpp"
+#include "core/system/files.hpp"
+#include "diagnostics/convergence.hpp"
+#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/verdict.hpp"
+#include "likelihood/simulated_parameters.hpp"
+
+namespace sysid {
+
+Diagnostic no_result(Task const& task, Finding const& failure) {
+  std::string const code = failure.code == "no_finite_start" ? "E5002" : "E6206";
+  return {Severity::error, code, failure.message, Label{task.span, {}}, {}, failure.help};
+}
+
+ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& checkpoint) {
+  bool const kept = std::filesystem::exists(checkpoint.path());
+  session.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task.name,
+                                 kept ? "goes on from there" : "starts it again");
+  return ExitCode::interrupted;
+}
+
+ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation) {
+  if (!std::filesystem::exists(checkpoint.path())) checkpoint.save({{"preparation", store(preparation)}});
+  session.notices << fmt::format("{}: interrupted before its result was checked; --resume goes on from there\n", task.name);
+  return ExitCode::interrupted;
+}
+
+Findings failure_findings(Ledger const& sampling) {
+  Severity const severity = failure_severity(sampling.failed(), sampling.solves());
+  if (severity == Severity::note) return {};
+  double const share = static_cast<double>(sampling.failed()) / static_cast<double>(sampling.solves());
+  return {{severity, "failed_solves",
+           fmt::format("{:.1f} % of the solves while sampling failed, first in {}", 100 * share, sampling.failures().front().where),
+           "the posterior reaches where the model diverges: narrow the prior or look at the equation there"}};
+}
+
+Summary of_column(Draws const& draws, std::size_t column) {
+  ChainValues values;
+  for (Chain const& chain : draws.chains) {
+    values.emplace_back();
+    for (auto const& draw : chain.values) values.back().push_back(draw[column]);
+  }
+  Summary summary = summarise(draws.names[column], draws.units[column], values);
+  if (draws.total() == 1) summary.sd = summary.mad = summary.q5 = summary.q95 = std::nan("");
+  return summary;
+}
+
+std::vector<double> best_draw(Draws const& draws) {
+  std::vector<double> const* best = nullptr;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (Chain const& chain : draws.chains)
+    for (std::size_t d = 0; d < chain.values.size(); ++d)
+      if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
+  return best == nullptr ? std::vector<double>{} : *best;
+}
+
+std::vector<std::string> noise_parameters(ParameterSpace const& space) {
+  std::vector<bool> const simulated = simulated_parameters(space.model());
+  std::vector<std::string> names;
+  for (int const r : space.sampled()) {
+    FittedParameter const& row = space.rows()[static_cast<std::size_t>(r)];
+    if (!simulated[static_cast<std::size_t>(row.parameter)]) names.push_back(row.name);
+  }
+  return names;
+}
+
+ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpoint const& checkpoint, SolverSettings const& solver,
+                      Report report, std::chrono::steady_clock::time_point began, bool interrupted) {
+  if (!interrupted)
+    for (Finding& finding : check_priors(report)) report.findings.push_back(std::move(finding));
+  Verdict const verdict = judge(report.findings);
+  report.verdict = verdict.text;
+  std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
+  report.timing.emplace_back("wall_seconds", wall.count());
+  report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
+  report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
+  keep_result(session, task, report);
+  if (interrupted) {
+    session.notices << fmt::format("{}: interrupted; go on with --resume\n", task.name);
+    return ExitCode::interrupted;
+  }
+  remove_file(checkpoint.path());
+  session.fitted[index] = {std::move(report.draws), solver};
+  return verdict.pass ? ExitCode::success : ExitCode::doubtful;
+}
+
+}  // namespace sysid

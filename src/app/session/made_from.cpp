@@ -1,0 +1,52 @@
+// A fit that is run again leaves the predictions of its former draws where they are.
+#include "app/session/made_from.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/system/files.hpp"
+#include "data/digest.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr char const* task_key = "made_from";
+constexpr char const* digest_key = "made_from_sha256";
+
+std::optional<std::string> digest_of(std::filesystem::path const& folder) {
+  auto const summary = folder / "summary.json";
+  if (!std::filesystem::exists(summary)) return std::nullopt;
+  return sha256(read_file(summary));
+}
+
+}  // namespace
+
+Facts made_from(Session const& session, Task const& task) {
+  auto const* prediction = std::get_if<PredictTask>(&task.what);
+  if (prediction == nullptr) return {};
+  Task const& source = session.file.tasks[static_cast<std::size_t>(prediction->fit)];
+  auto const digest = digest_of(session.result_folder(source));
+  if (!digest) return {};
+  return {{task_key, source.name}, {digest_key, *digest}};
+}
+
+std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
+  auto const path = folder / "summary.json";
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  auto const summary = nlohmann::json::parse(read_file(path), nullptr, false);
+  if (!summary.is_object() || !summary.contains("versions") || !summary["versions"].is_object()) return std::nullopt;
+  auto const text = [&](char const* key) {
+    auto const& versions = summary["versions"];
+    return versions.contains(key) && versions[key].is_string() ? versions[key].get<std::string>() : std::string();
+  };
+  std::string const source = text(task_key), digest = text(digest_key);
+  if (source.empty()) return std::nullopt;
+  auto const now = digest_of(std::filesystem::absolute(folder).lexically_normal() / ".." / source);
+  if (!now || *now == digest) return std::nullopt;
+  return Finding{Severity::warning, "made_from_earlier",
+                 fmt::format("this was made from an earlier `{}` than the one that lies beside it", source),
+                 "make it again: `sysid predict FILE --force`"};
+}
+
+}  // namespace sysid

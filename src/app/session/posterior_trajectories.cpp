@@ -1,0 +1,61 @@
+// Draws to parameters of each experiment, and along its record.
+#include "app/session/posterior_trajectories.hpp"
+
+#include <algorithm>
+
+#include "app/session/stored_draws.hpp"
+#include "diagnostics/bands.hpp"
+
+namespace sysid {
+
+PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const& what, std::uint64_t seed)
+    : session_(session),
+      what_(what),
+      fitted_(fitted_model(session, what.fit)),
+      fit_(std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what)),
+      free_start_(what.start.kind == StartRule::Kind::estimated),
+      compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method, what.prediction)),
+      space_(parameter_space(compiled_->model, fit_.experiments)),
+      data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(fit_.model)], what.start,
+                             what.prediction)),
+      seed_(seed),
+      wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {}
+
+std::vector<std::string> PosteriorTrajectories::drawn_from_prior(int e) const {
+  std::vector<std::string> names;
+  if (what_.fitted[static_cast<std::size_t>(e)] >= 0) return names;
+  ExperimentUse const& use = data_[static_cast<std::size_t>(e)].use;
+  for (std::size_t p = 0; p < model().parameters.size(); ++p)
+    if (model().parameters[p].per_experiment && model().parameters[p].prior && !use.constants[p])
+      names.push_back("`" + model().parameters[p].name + "`");
+  return names;
+}
+
+LaneArray PosteriorTrajectories::parameters(int e) const {
+  LaneArray const declared = spread(fitted_.draws, what_.redraw_each_step ? static_cast<int>(fitted_.draws.total()) : wanted_);
+  int const fitted = what_.fitted[static_cast<std::size_t>(e)];
+  if (fitted >= 0) {
+    LaneArray own(static_cast<int>(model().parameters.size()), declared.width());
+    space_->select(space_->values_of_declared(declared), fitted, own);
+    return own;
+  }
+  return space_->of_new_experiment(declared, data_[static_cast<std::size_t>(e)].use.constants,
+                                   {seed_, Purpose::population, static_cast<std::uint64_t>(e) << 32, 0});
+}
+
+Trajectory PosteriorTrajectories::trajectory(int e) const {
+  return {compiled_,
+          data_[static_cast<std::size_t>(e)].experiment,
+          fitted_.solver,
+          start_rows(),
+          session_.options.execution,
+          [this](NodeId node, Graph const& graph) { return session_.describe(fit_.model, graph, node); }};
+}
+
+Trajectory::Result PosteriorTrajectories::run(int e, Trajectory const& trajectory, ConstLanes parameters) const {
+  StreamKey const noise = prediction_noise(seed_, e);
+  return what_.redraw_each_step ? trajectory.run_redrawn(parameters, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
+                                : trajectory.run(parameters, noise);
+}
+
+}  // namespace sysid

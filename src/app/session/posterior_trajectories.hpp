@@ -1,0 +1,46 @@
+// What a predict task simulates: trajectories of posterior draws along its experiments. Bands, scores and files are made of them.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
+#include "likelihood/trajectory.hpp"
+
+namespace sysid {
+
+class PosteriorTrajectories {
+ public:
+  /// Of a fit without processes, whose draws are those of this run or of its result folder; UserError as `fitted_model`.
+  PosteriorTrajectories(Session& session, PredictTask const& what, std::uint64_t seed);
+
+  FittedModel const& fitted() const { return fitted_; }
+  Model const& model() const { return compiled_->model; }
+  std::vector<ExperimentData> const& data() const { return data_; }
+  /// Trajectories per experiment.
+  int wanted() const { return wanted_; }
+  int start_rows() const { return free_start_ ? what_.start.rows : 0; }
+
+  /// Parameters that experiment e was not fitted with and draws from their prior given the shared ones, by name.
+  std::vector<std::string> drawn_from_prior(int e) const;
+  /// Parameters of the model in experiment e for each draw that is used, SI [parameters x draws].
+  LaneArray parameters(int e) const;
+  Trajectory trajectory(int e) const;
+  /// parameters: those of experiment e.
+  Trajectory::Result run(int e, Trajectory const& trajectory, ConstLanes parameters) const;
+
+ private:
+  Session& session_;
+  PredictTask const& what_;
+  FittedModel const& fitted_;
+  FitTask const& fit_;
+  bool free_start_;
+  std::shared_ptr<CompiledModel const> compiled_;
+  std::shared_ptr<ParameterSpace const> space_;
+  std::vector<ExperimentData> data_;
+  std::uint64_t seed_;
+  int wanted_;
+};
+
+}  // namespace sysid

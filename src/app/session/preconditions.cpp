@@ -1,0 +1,206 @@
+// Reads and cuts the data of every task ahead of the work.
+#include "app/session/preconditions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "experiment/experiments.hpp"
+#include "inference/table.hpp"
+#include "likelihood/simulated_parameters.hpp"
+#include "model/past.hpp"
+#include "regression/choice/selector.hpp"
+#include "regression/column/columns.hpp"
+
+namespace sysid {
+
+std::vector<TaskData> data_of(CheckedFile const& file, Task const& task) {
+  auto const model = [&](int index) { return &file.models[static_cast<std::size_t>(index)]; };
+  auto const of_fit = [&](FitTask const& fit) { return TaskData{model(fit.model), &fit.experiments, fit.start, fit.prediction}; };
+  std::vector<TaskData> all;
+  if (auto const* fit = std::get_if<FitTask>(&task.what)) {
+    all.push_back(of_fit(*fit));
+  } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
+    for (FitTask const& fit : selection->fits) all.push_back(of_fit(fit));
+  } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
+    all.push_back({&file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].measured,
+                   &discovery->experiments,
+                   {StartRule::Kind::rest, 0},
+                   PredictionRule::as_written});
+  } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
+    Task const& subject = file.tasks[static_cast<std::size_t>(prediction->fit)];
+    auto const add = [&](int index, std::vector<ExperimentUse> const& experiments) {
+      all.push_back({model(index), &experiments, prediction->start, prediction->prediction});
+    };
+    if (auto const* selection = std::get_if<SelectTask>(&subject.what))
+      for (std::size_t c = 0; c < selection->fits.size(); ++c) add(selection->fits[c].model, prediction->candidate_experiments[c]);
+    else
+      add(std::get<FitTask>(subject.what).model, prediction->experiments);
+  }
+  return all;
+}
+
+namespace {
+
+Diagnostic refused(Task const& task, std::string code, std::string message, std::string help) {
+  return {Severity::error, std::move(code), std::move(message), Label{task.span, {}}, {}, std::move(help)};
+}
+
+Diagnostic refused_settings(Task const& task, std::string_view backend, std::string const& why) {
+  return refused(task, "E6203", fmt::format("these settings of `{}` do not go together: {}", backend, why), "change one of them");
+}
+
+/// of: " of `model`" where there are several. Asked of parameters that have a prior in `model`.
+std::optional<Diagnostic> improper_prior(Task const& task, std::string_view backend, Model const& model, std::string const& of) {
+  for (Parameter const& parameter : model.parameters)
+    if (parameter.prior && !parameter.prior->row->proper)
+      return refused(task, "E6204",
+                     fmt::format("`{}` needs priors that can be drawn from; that of `{}`{} is {}", backend, parameter.name, of,
+                                 parameter.prior->row->name),
+                     fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<ExperimentData> const& data) {
+  for (ExperimentData const& each : data) {
+    Experiment const& experiment = each.experiment;
+    bool any = false;
+    for (auto const& channel : experiment.measured)
+      for (std::size_t i = 0; i < channel.size(); ++i) any = any || (experiment.scored[i] != 0 && !std::isnan(channel[i]));
+    if (!any)
+      return refused(task, "E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment.name),
+                     "choose other rows or columns");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
+                                  std::vector<ExperimentData> const& data) {
+  BackendRow const& backend = *find_backend(what.backend);
+  if (backend.refuse != nullptr)
+    if (std::string const why = backend.refuse(what.settings); !why.empty()) return refused_settings(task, backend.name, why);
+  if (backend.needs.proper_prior)
+    if (auto const found = improper_prior(task, backend.name, model, {})) return found;
+  if (parameter_space(model, what.experiments)->dimension() == 0)
+    return refused(task, "E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model.name),
+                   "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`");
+  return nothing_measured(task, data);
+}
+
+std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std::vector<Model> const& models,
+                                  std::vector<std::vector<ExperimentData>> const& data) {
+  SelectorRow const& selector = *find_selector(what.backend);
+  if (std::string const why = selector.refuse(what.settings); !why.empty()) return refused_settings(task, selector.name, why);
+  // The noise has particles in no population, but the likelihood's side starts from draws of it.
+  bool const with_noise = what.settings.flag("cross_check") || what.settings.flag("polish");
+  for (std::size_t c = 0; c < what.fits.size(); ++c) {
+    Model const& model = models[static_cast<std::size_t>(what.fits[c].model)];
+    std::string const of = what.fits.size() > 1 ? " of `" + model.name + "`" : std::string();
+    if (auto const found = improper_prior(task, selector.name, with_noise ? model : without_noise_parameters(model), of))
+      return found;
+    if (auto const found = nothing_measured(task, data[c])) return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what) {
+  if (std::string const why = regression::find_form(what.form)->refuse(what.form_settings); !why.empty())
+    return refused_settings(task, what.form, why);
+  if (std::string const why = regression::find_selector(what.selector)->refuse(what.selector_settings); !why.empty())
+    return refused_settings(task, what.selector, why);
+  return std::nullopt;
+}
+
+void Readiness::require() const {
+  if (diagnostics.all().empty()) return;
+  if (unreadable) throw UnreadableData(diagnostics);
+  throw UnusableData(diagnostics);
+}
+
+Task const* maker(Session const& session, DataBlock const& block) {
+  auto const place = [](std::filesystem::path const& path) { return std::filesystem::absolute(path).lexically_normal(); };
+  auto const wanted = place(session.folder() / block.path);
+  for (Task const& task : session.file.tasks)
+    if (auto const* made = std::get_if<SimulateTask>(&task.what);
+        made != nullptr && place(session.result_folder(task) / made->file) == wanted)
+      return &task;
+  return nullptr;
+}
+
+Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted) {
+  Readiness result;
+  bool only_unreadable = true;
+  std::set<std::pair<int, Model const*>> left_out;  // data that a message has been said about
+  std::set<std::string> said;
+  auto const add = [&](Diagnostics const& more, bool unreadable) {
+    for (Diagnostic const& each : more.all()) {
+      std::string const place = each.primary ? fmt::format("{}:", each.primary->span.begin) : std::string();
+      if (!said.insert(place + each.message).second) continue;
+      result.diagnostics.add(each);
+      only_unreadable = only_unreadable && unreadable;
+    }
+  };
+  auto const add_one = [&](Diagnostic const& diagnostic) {
+    Diagnostics one;
+    one.add(diagnostic);
+    add(one, false);
+  };
+  for (Task const& task : session.file.tasks) {
+    bool complete = true;
+    for (TaskData const& data : wanted(task) ? data_of(session.file, task) : std::vector<TaskData>()) {
+      auto const as_predicted = with_prediction(*data.model, data.prediction);
+      for (ExperimentUse const& use : *data.experiments) {
+        DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+        Task const* made = maker(session, block);
+        if (left_out.contains({use.data, data.model}) || (made != nullptr && wanted(*made))) {
+          complete = false;
+          continue;
+        }
+        try {
+          cut(session.record(use.data, *data.model), block, *as_predicted, use.part, data.start);
+          continue;
+        } catch (UnusableData const& error) {
+          left_out.insert({use.data, data.model});
+          add(error.diagnostics(), false);
+        } catch (UnreadableData const& error) {
+          left_out.insert({use.data, data.model});
+          add(error.diagnostics(), true);
+        } catch (UserError const& error) {
+          add_one(error.diagnostic());
+        }
+        complete = false;
+      }
+    }
+    if (!wanted(task) || !complete) continue;
+    auto const loaded = [&](FitTask const& fit) {
+      return load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
+                              fit.prediction);
+    };
+    if (auto const* fit = std::get_if<FitTask>(&task.what)) {
+      if (auto const why = refusal(task, *fit, session.file.models[static_cast<std::size_t>(fit->model)], loaded(*fit)))
+        add_one(*why);
+    } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
+      std::vector<std::vector<ExperimentData>> data;
+      for (FitTask const& fit : selection->fits) data.push_back(loaded(fit));
+      if (auto const why = refusal(task, *selection, session.file.models, data)) add_one(*why);
+    } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
+      if (auto const why = refusal(task, *discovery)) add_one(*why);
+    }
+  }
+  result.unreadable = only_unreadable;
+  return result;
+}
+
+Readiness check_readiness(Session& session) {
+  return check_readiness(session, [&](Task const& task) {
+    auto const* made = std::get_if<SimulateTask>(&task.what);
+    return made == nullptr || !std::filesystem::exists(session.result_folder(task) / made->file);
+  });
+}
+
+}  // namespace sysid

@@ -1,0 +1,23 @@
+// What a fit knows before its first sample, and how it is kept: enough to go on from a checkpoint without searching again.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "core/setting/solver.hpp"
+#include "core/system/ledger.hpp"
+#include "inference/backend/backend.hpp"
+
+namespace sysid {
+
+struct Preparation {
+  SolverSettings solver;
+  std::vector<Mode> modes;
+  Findings findings;
+  Ledger ledger;
+  std::vector<double> moves;  // of each solver tried: largest move to the next finer one [sd]
+};
+
+nlohmann::json store(Preparation const& preparation);
+Preparation restore_preparation(nlohmann::json const& stored);
+
+}  // namespace sysid

@@ -1,0 +1,115 @@
+// Notes in the user's names and units: how columns were read, and which rows count.
+#include "app/session/provenance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/number.hpp"
+#include "data/digest.hpp"
+#include "experiment/placeholders.hpp"
+#include "experiment/true_parameters.hpp"
+#include "model/past.hpp"
+
+namespace sysid {
+namespace {
+
+// The rows that are scored, counted from 1 as in the file: "101..500, 601..700".
+std::string scored_rows(Experiment const& experiment) {
+  std::string text;
+  auto const count = static_cast<int>(experiment.scored.size());
+  for (int first = 0; first < count;) {
+    if (experiment.scored[static_cast<std::size_t>(first)] == 0) {
+      ++first;
+      continue;
+    }
+    int last = first;
+    while (last + 1 < count && experiment.scored[static_cast<std::size_t>(last + 1)] != 0) ++last;
+    text += fmt::format("{}{}..{}", text.empty() ? "" : ", ", experiment.first_row + first, experiment.first_row + last);
+    first = last + 1;
+  }
+  return text;
+}
+
+// SHA-256 of the measured samples that a likelihood reads: channels by name, each sample with its row, in the channel's declared
+// unit. Equal digests mean densities of the same numbers, which alone can be compared.
+std::string samples_digest(Experiment const& experiment, Model const& model) {
+  std::vector<std::pair<std::string, std::string>> channels;  // by name: models may declare them in any order
+  for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
+    std::string text;
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
+      bool const with_past = c >= experiment.has_past.size() || experiment.has_past[c].empty() || experiment.has_past[c][i] != 0;
+      if (experiment.scored[i] == 0 || !with_past || !std::isfinite(experiment.measured[c][i])) continue;
+      text += fmt::format("{} {}\n", experiment.first_row + static_cast<int>(i),
+                          shortest(model.channels[c].from_si(experiment.measured[c][i])));
+    }
+    if (!text.empty()) channels.emplace_back(model.channels[c].name, std::move(text));
+  }
+  std::sort(channels.begin(), channels.end());
+  std::string all;
+  for (auto const& [name, text] : channels) all += name + "\n" + text;
+  return sha256(all);
+}
+
+DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  DataInfo info;
+  info.name = data.experiment.name;
+  info.file = block.path;
+  info.sha256 = data.record.digest;
+  info.rows = data.record.rows();
+  info.scored = static_cast<int>(std::count(data.experiment.scored.begin(), data.experiment.scored.end(), 1));
+  info.scored_rows = scored_rows(data.experiment);
+  info.samples_sha256 = samples_digest(data.experiment, model);
+  info.truth = true_values(data.record.comments, model, data.use.name);
+  for (Quantity const& input : model.inputs)
+    for (DataInputUse const& use : block.inputs)
+      if (use.input == input.name)
+        info.notes.push_back(fmt::format(
+            "input {} = {}{}{}", input.name, use.column, use.unit ? fmt::format(" [{}]", use.unit->text) : std::string(),
+            use.rule && model.dynamics == Dynamics::continuous ? fmt::format(", {}", rule_name(*use.rule)) : ""));
+  for (Channel const& channel : model.channels)
+    for (DataMeasureUse const& use : block.measured)
+      if (use.channel == channel.name)
+        info.notes.push_back(
+            fmt::format("{} = {}{}", channel.name, use.column, use.unit ? fmt::format(" [{}]", use.unit->text) : std::string()));
+  for (std::size_t p = 0; p < model.parameters.size(); ++p)
+    if (data.use.constants[p]) {
+      Parameter const& parameter = model.parameters[p];
+      std::string const unit = parameter.unit ? fmt::format(" [{}]", parameter.unit_text()) : std::string();
+      info.notes.push_back(fmt::format("{} = {}{}", parameter.name, shortest(parameter.from_si(*data.use.constants[p])), unit));
+    }
+  if (int const history = data_lag(model); history > 0)
+    info.notes.push_back(fmt::format("the first {} row{} the model looks back to {} not scored", history, history == 1 ? "" : "s",
+                                     history == 1 ? "is" : "are"));
+  for (std::size_t c = 0; c < data.experiment.has_past.size(); ++c) {
+    std::vector<std::uint8_t> const& has_past = data.experiment.has_past[c];
+    auto const without = std::count(has_past.begin(), has_past.end(), 0);
+    if (without > 0)
+      info.notes.push_back(fmt::format("{}: {} rows are not scored, a past sample is missing", model.channels[c].name, without));
+  }
+  return info;
+}
+
+}  // namespace
+
+void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {
+  for (Finding& each : find_placeholders(file, data, model))
+    if (std::find(findings.begin(), findings.end(), each) == findings.end()) findings.push_back(std::move(each));
+}
+
+void add_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Report& report) {
+  report.data.push_back(describe_data(file, data, model));
+  look_at_data(file, data, model, report.findings);
+}
+
+void tell_of_data(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model) {
+  for (ExperimentData const& each : data) tell(session, task, find_placeholders(session.file, each, model));
+}
+
+void tell(Session& session, Task const& task, Findings const& findings) {
+  for (Finding const& each : findings) session.notices << fmt::format("{}: warning: {}\n", task.name, each.message);
+}
+
+}  // namespace sysid

@@ -1,0 +1,20 @@
+// Where the numbers of a result come from.
+#pragma once
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+
+/// Adds what the numbers that a model reads give to think, unless it is there.
+void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings);
+
+/// Adds file, digest, rows and columns of one experiment to the report, and what its numbers give to think (`look_at_data`).
+void add_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Report& report);
+
+/// Says what gives to think before what takes time, so that nobody need wait for it.
+void tell(Session& session, Task const& task, Findings const& findings);
+/// Of the numbers of a task's records.
+void tell_of_data(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model);
+
+}  // namespace sysid

@@ -1,0 +1,237 @@
+// Provenance: the user's text goes into the report as it stands.
+#include "app/session/reporting.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "app/session/made_from.hpp"
+#include "core/system/files.hpp"
+#include "data/digest.hpp"
+#include "experiment/experiments.hpp"
+#include "experiment/prior_density.hpp"
+#include "report/file/result_folder.hpp"
+#include "report/page/terminal.hpp"
+#include "syntax/parse.hpp"
+#include "syntax/unparse.hpp"
+#include "typeset/typeset.hpp"
+
+namespace sysid {
+namespace {
+
+ast::Model const* find_model(ast::File const& tree, std::string const& name) {
+  for (ast::Item const& item : tree.items)
+    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
+  return nullptr;
+}
+
+bool within(Span inner, Span outer) { return inner.begin >= outer.begin && inner.end <= outer.end; }
+
+// The model as the user wrote it; null when it stands in a module.
+ast::Model const* as_written(ast::File const& tree, Span span) {
+  for (ast::Item const& item : tree.items)
+    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->span == span) return model;
+  return nullptr;
+}
+
+std::vector<ExperimentUse> const& experiments_of(Task const& task) {
+  if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->experiments;
+  if (auto const* selection = std::get_if<SelectTask>(&task.what)) return selection->fits.front().experiments;
+  if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) return discovery->experiments;
+  return std::get<FitTask>(task.what).experiments;
+}
+
+/// The task itself, or the one whose draws it predicts with.
+Task const& subject_of(Session const& session, Task const& task) {
+  auto const* prediction = std::get_if<PredictTask>(&task.what);
+  return prediction == nullptr ? task : session.file.tasks[static_cast<std::size_t>(prediction->fit)];
+}
+
+/// As one word of a POSIX shell: in quotes where it would not be one by itself, or would be taken for an option.
+std::string quoted_for_shell(std::string const& word) {
+  bool const plain = !word.empty() && word.front() != '-' && std::all_of(word.begin(), word.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::string_view("_-./=,+@%:").find(c) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string out = word.starts_with('-') ? "'./" : "'";
+  for (char const c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// "model `duffing`": of a selection the first.
+std::string subject_name(Session const& session, Task const& task) {
+  Task const& subject = subject_of(session, task);
+  auto const model = [&](int index) {
+    return fmt::format("model `{}`", session.file.models[static_cast<std::size_t>(index)].name);
+  };
+  if (auto const* discovery = std::get_if<DiscoverTask>(&subject.what))
+    return fmt::format("dictionary `{}`", session.file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].name);
+  if (auto const* selection = std::get_if<SelectTask>(&subject.what)) return model(selection->fits.front().model);
+  return model(std::get<FitTask>(subject.what).model);
+}
+
+}  // namespace
+
+std::string task_digest(Session const& session, Task const& task) {
+  Task const& subject = subject_of(session, task);
+  auto const of_model = [&](int model) { return model_digest(session, session.file.models[static_cast<std::size_t>(model)].name); };
+  if (auto const* discovery = std::get_if<DiscoverTask>(&subject.what))
+    return sha256(unparse(ast::File{{session.file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].tree}}));
+  auto const* selection = std::get_if<SelectTask>(&subject.what);
+  if (selection == nullptr) return of_model(std::get<FitTask>(subject.what).model);
+  std::string all;
+  for (FitTask const& fit : selection->fits) all += of_model(fit.model);
+  return sha256(all);
+}
+
+std::string statement_digest(Session const& session, Task const& task) {
+  std::string text;
+  for (ast::Item const& item : session.file.tree.items) {
+    if (auto const* statement = std::get_if<ast::Task>(&item); statement != nullptr && statement->verb.span == task.span)
+      text += unparse(ast::File{{*statement}});
+    auto const* data = std::get_if<ast::Data>(&item);
+    if (data == nullptr) continue;
+    for (ExperimentUse const& use : experiments_of(task)) {
+      DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+      if (block.name != data->name.text) continue;
+      ast::Data used = *data;
+      for (ast::DataStatement& each : used.statements)
+        if (auto* split = std::get_if<ast::DataSplit>(&each))
+          std::erase_if(split->parts, [&](ast::SplitPart const& part) {
+            return use.part < 0 || block.parts[static_cast<std::size_t>(use.part)].name != part.name.text;
+          });
+      text += unparse(ast::File{{used}});
+    }
+  }
+  return sha256(text);
+}
+
+void add_repetition(Session const& session, Task const& task, Report& report) {
+  report.place = static_cast<int>(&task - session.file.tasks.data());
+  RunOptions const& options = session.options;
+  report.command = fmt::format("sysid run {}", quoted_for_shell(session.source.name()));
+  auto const stated = [](Task const& each) {
+    return std::visit([](auto const& what) { return what.seed.has_value(); }, each.what);
+  };
+  std::vector<Task const*> needed = {&task};  // with those whose draws it is made from
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    auto const add = [&](int index) { needed.push_back(&session.file.tasks[static_cast<std::size_t>(index)]); };
+    if (auto const* prediction = std::get_if<PredictTask>(&needed[i]->what)) add(prediction->fit);
+    if (auto const* fit = std::get_if<FitTask>(&needed[i]->what); fit != nullptr && fit->near) add(*fit->near);
+  }
+  bool const all_drawn = std::none_of(needed.begin(), needed.end(), [&](Task const* each) { return stated(*each); });
+  if (options.seed || all_drawn) report.command += fmt::format(" --seed {}", report.seed);
+  if (!options.seed && !all_drawn)
+    for (Task const* each : needed)
+      if (!stated(*each)) report.unseeded.push_back(each->name);
+  // Beside the first, so that the two can be compared.
+  auto again = options.output;
+  if (!again.has_filename()) again = again.parent_path();
+  report.command += fmt::format(" -o {}", quoted_for_shell(again.string() + "_again"));
+}
+
+Report begin_report(Session const& session, Task const& task, int model_index, std::string what, std::uint64_t seed) {
+  Report report;
+  report.version = SYSID_VERSION;
+  report.task = task.name;
+  report.what = std::move(what);
+  report.seed = seed;
+  add_repetition(session, task, report);
+  report.timing = {{"file", std::filesystem::absolute(session.source.name()).lexically_normal().string()}};
+  Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
+  report.model_name = model.name;
+  report.model_title = model.title;
+  report.versions = {{"sysid", std::string(SYSID_VERSION)},
+                     {"random_numbers", std::string("Philox4x64-10")},
+                     {"model_sha256", task_digest(session, task)},
+                     {"statement_sha256", statement_digest(session, task)}};
+  Facts const source = made_from(session, task);
+  report.versions.insert(report.versions.end(), source.begin(), source.end());
+  ast::Model const* flat = find_model(session.file.tree, model.name);
+  if (flat == nullptr) return report;
+  report.model_text = std::string(session.source.text(flat->span));
+  Diagnostics ignored;
+  auto const tree = parse(session.source, ignored);
+  ast::Model const* written = tree ? as_written(*tree, flat->span) : nullptr;
+  // The user's own statements as they stand there, those of parts with their names in the whole. Parameters have a table.
+  auto const add = [&](ast::ModelStatement const& statement) {
+    if (has_formula(statement) && !std::holds_alternative<ast::ParameterDeclaration>(statement))
+      report.equations.push_back(unparse(statement));
+  };
+  auto const place = [](ast::ModelStatement const& statement) {
+    return std::visit([](auto const& each) { return each.span; }, statement);
+  };
+  if (written != nullptr) std::for_each(written->statements.begin(), written->statements.end(), add);
+  for (ast::ModelStatement const& statement : flat->statements)
+    if (written == nullptr || !within(place(statement), flat->span)) add(statement);
+  report.priors = declared_priors(session, model_index);
+  return report;
+}
+
+std::vector<PriorInfo> declared_priors(Session const& session, int model_index) {
+  Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
+  std::vector<PriorInfo> priors;
+  ast::Model const* flat = find_model(session.file.tree, model.name);
+  if (flat == nullptr) return priors;
+  for (ast::ModelStatement const& statement : flat->statements) {
+    auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement);
+    if (parameter == nullptr || !parameter->prior) continue;
+    for (Parameter const& checked : model.parameters)
+      if (checked.name == parameter->name.name.text)
+        priors.push_back({checked.name,
+                          checked.unit_text(),
+                          unparse(ast::Expression{{}, ast::Box<ast::Call>(*parameter->prior)}),
+                          {},
+                          prior_numbers(checked, model)});
+  }
+  for (PriorInfo& prior : priors) add_density(prior);
+  return priors;
+}
+
+void keep_result(Session& session, Task const& task, Report const& report) {
+  std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
+  session.out << terminal_summary(report);
+  if (!undrawn.empty()) session.notices << fmt::format("{}: {}\n", task.name, undrawn_words(undrawn));
+}
+
+std::string model_digest(Session const& session, std::string const& model) {
+  ast::Model const* flat = find_model(session.file.tree, model);
+  if (flat == nullptr) return {};
+  std::string text(session.source.text(flat->span));
+  // What the text alone does not say: arguments, parts, modules.
+  Diagnostics ignored;
+  auto const tree = parse(session.source, ignored);
+  ast::Model const* written = tree ? as_written(*tree, flat->span) : nullptr;
+  if (written == nullptr || !(*written == *flat)) text += unparse(ast::File{{*flat}});
+  return sha256(text);
+}
+
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed) {
+  auto const folder = session.result_folder(task);
+  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  auto const refuse = [&](std::string const& what) {
+    return Diagnostic{Severity::error, "E6208", fmt::format("the results in `{}` are of another {}", folder.string(), what),
+                      std::nullopt,    {},      "run the task again with --force, or write elsewhere with -o"};
+  };
+  if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
+  if (summary["versions"].value("model_sha256", "") != task_digest(session, task))
+    return refuse("text of " + subject_name(session, task));
+  std::vector<ExperimentUse> const& experiments = experiments_of(task);
+  auto const stored = summary.value("data", nlohmann::json::array());
+  if (stored.size() != experiments.size()) return refuse("set of experiments");
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    DataBlock const& block = session.file.data[static_cast<std::size_t>(experiments[e].data)];
+    if (stored[e].value("name", "") != data_name(block, experiments[e].part)) return refuse("set of experiments");
+    auto const path = session.folder() / block.path;
+    if (std::filesystem::exists(path) && stored[e].value("sha256", "") != sha256(read_file(path)))
+      return refuse("content of `" + block.path + "`");
+  }
+  if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");
+  if (summary["versions"].value("statement_sha256", "") != statement_digest(session, task))
+    return refuse("statement, or of other rows");
+  return std::nullopt;
+}
+
+}  // namespace sysid

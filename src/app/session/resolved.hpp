@@ -1,0 +1,20 @@
+// The file that reproduces a task: models and data as written, the task with every setting spelt out.
+#pragma once
+#include "app/session/session.hpp"
+
+namespace sysid {
+
+std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
+                         SolverSettings const& solver, std::uint64_t seed);
+
+std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed);
+
+std::string resolved_discover(Session const& session, Task const& task, DiscoverTask const& what, std::uint64_t seed);
+
+/// "mh(samples = 25000, ...)", every setting in the order of the table.
+std::string settings_text(std::string const& backend, Settings const& settings);
+
+/// "near(posterior)"; empty where the search has no such beginning.
+std::string search_text(CheckedFile const& file, FitTask const& fit);
+
+}  // namespace sysid

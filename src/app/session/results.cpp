@@ -1,0 +1,37 @@
+// Claiming result folders.
+#include "app/session/results.hpp"
+
+#include <fmt/format.h>
+
+#include "core/system/files.hpp"
+#include "core/text/diagnostic.hpp"
+#include "report/file/result_folder.hpp"
+
+namespace sysid {
+
+std::filesystem::path checkpoint_path(std::filesystem::path const& folder) { return folder / "checkpoint.cbor"; }
+
+bool complete(std::filesystem::path const& folder) {
+  return std::filesystem::exists(folder / "summary.json") && !std::filesystem::exists(checkpoint_path(folder));
+}
+
+void claim_results(std::filesystem::path const& folder, RunOptions const& options) {
+  if (options.resume) {
+    make_folder(folder);  // what is there stays until the run has shown that it goes on with it
+  } else {
+    if (std::filesystem::exists(checkpoint_path(folder)) && !options.force)
+      throw UserError({Severity::error,
+                       "",
+                       fmt::format("`{}` holds an interrupted run", folder.string()),
+                       std::nullopt,
+                       {},
+                       "go on with --resume, or start again with --force"});
+    prepare_result(folder, options.force);
+    remove_file(checkpoint_path(folder));
+  }
+  // A byte, since a full disk takes empty files.
+  write_file(folder / "claim", ".");
+  remove_file(folder / "claim");
+}
+
+}  // namespace sysid

@@ -1,0 +1,70 @@
+// Values of an earlier fit laid over draws of the prior.
+#include "app/session/search_near.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/session/fit_end.hpp"
+#include "app/session/stored_draws.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int starts_where_all_is_known = 8;
+constexpr int starts_with_something_new = 48;
+constexpr std::uint64_t near_step = 3'000'000;  // a stream of its own among those of Purpose::start
+
+/// Per parameter of the target its column among the earlier draws; -1: it is new, or counts in another unit now.
+std::vector<int> columns_there(Target const& target, Draws const& earlier) {
+  std::vector<int> columns;
+  for (ParameterInfo const& parameter : target.parameters()) {
+    auto const place = std::find(earlier.names.begin(), earlier.names.end(), parameter.name);
+    auto const column = static_cast<std::size_t>(place - earlier.names.begin());
+    bool const known = place != earlier.names.end() && (column >= earlier.units.size() || earlier.units[column] == parameter.unit);
+    columns.push_back(known ? static_cast<int>(column) : -1);
+  }
+  return columns;
+}
+
+}  // namespace
+
+SearchResult search_near(Session& session, int earlier, Target const& target, Aim aim, RunContext& context) {
+  Draws const& draws = fitted_model(session, earlier).draws;
+  std::vector<int> const columns = columns_there(target, draws);
+  auto const coefficient = [&](int p) { return target.parameters()[static_cast<std::size_t>(p)].coefficient; };
+  bool something_new = false;
+  for (int p = 0; p < target.dimension(); ++p)
+    something_new = something_new || (columns[static_cast<std::size_t>(p)] < 0 && !coefficient(p));
+  int const count = something_new ? starts_with_something_new : starts_where_all_is_known;
+  LaneArray prior(target.dimension(), count), declared(target.dimension(), count), starts(target.dimension(), count);
+  target.sample_prior({context.seed, Purpose::start, 0, near_step}, prior);
+  // A function that the earlier model had not is none at the start.
+  for (int p = 0; p < target.dimension(); ++p)
+    if (columns[static_cast<std::size_t>(p)] < 0 && coefficient(p)) std::fill(prior.row(p).begin(), prior.row(p).end(), 0.0);
+  target.constrain(prior, declared);
+  LaneArray const spread_draws = spread(draws, count - 1);
+  std::vector<double> const best = best_draw(draws);
+  for (int w = 0; w < count; ++w)
+    for (int p = 0; p < target.dimension(); ++p) {
+      int const column = columns[static_cast<std::size_t>(p)];
+      if (column < 0) continue;
+      declared(p, w) = w == 0 || column >= spread_draws.rows() ? best[static_cast<std::size_t>(column)]
+                                                               : spread_draws(column, (w - 1) % spread_draws.width());
+    }
+  target.unconstrain(declared, starts);
+  // A value that the prior of now does not allow has no place on its scale.
+  for (int w = 0; w < count; ++w)
+    for (int p = 0; p < target.dimension(); ++p)
+      if (!std::isfinite(starts(p, w))) starts(p, w) = prior(p, w);
+  SearchResult result = search_from(target, aim, starts, context);
+  std::string const& name = session.file.tasks[static_cast<std::size_t>(earlier)].name;
+  if (!result.modes.empty())
+    result.findings.push_back({Severity::note, "searched_near",
+                               fmt::format("the search began at `{}` alone: a mode elsewhere would not have been met", name),
+                               "fit once more without `search = near(...)` before the numbers are used"});
+  return result;
+}
+
+}  // namespace sysid

@@ -1,0 +1,90 @@
+// Shared state of a run.
+#include "app/session/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+#include <thread>
+
+#include "core/system/interrupt.hpp"
+#include "core/text/diagnostic.hpp"
+#include "model/past.hpp"
+
+namespace sysid {
+
+std::filesystem::path Session::result_folder(Task const& task) const {
+  auto const found = found_in_.find(task.name);
+  return found == found_in_.end() ? options.output / task.name : found->second;
+}
+
+void Session::find_results_in(std::filesystem::path folder, Task const& task) {
+  found_in_[task.name] = std::move(folder);
+  int const index = static_cast<int>(&task - file.tasks.data());
+  fitted.erase(index);
+  selected.erase(index);
+}
+
+std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start, std::string const& method,
+                                                       PredictionRule prediction) {
+  auto& place = compiled_[{model, free_start, method, prediction}];
+  if (!place) {
+    auto ruled = with_prediction(file.models[static_cast<std::size_t>(model)], prediction);
+    if (!ruled) throw InternalError("a prediction rule was let through that the model has no data for");
+    place = compile(std::move(*ruled), free_start, method);
+  }
+  return place;
+}
+
+Record const& Session::record(int data, Model const& model) {
+  auto const found = records_.find({data, &model});
+  if (found != records_.end()) return found->second;
+  Record read = load_record(file.data[static_cast<std::size_t>(data)], model, folder());
+  return records_.emplace(std::pair(data, &model), std::move(read)).first->second;
+}
+
+std::uint64_t Session::seed(Task const& task, std::optional<std::uint64_t> const& stated) {
+  if (options.seed) return *options.seed;
+  if (stated) return *stated;
+  if (!drawn_seed_) {
+    // Up to 2^53, so that the printed number may be written into a file as it stands.
+    std::random_device device;
+    drawn_seed_ = ((static_cast<std::uint64_t>(device()) << 32) | device()) >> 11;
+    notices << fmt::format("{}: seed {} (drawn; repeat this run with --seed {})\n", task.name, *drawn_seed_, *drawn_seed_);
+  }
+  return *drawn_seed_;
+}
+
+std::string Session::describe(int model, Graph const& graph, NodeId node) const {
+  return sysid::describe(file.models[static_cast<std::size_t>(model)], graph, node, source);
+}
+
+int Session::threads() const {
+  return options.execution.threads > 0 ? options.execution.threads
+                                       : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+bool Session::interrupted() {
+  if (options.interrupt_after != 0 && ++polls_ == options.interrupt_after) request_interrupt();
+  return interrupt_requested();
+}
+
+ExecutionOptions Session::interruptible() const {
+  ExecutionOptions execution = options.execution;
+  execution.stopped = &interrupt_requested;
+  return execution;
+}
+
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
+                                             StartRule start, PredictionRule prediction) {
+  auto const as_predicted = with_prediction(model, prediction);
+  std::vector<ExperimentData> all;
+  for (ExperimentUse const& use : uses) {
+    Record const& record = session.record(use.data, model);
+    DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
+    all.push_back({use, record, cut(record, block, *as_predicted, use.part, start)});
+  }
+  return all;
+}
+
+}  // namespace sysid

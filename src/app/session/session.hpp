@@ -1,0 +1,81 @@
+// What the tasks of one run share: the checked file, compiled models, results of earlier tasks, where files go.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <tuple>
+
+#include "app/session/options.hpp"
+#include "check/checked/checked.hpp"
+#include "core/system/progress.hpp"
+#include "core/text/source.hpp"
+#include "data/record.hpp"
+#include "experiment/experiments.hpp"
+#include "likelihood/compiled_model.hpp"
+#include "result/draws.hpp"
+
+namespace sysid {
+
+/// What a fit leaves for the tasks that refer to it.
+struct FittedModel {
+  Draws draws;
+  SolverSettings solver;
+};
+
+/// What a selection leaves: per candidate its probability and particles of equal weight (parameters that the simulation reads).
+struct SelectedCandidate {
+  double probability = 0;
+  Draws draws;
+};
+
+class Session {
+ public:
+  Session(Source const& source, CheckedFile const& file, RunOptions const& options, Progress& progress, std::ostream& out,
+          std::ostream& notices)
+      : source(source), file(file), options(options), progress(progress), out(out), notices(notices) {}
+
+  Source const& source;
+  CheckedFile const& file;
+  RunOptions const& options;
+  Progress& progress;
+  std::ostream& out;                                       // summaries
+  std::ostream& notices;                                   // one line each: what was chosen, what was written
+  std::map<int, FittedModel> fitted;                       // by index of the fit task
+  std::map<int, std::vector<SelectedCandidate>> selected;  // by index of the select task
+
+  /// The folder of the .sysid file, from which data paths are relative.
+  std::filesystem::path folder() const { return std::filesystem::path(source.name()).parent_path(); }
+  /// Where the results of a task are: in a folder of its name, unless they were found elsewhere.
+  std::filesystem::path result_folder(Task const& task) const;
+  /// The results of a task were found in `folder`, whatever its name. What was read of others before is forgotten.
+  void find_results_in(std::filesystem::path folder, Task const& task);
+  /// Compiled on first use.
+  std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method, PredictionRule prediction);
+  /// The record of a data block as a model of the file reads it, read on first use. Throws as `load_record`.
+  Record const& record(int data, Model const& model);
+  /// The seed of a task: the command line's, the file's, or one drawn from the system and printed.
+  std::uint64_t seed(Task const& task, std::optional<std::uint64_t> const& stated);
+  /// A sub-expression in the user's words, for the ledger.
+  std::string describe(int model, Graph const& graph, NodeId node) const;
+  /// Threads in use, 0 resolved.
+  int threads() const;
+  /// Whether an interruption was asked for; counts polls for `interrupt_after`.
+  bool interrupted();
+  /// As the options say, but given up when an interruption is asked for: for work of which nothing is kept then.
+  ExecutionOptions interruptible() const;
+
+ private:
+  std::map<std::tuple<int, bool, std::string, PredictionRule>, std::shared_ptr<CompiledModel const>> compiled_;
+  std::map<std::pair<int, Model const*>, Record> records_;
+  std::map<std::string, std::filesystem::path> found_in_;  // by name of the task
+  std::optional<std::uint64_t> drawn_seed_;
+  std::uint64_t polls_ = 0;
+};
+
+/// Reads them in order, for a model of the file; UserError, UnusableData, UnreadableData as above.
+std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
+                                             StartRule start, PredictionRule prediction);
+
+}  // namespace sysid

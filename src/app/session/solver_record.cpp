@@ -1,0 +1,39 @@
+// Settings by name, in the order of the solver's table.
+#include "app/session/solver_record.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace sysid {
+
+void add_solver(SolverSettings const& solver, Facts& facts) {
+  facts.emplace_back("solver", solver.method);
+  Settings const values = solver.settings();
+  for (SettingRow const& row : solver.row().settings)
+    facts.emplace_back(std::string(row.name), values.all().at(std::string(row.name)));
+}
+
+SolverSettings read_solver(nlohmann::json const& settings) {
+  SolverSettings solver;
+  SolverRow const* row = find_solver(settings.value("solver", solver.method));
+  if (row == nullptr) return solver;
+  Settings values(row->settings);
+  for (SettingRow const& each : row->settings) {
+    std::string const name(each.name);
+    if (!settings.contains(name)) continue;
+    if (each.kind == SettingKind::integer)
+      values.set(name, settings.at(name).get<std::int64_t>());
+    else
+      values.set(name, settings.at(name).get<double>());
+  }
+  return make_solver(*row, values);
+}
+
+nlohmann::json write_solver(SolverSettings const& solver) {
+  Facts facts;
+  add_solver(solver, facts);
+  nlohmann::json result;
+  for (auto const& [name, value] : facts) std::visit([&, key = name](auto const& v) { result[key] = v; }, value);
+  return result;
+}
+
+}  // namespace sysid

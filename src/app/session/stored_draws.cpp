@@ -1,0 +1,146 @@
+// Stan CSV back to draws; decimals were shortest round-trip, so the numbers are the same.
+#include "app/session/stored_draws.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/session/reporting.hpp"
+#include "app/session/results.hpp"
+#include "app/session/solver_record.hpp"
+#include "core/system/files.hpp"
+#include "core/text/diagnostic.hpp"
+#include "experiment/experiments.hpp"
+#include "likelihood/simulated_parameters.hpp"
+#include "report/file/csv.hpp"
+#include "report/file/number_table.hpp"
+#include "report/file/selection.hpp"
+#include "result/selection.hpp"
+
+namespace sysid {
+std::vector<std::vector<double>> read_draws_rows(std::filesystem::path const& path, std::vector<std::string> const& own,
+                                                 std::vector<std::string> const& parameters) {
+  NumberTable const table = read_number_table(path);
+  std::vector<std::vector<double> const*> columns;
+  auto const add = [&](std::string const& name, std::size_t from) {
+    columns.push_back(table.find(name, from));
+    if (columns.back() == nullptr)
+      throw UserError({Severity::error,
+                       "E6201",
+                       fmt::format("`{}` has no column `{}`: it is of another model", path.string(), name),
+                       std::nullopt,
+                       {},
+                       "run the fit again, with --force or another -o"});
+  };
+  for (std::string const& name : own) add(name, 0);
+  // A parameter may have the name of one of the sampler's own.
+  for (std::string const& name : parameters) add(stan_name(name), own.size());
+  std::vector<std::vector<double>> rows(table.rows());
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::vector<double> const* column : columns) rows[r].push_back((*column)[r]);
+  return rows;
+}
+
+Chain read_chain(std::filesystem::path const& path, std::vector<std::string> const& parameters) {
+  Chain chain;
+  for (std::vector<double> const& row :
+       read_draws_rows(path, {"lp__", "accept_stat__", "log_prior__", "log_likelihood__"}, parameters)) {
+    chain.log_density.push_back(row[0]);
+    chain.acceptance.push_back(row[1]);
+    chain.log_prior.push_back(row[2]);
+    chain.log_likelihood.push_back(row[3]);
+    chain.values.emplace_back(row.begin() + 4, row.end());
+  }
+  return chain;
+}
+
+FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::string> const& parameters) {
+  FittedModel fitted;
+  fitted.draws.names = parameters;
+  fitted.draws.parameter_count = static_cast<int>(parameters.size());
+  for (int k = 1; std::filesystem::exists(folder / fmt::format("draws_{}.csv", k)); ++k) {
+    auto const path = folder / fmt::format("draws_{}.csv", k);
+    fitted.draws.chains.push_back(read_chain(path, parameters));
+  }
+  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  if (summary.is_object() && summary.contains("settings")) fitted.solver = read_solver(summary["settings"]);
+  return fitted;
+}
+
+namespace {
+
+/// The folder of a task's complete results; UserError when there are none or they are of another text.
+std::filesystem::path stored_results(Session& session, Task const& task, std::string_view verb) {
+  auto folder = session.result_folder(task);
+  if (std::filesystem::exists(folder / "checkpoint.cbor"))
+    throw UserError({Severity::error,
+                     "E6202",
+                     fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
+                     std::nullopt,
+                     {},
+                     fmt::format("go on with it first: sysid {} FILE --resume", verb)});
+  if (!complete(folder))
+    throw UserError({Severity::error,
+                     "E6202",
+                     fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
+                     std::nullopt,
+                     {},
+                     fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb)});
+  if (auto wrong = stored_otherwise(session, task, std::nullopt)) {
+    wrong->code = "E6201";
+    throw UserError(*wrong);
+  }
+  return folder;
+}
+
+std::vector<std::string> names_of(ParameterSpace const& space) {
+  std::vector<std::string> names;
+  for (ParameterInfo const& parameter : space.infos()) names.push_back(parameter.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<SelectedCandidate> const& selected_candidates(Session& session, int select) {
+  if (auto const place = session.selected.find(select); place != session.selected.end()) return place->second;
+  Task const& task = session.file.tasks[static_cast<std::size_t>(select)];
+  SelectTask const& what = std::get<SelectTask>(task.what);
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
+  auto const folder = stored_results(session, task, "select");
+  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  std::vector<SelectedCandidate> candidates;
+  for (std::size_t k = 0; k < set.models.size(); ++k) {
+    SelectedCandidate candidate;
+    std::string const& name = set.models[k].name;
+    if (!summary.is_object() || !summary.contains("models") || !summary["models"].contains(name))
+      throw UserError({Severity::error,
+                       "E6201",
+                       fmt::format("`{}` has no model `{}`", (folder / "summary.json").string(), name),
+                       std::nullopt,
+                       {},
+                       "run the selection again, with --force or another -o"});
+    candidate.probability = summary["models"][name].value("probability", 0.0);
+    auto const path = folder / fmt::format("draws_{}.csv", model_file_name(name));
+    if (std::filesystem::exists(path)) {
+      FitTask const& fit = what.fits[k];
+      auto const space =
+          parameter_space(without_noise_parameters(session.file.models[static_cast<std::size_t>(fit.model)]), fit.experiments);
+      candidate.draws.names = names_of(*space);
+      candidate.draws.parameter_count = static_cast<int>(candidate.draws.names.size());
+      candidate.draws.chains.push_back(read_chain(path, candidate.draws.names));
+    }
+    candidates.push_back(std::move(candidate));
+  }
+  return session.selected[select] = std::move(candidates);
+}
+
+FittedModel const& fitted_model(Session& session, int fit) {
+  if (auto const place = session.fitted.find(fit); place != session.fitted.end()) return place->second;
+  Task const& task = session.file.tasks[static_cast<std::size_t>(fit)];
+  FitTask const& what = std::get<FitTask>(task.what);
+  auto const folder = stored_results(session, task, "fit");
+  auto const space = parameter_space(session.file.models[static_cast<std::size_t>(what.model)], what.experiments);
+  return session.fitted[fit] = read_fitted(folder, names_of(*space));
+}
+
+}  // namespace sysid

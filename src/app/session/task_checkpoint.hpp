@@ -1,0 +1,41 @@
+// The checkpoint of a task on disk: whose it is, and what its back end stored.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
+
+namespace sysid {
+
+class TaskCheckpoint {
+ public:
+  /// stated: the seed in the file. The seed in force is the command line's, the file's, that of a checkpoint to go on from, or one
+  /// drawn and printed.
+  TaskCheckpoint(Session& session, Task const& task, std::optional<std::uint64_t> const& stated);
+
+  std::uint64_t seed() const { return seed_; }
+  std::filesystem::path const& path() const { return path_; }
+  /// Digests of the data, which a checkpoint must agree with.
+  void of_data(std::vector<ExperimentData> const& data);
+  /// What is stored, else null, when going on was asked for and something is; UserError when it is damaged (E6207) or of another
+  /// text, data or seed (E6208).
+  std::shared_ptr<nlohmann::json const> stored() const;
+  void save(nlohmann::json const& content) const;
+
+ private:
+  nlohmann::json who() const;
+
+  Session& session_;
+  Task const& task_;
+  std::filesystem::path path_;
+  std::uint64_t seed_;
+  std::vector<std::pair<std::string, std::string>> digests_;  // of each experiment, by its name
+};
+
+}  // namespace sysid

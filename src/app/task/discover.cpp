@@ -1,0 +1,280 @@
+// `discover`: experiments to the regression, its answer in the words of the file, the source of what was found.
+#include "app/task/tasks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/session/preconditions.hpp"
+#include "app/session/provenance.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/resolved.hpp"
+#include "app/session/session.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/verdict.hpp"
+#include "discovery/coefficient_names.hpp"
+#include "discovery/discovery_findings.hpp"
+#include "discovery/excluded_terms.hpp"
+#include "discovery/found_equation.hpp"
+#include "discovery/found_source.hpp"
+#include "discovery/held_out_rows.hpp"
+#include "discovery/simulation_validation.hpp"
+#include "discovery/validation_findings.hpp"
+#include "experiment/experiments.hpp"
+#include "load/load.hpp"
+#include "regression/discovery.hpp"
+#include "report/file/discovery.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+class Discover {
+ public:
+  Discover(Session& session, Task const& task, DiscoverTask const& what)
+      : session_(session),
+        task_(task),
+        what_(what),
+        dictionary_(session.file.dictionaries[static_cast<std::size_t>(what.dictionary)]),
+        seed_(session.seed(task, what.seed)),
+        began_(std::chrono::steady_clock::now()),
+        data_(load_experiments(session, what.experiments, dictionary_.measured, {StartRule::Kind::rest, 0},
+                               PredictionRule::as_written)) {}
+
+  ExitCode run() {
+    if (auto const why = refusal(task_, what_)) throw UserError(*why);
+    regression::Method method;
+    method.form = regression::find_form(what_.form);
+    method.form_settings = what_.form_settings;
+    method.selector = regression::find_selector(what_.selector);
+    method.selector_settings = what_.selector_settings;
+    method.seed = seed_;
+    method.interrupted = [this] { return session_.interrupted(); };
+    regression::Discovery const found = regression::discover(numbers(), experiments_of(data_), method);
+    if (found.interrupted) return stop();
+    FoundSource const source{.file = session_.file,
+                             .folder = session_.folder(),
+                             .results = session_.result_folder(task_),
+                             .execution = session_.options.execution,
+                             .task = task_,
+                             .what = what_,
+                             .dictionary = dictionary_,
+                             .data = data_,
+                             .discovery = found,
+                             .seed = seed_};
+    std::vector<FoundStructure> structures = best_structures(found, what_.top);
+    std::optional<Judgement> judgement;
+    if (what_.refit && !structures.empty()) {
+      judgement = judge_structures(source, structures, aside(), method.interrupted);
+      if (judgement->interrupted) return stop();
+      structures = judgement->order;
+    }
+    return finish(found, *method.selector, source, structures, judgement);
+  }
+
+ private:
+  // With the noise that the task gives.
+  regression::Dictionary numbers() const {
+    regression::Dictionary numbers = dictionary_.numbers;
+    for (std::size_t c = 0; c < what_.noise.size(); ++c) numbers.channels[c].noise_sd = what_.noise[c];
+    return numbers;
+  }
+
+  ExitCode stop() const {
+    session_.notices << fmt::format("{}: interrupted; it begins again\n", task_.name);
+    return ExitCode::interrupted;
+  }
+
+  // With the dictionary's columns, as the task's own.
+  std::vector<ExperimentData> aside() const {
+    return load_experiments(session_, unused_parts(session_.file, what_, 1), dictionary_.measured, {StartRule::Kind::rest, 0},
+                            PredictionRule::as_written);
+  }
+
+  ExitCode finish(regression::Discovery const& found, regression::SelectorRow const& selector, FoundSource const& source,
+                  std::vector<FoundStructure> structures, std::optional<Judgement>& judgement) {
+    Report report;
+    report.version = SYSID_VERSION;
+    report.task = task_.name;
+    report.what = fmt::format("discover {} from {} with {}, derivatives = {}", dictionary_.name,
+                              data_names(session_.file, what_.experiments), what_.selector, what_.form);
+    report.seed = seed_;
+    add_repetition(session_, task_, report);
+    report.model_name = dictionary_.name;
+    report.model_title = dictionary_.title;
+    report.model_text = std::string(session_.source.text(dictionary_.tree.span));
+    report.versions = {{"sysid", std::string(SYSID_VERSION)},
+                       {"random_numbers", std::string("Philox4x64-10")},
+                       {"model_sha256", task_digest(session_, task_)},
+                       {"statement_sha256", statement_digest(session_, task_)}};
+    for (ExperimentData const& each : data_) add_data(session_.file, each, dictionary_.measured, report);
+    DiscoveryReport discovery = described(found, selector);
+    add_findings(found, report.findings);
+    if (judgement) {
+      temper_by_simulation(judgement->report, report.findings);
+      report.findings.insert(report.findings.end(), judgement->findings.begin(), judgement->findings.end());
+      discovery.judged = std::move(judgement->report);
+    }
+    report.equations = equations(discovery);
+    if (!what_.candidates && !structures.empty()) structures.resize(1);
+    add_source(source, structures, discovery, report.findings);
+    report.tables = discovery_tables(discovery);
+    report.settings = {{"selector", what_.selector}};
+    for (auto const& [name, value] : what_.selector_settings.all()) report.settings.emplace_back(name, value);
+    report.settings.emplace_back("derivatives", what_.form);
+    for (auto const& [name, value] : what_.form_settings.all()) report.settings.emplace_back(name, value);
+    report.resolved_text = resolved_discover(session_, task_, what_, seed_);
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
+    report.timing.emplace_back("wall_seconds", wall.count());
+    report.verdict = headline(discovery, report.equations, report.findings);
+    report.discovery = std::move(discovery);
+    keep_result(session_, task_, report);
+    if (!report.discovery->source.empty())
+      session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,
+                                      (session_.result_folder(task_) / "found.sysid").string());
+    return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  // By simulation where that has judged.
+  static std::vector<std::string> equations(DiscoveryReport const& discovery) {
+    if (discovery.judged && discovery.judged->structures.front().failure.empty())
+      return discovery.judged->structures.front().equations;
+    std::vector<std::string> all;
+    for (DiscoveredEquation const& each : discovery.equations)
+      if (!each.equation.empty()) all.push_back(each.equation);
+    return all;
+  }
+
+  static std::string headline(DiscoveryReport const& discovery, std::vector<std::string> const& equations,
+                              Findings const& findings) {
+    std::string terms = fmt::format("{}", fmt::join(equations, "; "));
+    for (DiscoveredEquation const& each : discovery.equations)
+      if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
+    std::string const judged = judge(findings).text;
+    return terms + "; " + judged.substr(0, judged.find('\n'));
+  }
+
+  bool given(std::size_t channel) const { return !what_.noise.empty() && what_.noise[channel]; }
+
+  // --- in the words of the file
+  DiscoveryReport described(regression::Discovery const& found, regression::SelectorRow const& selector) const {
+    DiscoveryReport out;
+    out.selector = what_.selector;
+    out.derivatives = what_.form;
+    out.measure = selector.measure;
+    out.windows = found.half_width > 0;
+    out.half_width = found.half_width;
+    for (std::size_t c = 0; c < found.noise_sd.size(); ++c) {
+      Channel const& channel = dictionary_.measured.channels[c];
+      out.noise.push_back({channel.name, channel.unit_text(), channel.from_si(found.noise_sd[c]), given(c)});
+    }
+    for (LeftOutText& each : left_out_texts(dictionary_)) out.left_out.push_back({std::move(each.term), std::move(each.reason)});
+    for (std::size_t e = 0; e < found.equations.size(); ++e)
+      out.equations.push_back(described(found.equations[e], static_cast<int>(e)));
+    return out;
+  }
+
+  DiscoveredEquation described(regression::FoundEquation const& found, int index) const {
+    DictionaryEquation const& equation = dictionary_.equations[static_cast<std::size_t>(index)];
+    std::vector<std::string> const names = coefficient_names(dictionary_, index);
+    DiscoveredEquation out;
+    out.target = equation.text;
+    if (!found.found) return out;
+    out.explained = found.explained;
+    out.noise_ratio = found.noise_ratio;
+    out.unit = equation.unit ? equation.unit->text : "";
+    out.own_noise = found.own_noise / (equation.unit ? equation.unit->scale : 1);
+    out.rows = found.rows;
+    out.exact = found.exact;
+    out.converged = found.converged;
+    for (std::size_t j = 0; j < found.terms.size(); ++j) {
+      regression::FoundTerm const& from = found.terms[j];
+      DictionaryTerm const& term = equation.terms[j];
+      double const scale = term.unit ? term.unit->scale : 1;
+      DiscoveredTerm to;
+      to.text = term.in_target ? fmt::format("{}, in the target", term.text) : term.text;
+      to.name = names[j];
+      to.unit = term.unit ? term.unit->text : "";
+      to.kept = from.kept;
+      to.fate = from.left_out         ? "left out"
+                : term.in_target      ? "known"
+                : from.kept           ? "kept"
+                : from.dropped_in > 0 ? fmt::format("dropped in round {}", from.dropped_in)
+                                      : "dropped";
+      to.coefficient = from.coefficient / scale;
+      to.sd = from.sd / scale;
+      to.measure = from.measure;
+      to.mean = from.mean / scale;
+      to.mean_sd = from.mean_sd / scale;
+      to.contribution = from.contribution;
+      to.inflation = from.inflation;
+      out.terms.push_back(std::move(to));
+    }
+    std::vector<PrintedTerm> printed;
+    for (std::size_t j = 0; j < out.terms.size(); ++j)
+      if (out.terms[j].kept) printed.push_back({j, out.terms[j].coefficient, out.terms[j].sd});
+    out.equation = equation_text(equation, printed);
+    for (std::size_t s = 0; s < found.supports.size() && s < static_cast<std::size_t>(what_.top); ++s) {
+      regression::Support const& support = found.supports[s];
+      DiscoveredSupport to{{}, support.probability, support.log_evidence};
+      for (int const j : support.terms)
+        if (!equation.terms[static_cast<std::size_t>(j)].in_target)
+          to.terms.push_back(equation.terms[static_cast<std::size_t>(j)].text);
+      out.supports.push_back(std::move(to));
+    }
+    return out;
+  }
+
+  void add_findings(regression::Discovery const& found, Findings& findings) const {
+    for (regression::FoundEquation const& equation : found.equations)
+      for (regression::Concern const& concern : equation.concerns) {
+        Finding finding = finding_of(concern, found.equations.size() > 1 ? equation.name : "");
+        if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));
+      }
+  }
+
+  // Written are structures that the program takes, one after the other: one may be no model that can be simulated.
+  void add_source(FoundSource const& source, std::vector<FoundStructure> const& structures, DiscoveryReport& discovery,
+                  Findings& findings) const {
+    std::vector<FoundStructure> written;
+    std::vector<std::string> left_out;
+    for (FoundStructure const& each : structures) {
+      written.push_back(each);
+      std::string text = source.text(written);
+      Source read((session_.result_folder(task_) / "found.sysid").string(), text);
+      Diagnostics diagnostics;
+      if (load(read, diagnostics)) {
+        discovery.source = std::move(text);
+        continue;
+      }
+      written.pop_back();
+      left_out.push_back(fmt::format("`{}` ({})", structure_text(dictionary_, each), diagnostics.all().front().message));
+    }
+    if (left_out.empty()) return;
+    std::string const help = "a model needs as many equations as states, each with a derivative in it";
+    if (written.empty())
+      findings.push_back(
+          {Severity::warning, "equation_no_model", "what was found is no model that can be simulated: " + left_out.front(), help});
+    else
+      findings.push_back({Severity::warning, "candidates_left_out",
+                          fmt::format("`found.sysid` holds {} of {} structures; no model that can be simulated: {}", written.size(),
+                                      structures.size(), fmt::join(left_out, ", ")),
+                          help});
+  }
+
+  Session& session_;
+  Task const& task_;
+  DiscoverTask const& what_;
+  CheckedDictionary const& dictionary_;
+  std::uint64_t seed_;
+  std::chrono::steady_clock::time_point began_;
+  std::vector<ExperimentData> data_;
+};
+
+}  // namespace
+
+ExitCode run_discover(Session& session, Task const& task, DiscoverTask const& what) { return Discover(session, task, what).run(); }
+
+}  // namespace sysid

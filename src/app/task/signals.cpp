@@ -1,0 +1,65 @@
+// Signals from core/elementary and counter-based streams, so that made data are the same bytes everywhere.
+#include "app/task/signals.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/numeric/elementary.hpp"
+#include "core/text/diagnostic.hpp"
+
+namespace sysid {
+namespace {
+
+std::vector<double> multisine(InputGenerator const& generator, int samples, double step, Stream& stream) {
+  double const resolution = 1 / (samples * step), lowest = generator.arguments.at("lowest"),
+               highest = generator.arguments.at("highest");
+  auto const refuse = [](std::string message) {
+    return UserError(
+        {Severity::error, "E6101", std::move(message), std::nullopt, {}, "change `lowest`, `highest`, `samples` or `rate`"});
+  };
+  if (highest >= 0.5 / step) throw refuse("the multisine reaches beyond half the sampling rate");
+  std::vector<double> values(static_cast<std::size_t>(samples), 0.0);
+  int harmonics = 0;
+  for (int k = 1; k * resolution <= highest; ++k) {
+    if (k * resolution < lowest) continue;
+    ++harmonics;
+    double const phase = 2 * std::numbers::pi * stream.uniform();
+    // The angle is reduced in whole turns first, so that long records lose nothing.
+    for (int i = 0; i < samples; ++i) {
+      double const turns = static_cast<double>((static_cast<long long>(k) * i) % samples) / samples;
+      values[static_cast<std::size_t>(i)] += elementary::sin(2 * std::numbers::pi * turns + phase);
+    }
+  }
+  if (harmonics == 0) throw refuse("no harmonic of the record lies in the band of the multisine");
+  double const amplitude = generator.arguments.at("sd") * std::sqrt(2.0 / harmonics);
+  for (double& value : values) value = generator.arguments.at("mean") + amplitude * value;
+  return values;
+}
+
+}  // namespace
+
+std::vector<double> generate(InputGenerator const& generator, int samples, double step, StreamKey key) {
+  Stream stream(key);
+  auto const argument = [&](char const* name) { return generator.arguments.at(name); };
+  if (generator.kind == InputGenerator::Kind::multisine) return multisine(generator, samples, step, stream);
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(samples));
+  for (int i = 0; i < samples; ++i) {
+    switch (generator.kind) {
+      case InputGenerator::Kind::gaussian:
+        values.push_back(argument("mean") + argument("sd") * stream.normal());
+        break;
+      case InputGenerator::Kind::sine:
+        values.push_back(argument("mean") +
+                         argument("amplitude") *
+                             elementary::sin(2 * std::numbers::pi * argument("frequency") * i * step + argument("phase")));
+        break;
+      default:
+        values.push_back(argument("value"));
+        break;
+    }
+  }
+  return values;
+}
+
+}  // namespace sysid

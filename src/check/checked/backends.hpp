@@ -1,0 +1,24 @@
+// The back ends that tasks may name, as the checker sees them.
+#pragma once
+#include <span>
+#include <string_view>
+
+#include "core/setting/settings.hpp"
+
+namespace sysid {
+
+/// A back end as tasks may name it: the checker knows its settings, nothing else.
+struct BackendSettings {
+  std::string_view name;
+  std::span<SettingRow const> settings;
+};
+
+/// Those that a file's tasks may name.
+struct Backends {
+  std::span<BackendSettings const> fitting;
+  std::span<BackendSettings const> selecting;
+  std::span<BackendSettings const> discovering;  // selectors of terms, the first is the default
+  std::span<BackendSettings const> derivatives;  // forms of derivatives for discovery, likewise
+};
+
+}  // namespace sysid

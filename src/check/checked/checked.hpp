@@ -1,0 +1,236 @@
+// A checked file: what every later stage works from. Models are typed and first order; data blocks and tasks refer to them by
+// index.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/setting/settings.hpp"
+#include "core/setting/solver.hpp"
+#include "data/experiment.hpp"
+#include "data/start_rule.hpp"
+#include "model/past.hpp"
+#include "regression/column/dictionary.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// A column of a data block: its name in the file and the unit its numbers have.
+struct ColumnUse {
+  std::string column;
+  std::optional<Unit> unit;
+  Span span;
+};
+
+struct DataInputUse : ColumnUse {
+  std::string input;
+  std::optional<InputRule> rule;  // absent: not stated, which only models in continuous time refuse
+  Span input_span;
+  Span rule_span;  // of the whole statement where there is none
+};
+
+struct DataMeasureUse : ColumnUse {
+  std::string channel;
+  Span channel_span;
+};
+
+/// Rows first..last of the file, counted from 1, both included.
+struct DataPart {
+  std::string name;
+  int first = 1;
+  int last = 0;  // 0: the last row of the file
+  Span span;
+};
+
+/// `constant dose = 30 [mg]`: what a parameter is in this experiment.
+struct DataConstantUse {
+  std::string parameter;
+  double value = 0;          // SI above the zero of its unit; of a bare number as written: then in the unit of the parameter
+  std::optional<Unit> unit;  // absent: a bare number
+  Span span, value_span;
+};
+
+struct DataBlock {
+  std::string name;
+  Span span;
+  std::string path;  // as written, relative to the .sysid file
+  Span path_span;
+  std::optional<ColumnUse> time;
+  double step = 0;  // [s], when there is no time column; 0: the block does not say when its rows were taken
+  std::vector<DataInputUse> inputs;
+  std::vector<DataMeasureUse> measured;
+  std::vector<DataConstantUse> constants;
+  std::vector<DataPart> parts;
+};
+
+/// A data reference of a task: one experiment of its model.
+struct ExperimentUse {
+  int data = 0;
+  int part = -1;     // -1: all rows
+  std::string name;  // its index in tables: the block's name, with the part where the block is used twice
+  std::vector<std::optional<double>> constants;  // per model parameter, SI: what the data block fixes
+};
+
+/// A generated input record.
+struct InputGenerator {
+  enum class Kind { gaussian, sine, multisine, constant };
+  Kind kind = Kind::gaussian;
+  std::map<std::string, double> arguments;  // coherent SI
+  InputRule rule = InputRule::zero_order;
+};
+
+struct SimulateTask {
+  int model = 0;
+  std::vector<std::optional<double>> values;  // per model parameter, SI; absent: not given
+  std::vector<InputGenerator> inputs;         // per model input
+  double noise_fraction = -1;                 // of the standard deviation of each clean channel; negative: the model's own noise
+  int samples = 0;
+  double step = 0;  // [s]
+  SolverSettings solver;
+  std::optional<std::uint64_t> seed;
+  std::string file;  // name of the CSV in the result folder
+};
+
+struct FitTask {
+  int model = 0;
+  std::vector<ExperimentUse> experiments;
+  std::string backend;
+  Settings settings;  // of the back end
+  StartRule start;
+  PredictionRule prediction = PredictionRule::as_written;
+  SolverSettings solver;
+  bool settle = true;       // the tolerance guard chooses how fine the solver is, from `solver` on
+  std::optional<int> near;  // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
+  std::optional<std::uint64_t> seed;
+};
+
+/// One model of a set, expanded: "bouc_wen(n = 2)".
+struct CandidateModel {
+  int model = 0;  // index into CheckedFile::models
+  double probability = 0;
+  Span span;
+  std::string name;
+};
+
+/// Models that explain the same data; their probabilities sum to 1. A task that names a model where a set may stand has a set of
+/// that model alone, under its name.
+struct CandidateSet {
+  std::string name, title;
+  Span span;
+  std::vector<CandidateModel> models;
+  std::vector<std::string> shared;  // parameters that mean the same in every model that has them
+};
+
+/// How far a simulation without noise lies from the data: of each channel one number, their mean by weights.
+struct DistanceRule {
+  enum class Kind {
+    nmse,        // 100 x mean square of the residuals / variance of what was measured
+    rmse,        // root of their mean square
+    expression,  // the mean of an expression of the sample and its simulation, not negative
+  };
+  Kind kind = Kind::nmse;
+  std::vector<std::string> channels;             // that the data measure, in the order of the first candidate's declarations
+  std::vector<double> weights;                   // per channel, not negative, not all 0
+  double unit = 1;                               // rmse: its unit in SI, that of the first candidate's first channel with a weight
+  std::vector<std::vector<NodeId>> expressions;  // [candidate][channel] in the graph of the candidate's model, SI; else empty
+  std::string text;                              // as written
+  std::vector<std::string> weighted;             // channels whose weight is stated
+};
+
+/// The selection of a model among candidates.
+struct SelectTask {
+  int candidates = 0;         // index into CheckedFile::candidates
+  std::vector<FitTask> fits;  // per candidate: what it is fitted to and how it is simulated, without a back end
+  std::string backend;
+  Settings settings;
+  DistanceRule distance;
+  std::optional<std::uint64_t> seed;
+};
+
+/// With the draws of a fit, or of a selection: then those of each candidate count as much as it is probable.
+struct PredictTask {
+  int fit = 0;  // index into CheckedFile::tasks
+  std::vector<ExperimentUse> experiments;
+  std::vector<int> fitted;  // per experiment the one of the fit whose parameters it has; -1: a new one
+  std::vector<std::vector<ExperimentUse>>
+      candidate_experiments;  // of a selection, per candidate; `experiments` are the first one's
+  int draws = 200;
+  bool redraw_each_step = false;  // the tutorial's Fig. 8.4; the default is one draw per trajectory
+  StartRule start;
+  PredictionRule prediction = PredictionRule::as_written;
+  std::optional<std::uint64_t> seed;
+};
+
+/// A term of one equation of a dictionary, as the numbers beside it know it by its index.
+struct DictionaryTerm {
+  std::string text;          // "abs(y')*y'"; of a free coefficient of the target what it stands before there
+  ast::Expression tree;      // the same; of a free coefficient of the target: the parameter
+  std::string coefficient;   // the parameter before it; empty: none was named
+  bool in_target = false;    // it stands there, with its coefficient
+  std::optional<Unit> unit;  // of the coefficient; absent: unchecked
+  Span span;
+};
+
+struct DictionaryEquation {
+  std::string text;      // "m*y'' - x"
+  ast::Expression tree;  // the target as written
+  std::optional<Unit> unit;
+  std::vector<DictionaryTerm> terms;  // parallel to regression::Equation::terms
+};
+
+/// A term that the dictionary could hold and does not.
+struct LeftOutTerm {
+  enum class Why { same, zero, excluded, unit };
+  Why why = Why::same;
+  std::string text;
+  std::string detail;  // same: the term it is the same as; unit: the unit that its coefficient would have
+  int equation = -1;   // -1: every one
+};
+
+struct CheckedDictionary {
+  std::string name, title;
+  Span span;
+  ast::Dictionary tree;
+  std::vector<ast::FunctionDefinition> functions;  // of the file, that its expressions may call
+  regression::Dictionary numbers;
+  std::vector<DictionaryEquation> equations;
+  std::vector<LeftOutTerm> left_out;
+  std::vector<Quantity> states;
+  std::vector<Span> channel_spans;  // where each channel is bound
+  /// What data blocks are bound to: inputs and channels, no states and no noise.
+  Model measured;
+};
+
+/// Equations from records.
+struct DiscoverTask {
+  int dictionary = 0;  // index into CheckedFile::dictionaries
+  std::vector<ExperimentUse> experiments;
+  std::string form;  // of derivatives
+  Settings form_settings;
+  std::string selector;
+  Settings selector_settings;
+  std::vector<std::optional<double>> noise;  // sd per channel of the dictionary, SI; absent: estimated from the record
+  int top = 5;                               // supports that are shown, and written as candidates
+  bool candidates = false;                   // whether they are
+  bool refit = true;                         // by simulation: ranked by the evidence of the motion, scored on rows kept aside
+  std::optional<std::uint64_t> seed;
+};
+
+struct Task {
+  std::string name;
+  Span span;
+  std::variant<SimulateTask, FitTask, SelectTask, DiscoverTask, PredictTask> what;
+};
+
+struct CheckedFile {
+  ast::File tree;  // flat, for texts of models in reports
+  std::vector<Model> models;
+  std::vector<DataBlock> data;
+  std::vector<CandidateSet> candidates;
+  std::vector<CheckedDictionary> dictionaries;
+  std::vector<Task> tasks;
+};
+
+}  // namespace sysid

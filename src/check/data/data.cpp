@@ -1,0 +1,289 @@
+// Data blocks: statements in any order, each at most once where once is meant.
+#include "check/data/data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "check/expression/scope.hpp"
+#include "check/message/errors.hpp"
+#include "check/units/units.hpp"
+#include "data/errors.hpp"
+
+namespace sysid {
+namespace {
+
+std::optional<InputRule> input_rule(std::string const& name) {
+  static std::map<std::string, InputRule> const rules = {{"zero_order", InputRule::zero_order},
+                                                         {"linear", InputRule::linear},
+                                                         {"cubic", InputRule::cubic},
+                                                         {"band_limited", InputRule::band_limited}};
+  auto const place = rules.find(name);
+  return place == rules.end() ? std::nullopt : std::optional(place->second);
+}
+
+class DataChecker {
+ public:
+  DataChecker(ast::Data const& tree, Diagnostics& diagnostics)
+      : tree_(tree), diagnostics_(diagnostics), before_(diagnostics.all().size()), scope_(graph_, diagnostics, {}) {}
+
+  std::optional<DataBlock> run() {
+    block_.name = tree_.name.text;
+    block_.span = tree_.name.span;
+    for (ast::DataStatement const& statement : tree_.statements) std::visit([&](auto const& each) { take(each); }, statement);
+    if (!file_) diagnostics_.add(errors::no_file(tree_.name));
+    if (diagnostics_.has_errors(before_)) return std::nullopt;
+    return block_;
+  }
+
+ private:
+  ColumnUse column(ast::Column const& tree) { return {tree.name, check_unit(tree.unit, diagnostics_), tree.span}; }
+
+  bool fresh(std::map<std::string, Span>& seen, ast::Name const& name, std::string const& what) {
+    auto const [place, is_fresh] = seen.emplace(name.text, name.span);
+    if (!is_fresh) diagnostics_.add(errors::stated_twice(name.span, place->second, what + " `" + name.text + "`"));
+    return is_fresh;
+  }
+
+  std::optional<double> number(ast::Expression const& tree, Unit const& unit, std::string const& what) {
+    auto const value = scope_.expression(tree);
+    if (!value) return std::nullopt;
+    if (value->kind == Typed::Kind::known)
+      if (auto refused = refuse_number(tree.span, what, value->unit, unit)) {
+        diagnostics_.add(std::move(*refused));
+        return std::nullopt;
+      }
+    auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
+    if (!constant) diagnostics_.add(errors::constant_needed(tree.span, what));
+    return constant;
+  }
+
+  void take(ast::DataFile const& tree) {
+    if (file_) diagnostics_.add(errors::stated_twice(tree.span, *file_, "the file"));
+    file_ = tree.span;
+    block_.path = tree.path.value;
+    block_.path_span = tree.path.span;
+  }
+  void take(ast::DataTime const& tree) {
+    if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
+    times_ = tree.span;
+    block_.time = column(tree.column);
+    check_time_unit(block_.time->unit, tree.column.span, diagnostics_);
+  }
+  void take(ast::DataRate const& tree) {
+    if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
+    times_ = tree.span;
+    Unit const unit = unit_atom(tree.step ? "s" : "Hz").value();
+    auto const value = number(tree.value, unit, tree.step ? "the sampling step" : "the sampling rate");
+    if (!value) return;
+    if (!(*value > 0) || !std::isfinite(*value)) {
+      diagnostics_.add(errors::rate_not_positive(tree.value.span));
+      return;
+    }
+    block_.step = tree.step ? *value : 1 / *value;
+  }
+  void take(ast::DataInput const& tree) {
+    if (!fresh(inputs_, tree.input, "input")) return;
+    DataInputUse use{column(tree.column), tree.input.text, {}, tree.input.span, {}};
+    if (!tree.rule) {
+      use.rule_span = tree.span;
+    } else if (auto const rule = input_rule(tree.rule->text)) {
+      use.rule = *rule;
+      use.rule_span = tree.rule->span;
+    } else {
+      diagnostics_.add(errors::unknown_rule(*tree.rule));
+    }
+    block_.inputs.push_back(std::move(use));
+  }
+  void take(ast::DataMeasure const& tree) {
+    if (fresh(channels_, tree.channel, "channel"))
+      block_.measured.push_back({column(tree.column), tree.channel.text, tree.channel.span});
+  }
+  void take(ast::DataConstant const& tree) {
+    if (!fresh(constants_, tree.parameter, "constant")) return;
+    auto const value = scope_.expression(tree.value);
+    if (!value) return;
+    auto const constant = graph_.constant_value(value->node);
+    if (!constant) {
+      diagnostics_.add(errors::constant_needed(tree.value.span, "a constant of an experiment"));
+      return;
+    }
+    block_.constants.push_back({tree.parameter.text, *constant,
+                                value->kind == Typed::Kind::known ? std::optional(value->unit) : std::nullopt, tree.parameter.span,
+                                tree.value.span});
+  }
+  void take(ast::DataSplit const& tree) {
+    for (ast::SplitPart const& part : tree.parts) {
+      if (!fresh(parts_, part.name, "part")) continue;
+      auto const first = number(part.first, Unit{}, "a row"), last = number(part.last, Unit{}, "a row");
+      if (!first || !last) continue;
+      if (*first != std::floor(*first) || *last != std::floor(*last) || *first < 1 || *last < *first || *last > 2e9) {
+        diagnostics_.add(errors::bad_rows(cover(part.first.span, part.last.span)));
+        continue;
+      }
+      block_.parts.push_back({part.name.text, static_cast<int>(*first), static_cast<int>(*last), part.span});
+    }
+  }
+
+  ast::Data const& tree_;
+  Diagnostics& diagnostics_;
+  std::size_t before_;
+  Graph graph_;
+  Scope scope_;
+  DataBlock block_;
+  std::optional<Span> file_, times_;
+  std::map<std::string, Span> inputs_, channels_, constants_, parts_;
+};
+
+}  // namespace
+
+std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnostics) {
+  return DataChecker(tree, diagnostics).run();
+}
+
+void check_between_samples(DataBlock const& block, Model const* model, Diagnostics& diagnostics) {
+  if (model != nullptr && model->dynamics == Dynamics::none) return;
+  bool const has_step = model != nullptr && model->step;
+  if (!block.time && !(block.step > 0) && !has_step) diagnostics.add(errors::no_time({{block.span}, block.name}));
+  if (model != nullptr && model->dynamics == Dynamics::discrete) return;
+  for (DataInputUse const& use : block.inputs) {
+    bool const wanted = model == nullptr || std::any_of(model->inputs.begin(), model->inputs.end(),
+                                                        [&](Quantity const& input) { return input.name == use.input; });
+    if (!use.rule && wanted) diagnostics.add(errors::rule_missing(use.rule_span, use.input));
+  }
+}
+
+namespace {
+
+void add_declared(ast::Dictionary const& dictionary, DeclaredNames& names) {
+  for (ast::DictionaryStatement const& statement : dictionary.statements) {
+    if (auto const* input = std::get_if<ast::InputDeclaration>(&statement))
+      for (ast::Declared const& each : input->names) names.inputs.insert(each.name.text);
+    if (auto const* states = std::get_if<ast::DictionaryStates>(&statement))
+      for (ast::DictionaryState const& each : states->states)
+        if (each.channel) names.channels.insert(each.channel->text);
+  }
+}
+
+}  // namespace
+
+DeclaredNames declared_names(ast::File const& file) {
+  DeclaredNames names;
+  for (ast::Item const& item : file.items) {
+    if (auto const* dictionary = std::get_if<ast::Dictionary>(&item)) add_declared(*dictionary, names);
+    auto const* model = std::get_if<ast::Model>(&item);
+    if (model == nullptr) continue;
+    for (ast::ModelStatement const& statement : model->statements) {
+      if (auto const* input = std::get_if<ast::InputDeclaration>(&statement))
+        for (ast::Declared const& each : input->names) names.inputs.insert(each.name.text);
+      if (auto const* observation = std::get_if<ast::Observation>(&statement))
+        names.channels.insert(observation->channel.name.text);
+      if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
+        names.parameters.insert(parameter->name.name.text);
+    }
+  }
+  return names;
+}
+
+void check_binding(DataBlock const& block, Model const& model, std::string const& noun, DeclaredNames const& declared, Span use,
+                   Diagnostics& diagnostics) {
+  std::string const owner = fmt::format("{} `{}`", noun, model.name);
+  auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
+    if (!column.unit || !declared.unit) return;
+    std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
+    if (column.unit->dimension != declared.unit->dimension || zero_against_difference(*column.unit, *declared.unit))
+      diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text, wanted));
+    else if (cycles_against_radians(*column.unit, *declared.unit))
+      diagnostics.add(data_errors::cycles_against_radians(column.column, column.unit->text, wanted, column.span));
+  };
+  check_between_samples(block, &model, diagnostics);
+  std::vector<std::string> inputs;
+  for (Quantity const& input : model.inputs) inputs.push_back(input.name);
+  bool misnamed = false;
+  for (DataInputUse const& bound : block.inputs) {
+    if (!declared.all || declared.inputs.contains(bound.input)) continue;
+    misnamed = true;
+    diagnostics.add_once(errors::unknown_input(bound.input_span, bound.input, owner, inputs));
+  }
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    Quantity const& input = model.inputs[i];
+    auto const bound =
+        std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
+    if (bound == block.inputs.end()) {
+      if (!misnamed) diagnostics.add(errors::input_not_bound(use, input.name, owner, block.name));
+      continue;
+    }
+    compare_units(*bound, input, "column `" + bound->column + "`");
+    if (bound->rule != InputRule::zero_order) continue;
+    for (NodeId id = 0; id < model.graph.size(); ++id) {
+      Node const& node = model.graph[id];
+      if (node.operation == Operation::leaf && node.leaf_kind == LeafKind::input_rate && node.index == static_cast<int>(i)) {
+        diagnostics.add(errors::rate_under_zero_order(bound->rule_span, model.graph.span(id).value_or(input.span), input.name));
+        break;
+      }
+    }
+  }
+  std::vector<std::string> channels;
+  for (Channel const& channel : model.channels) channels.push_back(channel.name);
+  bool any = false;
+  for (DataMeasureUse const& measured : block.measured) {
+    auto const channel =
+        std::find_if(model.channels.begin(), model.channels.end(), [&](auto const& each) { return each.name == measured.channel; });
+    // A block may serve several models.
+    if (channel == model.channels.end() && (!declared.all || declared.channels.contains(measured.channel))) continue;
+    any = true;
+    if (channel != model.channels.end())
+      compare_units(measured, *channel, "column `" + measured.column + "`");
+    else
+      diagnostics.add_once(errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
+  }
+  if (any) return;
+  if (block.measured.empty()) {
+    diagnostics.add(errors::no_channel_bound(use, owner, block.name, channels));
+  } else {
+    for (DataMeasureUse const& measured : block.measured)
+      diagnostics.add(errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
+  }
+}
+
+std::vector<std::optional<double>> check_constants(DataBlock const& block, Model const& model, DeclaredNames const& declared,
+                                                   Span use, Diagnostics& diagnostics) {
+  std::vector<std::optional<double>> values(model.parameters.size());
+  bool good = true;
+  for (DataConstantUse const& constant : block.constants) {
+    auto const place = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                    [&](Parameter const& each) { return each.name == constant.parameter; });
+    if (place == model.parameters.end()) {
+      // A block may serve several models.
+      if (!declared.all || declared.parameters.contains(constant.parameter)) continue;
+      std::vector<std::string> known;
+      for (Parameter const& parameter : model.parameters)
+        if (parameter.per_experiment) known.push_back(parameter.name);
+      diagnostics.add_once(errors::constant_of_nothing(constant.span, constant.parameter, model.name, known));
+      good = false;
+    } else if (!place->per_experiment) {
+      diagnostics.add_once(errors::constant_of_shared(constant.span, place->span, place->name));
+      good = false;
+    } else if (auto refused =
+                   constant.unit && place->unit
+                       ? refuse_number(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit)
+                       : std::nullopt) {
+      diagnostics.add_once(std::move(*refused));
+      good = false;
+    } else {
+      double const shift = constant.unit && place->unit ? constant.unit->offset - place->unit->offset : 0;
+      values[static_cast<std::size_t>(place - model.parameters.begin())] =
+          constant.unit ? constant.value + shift : place->to_si(constant.value);
+    }
+  }
+  for (std::size_t p = 0; p < values.size() && good; ++p) {
+    Parameter const& parameter = model.parameters[p];
+    if (parameter.per_experiment && !parameter.prior && !parameter.value && !values[p])
+      diagnostics.add(errors::constant_missing(use, parameter.span, parameter.name, block.name));
+  }
+  return values;
+}
+
+}  // namespace sysid

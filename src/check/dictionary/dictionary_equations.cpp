@@ -1,0 +1,125 @@
+// An equation of each target: what it brings itself, then the terms whose coefficients have a unit that is allowed.
+#include <algorithm>
+
+#include "check/dictionary/dictionary_checker.hpp"
+#include "check/message/errors.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+bool same_dimension(std::optional<Unit> const& a, Unit const& b) { return a && a->dimension == b.dimension; }
+
+errors::Names names_of(std::vector<std::pair<std::string, NodeId>> const& coefficients) {
+  errors::Names names;
+  for (auto const& [name, leaf] : coefficients) names.push_back(name);
+  return names;
+}
+
+ast::Expression tree_of(std::string const& name, Span span) { return {{span}, ast::Reference{{span}, {{span}, name}, {}, 0}}; }
+
+}  // namespace
+
+void DictionaryChecker::equations() {
+  for (std::size_t e = 0; e < targets_.size(); ++e) equation(static_cast<int>(e));
+}
+
+void DictionaryChecker::equation(int index) {
+  Target const& target = targets_[static_cast<std::size_t>(index)];
+  Graph& graph = out_.numbers.graph;
+  DictionaryEquation equation;
+  equation.text = unparse(*target.tree);
+  equation.tree = *target.tree;
+  if (target.value.kind == Typed::Kind::known) {
+    equation.unit = target.value.unit;
+    equation.unit->text = scope_.units().words(*equation.unit);
+  }
+  NodeId const root = with_values(target.value.node);
+  std::vector<std::pair<std::string, NodeId>> coefficients;
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    NodeId const leaf = graph.leaf(LeafKind::parameter, static_cast<int>(p));
+    if (!graph.depends(root, [&](Node const& node) { return is_parameter(node) && node.index == static_cast<int>(p); })) continue;
+    std::string const& name = parameters_[p].tree->name.name.text;
+    coefficients.emplace_back(name, leaf);
+    if (std::exchange(parameters_[p].used, true)) {
+      diagnostics_.add(errors::coefficient_of_two_targets(target.tree->span, name));
+      return;
+    }
+  }
+  auto const split = regression::split_target(graph, root, coefficients);
+  if (!split) {
+    diagnostics_.add(errors::target_not_linear(target.tree->span, equation.text, names_of(coefficients)));
+    return;
+  }
+  regression::Equation numbers{equation.text, split->known, {}};
+  for (regression::Term const& free : split->free) {
+    ParameterInfo const& parameter = parameter_of(free.name);
+    numbers.terms.push_back(free);
+    equation.terms.push_back({free.name, tree_of(free.name, parameter.tree->name.name.span), free.name, true, parameter.unit,
+                              parameter.tree->name.name.span});
+  }
+  std::vector<Candidate const*> kept(split->free.size());
+  for (Candidate const& term : terms_) add(index, term, *split, equation, numbers, kept);
+  if (equation.terms.size() == split->free.size() && !failed())
+    diagnostics_.add(errors::nothing_left_of_terms(target.tree->span, equation.text));
+  out_.equations.push_back(std::move(equation));
+  out_.numbers.equations.push_back(std::move(numbers));
+}
+
+DictionaryChecker::ParameterInfo& DictionaryChecker::parameter_of(std::string const& name) {
+  return *std::find_if(parameters_.begin(), parameters_.end(),
+                       [&](ParameterInfo const& each) { return each.tree->name.name.text == name; });
+}
+
+void DictionaryChecker::add(int index, Candidate const& term, regression::SplitTarget const& split, DictionaryEquation& equation,
+                            regression::Equation& numbers, std::vector<Candidate const*>& kept) {
+  for (regression::Term const& free : split.free)
+    if (factors_of(out_.numbers.graph, free.expression).proportional(term.factors)) {
+      out_.left_out.push_back({LeftOutTerm::Why::same, term.written.text, "what `" + free.name + "` stands before", index});
+      return;
+    }
+  std::optional<Unit> coefficient;
+  if (equation.unit && term.unit) {
+    coefficient = divide(*equation.unit, *term.unit);
+    coefficient->scale = 1;  // as its words say
+    coefficient->text = scope_.units().words(*coefficient);
+  }
+  if (!term.written.coefficient.empty()) {
+    ParameterInfo& named = parameter_of(term.written.coefficient);
+    if (coefficient && named.unit && coefficient->dimension != named.unit->dimension) {
+      leave_out(index, term, *coefficient);
+      return;
+    }
+    named.used = true;
+    if (named.unit) coefficient = named.unit;
+  }
+  if (!allowed_.empty() && coefficient) {
+    bool any = false;
+    for (AllowedUnit& allowed : allowed_)
+      if (same_dimension(coefficient, allowed.unit)) any = allowed.matched = true;
+    if (!any) {
+      leave_out(index, term, *coefficient);
+      return;
+    }
+  }
+  for (std::size_t j = split.free.size(); j < kept.size(); ++j) {
+    if (!kept[j]->factors.proportional(term.factors)) continue;
+    out_.left_out.push_back({LeftOutTerm::Why::same, term.written.text, kept[j]->written.text, index});
+    if (!equation.terms[j].coefficient.empty()) return;
+    equation.terms[j].coefficient = term.written.coefficient;  // a name that is given later stays with the term
+    equation.terms[j].unit = coefficient;
+    return;
+  }
+  kept.push_back(&term);
+  equation.terms.push_back(
+      {term.written.text, term.written.tree, term.written.coefficient, false, coefficient, term.written.tree.span});
+  numbers.terms.push_back({term.written.text, term.node, false});
+}
+
+void DictionaryChecker::leave_out(int index, Candidate const& term, Unit const& unit) {
+  std::string const text = scope_.units().words(unit);
+  out_.left_out.push_back({LeftOutTerm::Why::unit, term.written.text, text, index});
+  possible_.insert(text);
+}
+
+}  // namespace sysid

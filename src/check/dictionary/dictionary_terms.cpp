@@ -1,0 +1,105 @@
+// Passes over lists: targets read, terms written out and made nodes, equal ones merged, exclusions applied.
+#include <algorithm>
+
+#include "check/dictionary/dictionary_checker.hpp"
+#include "check/message/errors.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::size_t most_terms = 1000;
+
+}  // namespace
+
+void DictionaryChecker::targets() {
+  each_item(ast::DictionaryListKind::target, [&](ast::Expression const& tree) {
+    auto const value = scope_.expression(tree);
+    if (!value) return;
+    for (Target const& before : targets_)
+      if (before.value.node == value->node) {
+        diagnostics_.add(errors::target_twice(tree.span, before.tree->span, unparse(tree)));
+        return;
+      }
+    targets_.push_back({&tree, settled(*value)});
+  });
+  if (targets_.empty() && !failed()) diagnostics_.add(errors::no_target(tree_.name));
+}
+
+void DictionaryChecker::terms() {
+  bool any = false;
+  each_item(ast::DictionaryListKind::terms, [&](ast::Expression const& item) {
+    any = true;
+    for (WrittenTerm& written : writer_.write(item, free_)) {
+      auto made = candidate(std::move(written));
+      if (!made) return;  // the next of the same family has the same mistake
+      if (made->factors.constant == 0) {
+        out_.left_out.push_back({LeftOutTerm::Why::zero, made->written.text, {}});
+        continue;
+      }
+      // One with a name before it and one without are told apart: the name asks for a unit.
+      auto const same = std::find_if(terms_.begin(), terms_.end(), [&](Candidate const& each) {
+        return each.factors.proportional(made->factors) && each.written.coefficient == made->written.coefficient;
+      });
+      if (same != terms_.end()) {
+        out_.left_out.push_back({LeftOutTerm::Why::same, made->written.text, same->written.text});
+      } else {
+        terms_.push_back(std::move(*made));
+      }
+      if (terms_.size() > most_terms) {
+        diagnostics_.add(errors::too_many_terms(item.span, most_terms));
+        return;
+      }
+    }
+  });
+  if (!any) diagnostics_.add(errors::no_terms(tree_.name));
+}
+
+void DictionaryChecker::exclude() {
+  each_item(ast::DictionaryListKind::exclude, [&](ast::Expression const& item) {
+    bool any = false;
+    for (WrittenTerm& written : writer_.write(item, {})) {
+      auto const made = candidate(std::move(written));
+      if (!made) return;
+      auto const same = std::find_if(terms_.begin(), terms_.end(),
+                                     [&](Candidate const& each) { return each.factors.proportional(made->factors); });
+      if (same == terms_.end()) continue;
+      any = true;
+      out_.left_out.push_back({LeftOutTerm::Why::excluded, same->written.text, {}});
+      terms_.erase(same);
+    }
+    if (any || failed()) return;
+    errors::Names known;
+    for (Candidate const& each : terms_) known.push_back(each.written.text);
+    diagnostics_.add(errors::excludes_nothing(item.span, unparse(item), known));
+  });
+}
+
+std::optional<DictionaryChecker::Candidate> DictionaryChecker::candidate(WrittenTerm written) {
+  std::size_t const before = diagnostics_.all().size();
+  auto value = scope_.expression(written.tree);
+  if (!value || diagnostics_.has_errors(before)) return std::nullopt;
+  *value = settled(*value);
+  Candidate made;
+  made.node = with_values(value->node);
+  if (out_.numbers.graph.depends(made.node, [](Node const& node) { return is_parameter(node); })) {
+    diagnostics_.add(errors::coefficient_inside(written.tree.span, unparse(written.tree)));
+    return std::nullopt;
+  }
+  if (value->kind == Typed::Kind::known) made.unit = value->unit;
+  if (value->kind == Typed::Kind::literal) made.unit = Unit{};
+  made.factors = factors_of(out_.numbers.graph, made.node);
+  made.written = std::move(written);
+  return made;
+}
+
+NodeId DictionaryChecker::with_values(NodeId root) {
+  return out_.numbers.graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
+    Node const node = out_.numbers.graph[leaf];
+    if (node.leaf_kind != LeafKind::parameter) return std::nullopt;
+    auto const& value = parameters_[static_cast<std::size_t>(node.index)].value;
+    return value ? std::optional(out_.numbers.graph.constant(*value)) : std::nullopt;
+  });
+}
+
+}  // namespace sysid

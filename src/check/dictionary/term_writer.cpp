@@ -1,0 +1,137 @@
+// Generators by their table, products over them, factors taken off from the tree.
+#include "check/dictionary/term_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/elaborate/tree.hpp"
+#include "check/expression/option_reader.hpp"
+#include "check/message/errors.hpp"
+#include "function/table.hpp"
+#include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
+
+namespace sysid {
+namespace {
+
+bool is_reference(ast::Expression const& tree, std::string const& name) {
+  auto const* reference = std::get_if<ast::Reference>(&tree.node);
+  return reference != nullptr && reference->name.text == name && reference->primes == 0;
+}
+
+/// The product without the factor `name`; nothing where it is none. `k` alone leaves 1.
+std::optional<ast::Expression> without_factor(ast::Expression const& tree, std::string const& name) {
+  if (is_reference(tree, name)) return tree::number(1, tree.span);
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node); unary != nullptr && (*unary)->symbol == "-") {
+    auto inside = without_factor(*(*unary)->operand, name);
+    if (!inside) return std::nullopt;
+    return tree::unary("-", std::move(*inside), tree.span);
+  }
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return std::nullopt;
+  ast::Expression const &left = *(*binary)->left, &right = *(*binary)->right;
+  bool const product = (*binary)->symbol == "*";
+  if (product && is_reference(left, name)) return right;
+  if (product && is_reference(right, name)) return left;
+  if (auto inside = without_factor(left, name)) return tree::binary((*binary)->symbol, std::move(*inside), right, tree.span);
+  if (!product) return std::nullopt;
+  auto inside = without_factor(right, name);
+  if (!inside) return std::nullopt;
+  return tree::binary("*", left, std::move(*inside), tree.span);
+}
+
+}  // namespace
+
+std::vector<WrittenTerm> TermWriter::write(ast::Expression const& item, std::set<std::string> const& free) {
+  std::vector<WrittenTerm> written;
+  std::size_t const before = diagnostics_.all().size();
+  for (ast::Expression& tree : expanded(item)) {
+    auto term = without_coefficient(std::move(tree), free);
+    if (!term) return {};
+    written.push_back(std::move(*term));
+  }
+  if (diagnostics_.has_errors(before)) return {};
+  return written;
+}
+
+std::vector<ast::Expression> TermWriter::expanded(ast::Expression const& item) {
+  if (ast::Call const* call = as_call(item); call != nullptr && scope_.find_function_definition(call->function.text) == nullptr) {
+    if (GeneratorRow const* row = find_generator(call->function.text)) return family(*call, *row, item.span);
+    if (find_function(call->function.text) == nullptr) {
+      diagnostics_.add(errors::unknown_generator(call->function, generator_names()));
+      return {};
+    }
+  }
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&item.node);
+  if (binary == nullptr || (*binary)->symbol != "*") return {item};
+  auto const left = expanded(*(*binary)->left), right = expanded(*(*binary)->right);
+  std::vector<ast::Expression> products;
+  for (ast::Expression const& a : left)
+    for (ast::Expression const& b : right) products.push_back(tree::binary("*", a, b, item.span));
+  return products;
+}
+
+std::vector<ast::Expression> TermWriter::family(ast::Call const& call, GeneratorRow const& row, Span place) {
+  GeneratorOption const& option = row.option;
+  std::vector<ast::Expression> arguments;
+  int number = 0;
+  ast::Expression const* expression = nullptr;
+  bool given = false, good = true;
+  for (ast::Argument const& argument : call.arguments) {
+    if (!argument.name) {
+      good = scope_.expression(argument.value) && good;  // said once, not of every term
+      arguments.push_back(argument.value);
+      continue;
+    }
+    if (argument.name->text != option.name || option.kind == GeneratorOption::Kind::none) {
+      diagnostics_.add(errors::unknown_argument(*argument.name, call.function.text,
+                                                option.name.empty() ? errors::Names() : errors::Names{std::string(option.name)}));
+      return {};
+    }
+    given = true;
+    if (option.kind == GeneratorOption::Kind::expression) {
+      good = scope_.expression(argument.value) && good;
+      expression = &argument.value;
+      continue;
+    }
+    auto const value = scope_.expression(argument.value);
+    auto const constant = value ? scope_.graph().constant_value(value->node) : std::nullopt;
+    if (!value) return {};
+    if (!constant || *constant != std::floor(*constant) || *constant < 1 || *constant > option.most) {
+      diagnostics_.add(
+          errors::generator_number(argument.value.span, std::string(option.name), option.most, std::string(option.example)));
+      return {};
+    }
+    number = static_cast<int>(*constant);
+  }
+  if (!good) return {};
+  if (arguments.empty() || (option.needed && !given)) {
+    diagnostics_.add(errors::generator_arguments(call.function, arguments.empty() ? "what it is made of" : std::string(option.name),
+                                                 std::string(option.example)));
+    return {};
+  }
+  return row.make(arguments, number, expression, place);
+}
+
+std::optional<WrittenTerm> TermWriter::without_coefficient(ast::Expression tree, std::set<std::string> const& free) {
+  std::vector<std::string> found;
+  each_reference(tree, [&](ast::Reference const& reference) {
+    if (free.contains(reference.name.text)) found.push_back(reference.name.text);
+  });
+  WrittenTerm term;
+  if (found.empty()) {
+    term.tree = std::move(tree);
+  } else {
+    auto rest = found.size() == 1 ? without_factor(tree, found.front()) : std::nullopt;
+    if (!rest) {
+      diagnostics_.add(errors::coefficient_inside(tree.span, unparse(tree)));
+      return std::nullopt;
+    }
+    term.tree = std::move(*rest);
+    term.coefficient = found.front();
+  }
+  term.text = unparse(term.tree);
+  return term;
+}
+
+}  // namespace sysid

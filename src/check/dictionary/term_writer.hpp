@@ -1,0 +1,38 @@
+// What the lists of a dictionary stand for, still as text: families written out, the coefficient before a term taken off.
+#pragma once
+#include <set>
+#include <string>
+#include <vector>
+
+#include "check/dictionary/generators.hpp"
+#include "check/expression/scope.hpp"
+#include "core/text/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+struct WrittenTerm {
+  ast::Expression tree;     // without the coefficient
+  std::string text;         // of it
+  std::string coefficient;  // the parameter that stood before it; empty: none
+};
+
+class TermWriter {
+ public:
+  TermWriter(Scope& scope, Diagnostics& diagnostics) : scope_(scope), diagnostics_(diagnostics) {}
+
+  /// item: `abs(y')*y'`, `k*y`, `polynomial(y, y', degree = 3)`, `x*polynomial(y, degree = 2)`: products are multiplied out over
+  /// families. free: parameters that are looked for. Empty when a diagnostic was added.
+  std::vector<WrittenTerm> write(ast::Expression const& item, std::set<std::string> const& free);
+
+ private:
+  std::vector<ast::Expression> expanded(ast::Expression const& item);
+  std::vector<ast::Expression> family(ast::Call const& call, GeneratorRow const& row, Span place);
+  /// Nothing where a free parameter stands otherwise than as one factor.
+  std::optional<WrittenTerm> without_coefficient(ast::Expression tree, std::set<std::string> const& free);
+
+  Scope& scope_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace sysid

@@ -1,0 +1,228 @@
+// Reading options.
+#include "check/expression/option_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "check/message/errors.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int default_start_rows = 50;
+
+}  // namespace
+
+Unit unit_of(std::string_view atom) { return atom.empty() ? Unit{} : unit_atom(atom).value(); }
+
+std::string key_of(ast::Option const& option) {
+  if (option.key) return option.key->text;
+  if (auto const* call = std::get_if<ast::Box<ast::Call>>(&option.value.node)) return (*call)->function.text;
+  if (auto const* reference = std::get_if<ast::Reference>(&option.value.node)) return reference->name.text;
+  return {};
+}
+
+ast::Call const* as_call(ast::Expression const& expression) {
+  auto const* call = std::get_if<ast::Box<ast::Call>>(&expression.node);
+  return call == nullptr ? nullptr : &**call;
+}
+
+Span head_span(ast::Expression const& expression) {
+  auto const* call = as_call(expression);
+  return call == nullptr ? expression.span : call->function.span;
+}
+
+std::optional<std::string> as_word(ast::Expression const& expression) {
+  if (auto const* reference = std::get_if<ast::Reference>(&expression.node); reference != nullptr && reference->primes == 0)
+    return reference->name.text;
+  if (auto const* text = std::get_if<ast::Text>(&expression.node)) return text->value;
+  return std::nullopt;
+}
+
+void OptionReader::setting(ast::Argument const& argument, SettingRow const& row, Settings& values) {
+  std::string const name(row.name);
+  switch (row.kind) {
+    case SettingKind::integer:
+      if (auto const value = number(argument.value, name, Unit{}, row.minimum, row.maximum, true))
+        values.set(name, static_cast<std::int64_t>(*value));
+      break;
+    case SettingKind::real:
+      if (auto const value = number(argument.value, name, Unit{}, row.minimum, row.maximum)) {
+        if (*value > 0 && *value < row.least_positive)
+          diagnostics_.add(errors::option_range_or_zero(argument.value.span, name, *value, row.least_positive, row.maximum));
+        values.set(name, *value);
+      }
+      break;
+    case SettingKind::flag:
+      if (auto const value = yes_or_no(argument.value, name)) values.set(name, *value);
+      break;
+    case SettingKind::numbers: {
+      auto const* list = std::get_if<ast::Box<ast::List>>(&argument.value.node);
+      std::vector<double> all;
+      for (ast::Expression const& item : list == nullptr ? std::vector{argument.value} : (*list)->items)
+        if (auto const value = number(item, name, Unit{}, row.minimum, row.maximum)) all.push_back(*value);
+      values.set(name, std::move(all));
+      break;
+    }
+    case SettingKind::word: {
+      std::vector<std::string> choices;
+      std::istringstream stream{std::string(row.choices)};
+      for (std::string choice; stream >> choice;) choices.push_back(choice);
+      auto const word = as_word(argument.value);
+      if (word && std::find(choices.begin(), choices.end(), *word) != choices.end())
+        values.set(name, *word);
+      else
+        diagnostics_.add(errors::option_choice(argument.value.span, name, word.value_or(""), choices));
+      break;
+    }
+  }
+}
+
+std::optional<double> OptionReader::number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit,
+                                           double least, double most, bool whole) {
+  auto const value = scope_.expression(tree);
+  if (!value) return std::nullopt;
+  if (unit && value->kind == Typed::Kind::known)
+    if (auto refused = refuse_number(tree.span, "`" + name + "`", value->unit, *unit)) {
+      diagnostics_.add(std::move(*refused));
+      return std::nullopt;
+    }
+  auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
+  if (!constant) {
+    diagnostics_.add(errors::constant_needed(tree.span, "`" + name + "`"));
+    return std::nullopt;
+  }
+  if (whole && *constant != std::floor(*constant)) {
+    diagnostics_.add(
+        errors::option_kind(tree.span, name, "a whole number", fmt::format("{} = {:.0f}", name, std::round(*constant))));
+    return std::nullopt;
+  }
+  if (!(*constant >= least && *constant <= most)) {
+    diagnostics_.add(errors::option_range(tree.span, name, *constant, least, most));
+    return std::nullopt;
+  }
+  return constant;
+}
+
+std::optional<bool> OptionReader::yes_or_no(ast::Expression const& tree, std::string const& name) {
+  auto const word = as_word(tree);
+  if (word == "yes" || word == "no") return word == "yes";
+  diagnostics_.add(errors::option_choice(tree.span, name, word.value_or(""), {"yes", "no"}));
+  return std::nullopt;
+}
+
+void OptionReader::flag(ast::Option const& option, std::string const& name, bool& place) {
+  if (auto const value = yes_or_no(option.value, name)) place = *value;
+}
+
+void OptionReader::whole(ast::Option const& option, std::string const& name, double least, double most, int& place) {
+  if (auto const value = number(option.value, name, Unit{}, least, most, true)) place = static_cast<int>(*value);
+}
+
+void OptionReader::seed(ast::Option const& option, std::optional<std::uint64_t>& place) {
+  if (auto const value = number(option.value, "seed", Unit{}, 0, 9007199254740992.0, true))
+    place = static_cast<std::uint64_t>(*value);
+}
+
+void OptionReader::start(ast::Option const& option, StartRule& rule) {
+  std::vector<std::string> const choices = {"record", "rest", "estimated"};
+  if (ast::Call const* call = as_call(option.value)) {
+    if (call->function.text == "estimated") {
+      rule = {StartRule::Kind::estimated, default_start_rows};
+      std::optional<Span> given;
+      for (ast::Argument const& argument : call->arguments) {
+        if (argument.name && argument.name->text != "rows") {
+          diagnostics_.add(errors::unknown_argument(*argument.name, "estimated", {"rows"}));
+        } else if (given) {
+          diagnostics_.add(errors::stated_twice(argument.span, *given, "`rows`"));
+        } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true)) {
+          rule.rows = static_cast<int>(*rows);
+        }
+        if (!given) given = argument.span;
+      }
+      return;
+    }
+    diagnostics_.add(errors::option_choice(option.value.span, "start", call->function.text, choices));
+    return;
+  }
+  auto const word = as_word(option.value);
+  if (word == "record") {
+    rule = {StartRule::Kind::record, 0};
+  } else if (word == "rest") {
+    rule = {StartRule::Kind::rest, 0};
+  } else if (word == "estimated") {
+    rule = {StartRule::Kind::estimated, default_start_rows};
+  } else {
+    diagnostics_.add(errors::option_choice(option.value.span, "start", word.value_or(""), choices));
+  }
+}
+
+bool OptionReader::solver(ast::Option const& option, SolverSettings& place) {
+  if (solver_) {
+    diagnostics_.add(errors::stated_twice(option.span, *solver_, "the solver"));
+    return true;
+  }
+  solver_ = option.span;
+  if (option.key->text == "substeps") {
+    if (as_word(option.value) == "automatic") return false;
+    whole(option, "substeps", 1, 10000, place.substeps);
+    return true;
+  }
+  ast::Call const* call = as_call(option.value);
+  std::string const name = call != nullptr ? call->function.text : as_word(option.value).value_or("");
+  SolverRow const* row = find_solver(name);
+  if (row == nullptr) {
+    std::vector<std::string> names;
+    for (SolverRow const& each : solvers()) names.emplace_back(each.name);
+    diagnostics_.add(errors::option_choice(head_span(option.value), "solver", name, names));
+    return true;
+  }
+  Settings values(row->settings);
+  if (call != nullptr) settings(*call, row->settings, values);
+  place = make_solver(*row, values);
+  return call != nullptr && std::any_of(call->arguments.begin(), call->arguments.end(), [](ast::Argument const& argument) {
+           return argument.name && argument.name->text != "steps";  // the work budget is no statement of accuracy
+         });
+}
+
+void OptionReader::unknown(ast::Option const& option, std::vector<std::string> const& known) {
+  std::string const key = key_of(option);
+  diagnostics_.add(
+      errors::unknown_option(option.key ? option.key->span : head_span(option.value), key.empty() ? "this" : key, verb_, known));
+}
+
+bool OptionReader::fresh(ast::Option const& option, std::string const& key) {
+  auto const [place, is_fresh] = seen_.emplace(option.input ? "input " + key : key, option.span);
+  std::string const what = key == the_backend ? key : "`" + place->first + "`";
+  if (!is_fresh) diagnostics_.add(errors::stated_twice(option.span, place->second, what));
+  return is_fresh;
+}
+
+void OptionReader::settings(ast::Call const& call, std::span<SettingRow const> rows, Settings& values) {
+  std::vector<std::string> known;
+  for (SettingRow const& row : rows) known.emplace_back(row.name);
+  std::map<std::string, Span> given;
+  for (ast::Argument const& argument : call.arguments) {
+    if (!argument.name) {
+      diagnostics_.add(known.empty() ? errors::too_many_arguments(argument.span, call.function.text, known)
+                                     : errors::must_be_named(argument.span, call.function.text, known));
+      continue;
+    }
+    std::string const& name = argument.name->text;
+    auto const row = std::find_if(rows.begin(), rows.end(), [&](SettingRow const& each) { return each.name == name; });
+    if (row == rows.end()) {
+      diagnostics_.add(errors::unknown_option(argument.name->span, name, call.function.text, known));
+      continue;
+    }
+    if (auto const [place, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
+      diagnostics_.add(errors::stated_twice(argument.span, place->second, "`" + name + "`"));
+      continue;
+    }
+    setting(argument, *row, values);
+  }
+}
+
+}  // namespace sysid

@@ -1,0 +1,70 @@
+// The options of a task, as `key = value` or `call(...)`: numbers of a kind, range and unit, words among choices, each given once.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "check/checked/checked.hpp"
+#include "check/expression/scope.hpp"
+#include "core/setting/settings.hpp"
+#include "core/text/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// The word an option goes by: its key, else the name of the function or quantity it is.
+std::string key_of(ast::Option const& option);
+/// Null for anything but a call.
+ast::Call const* as_call(ast::Expression const& expression);
+/// A name without primes, or a text.
+std::optional<std::string> as_word(ast::Expression const& expression);
+/// Where the function's or quantity's name stands.
+Span head_span(ast::Expression const& expression);
+/// Of a unit's name; dimensionless for none.
+Unit unit_of(std::string_view atom);
+
+/// Under this key the back end is told apart from other options.
+inline constexpr char const* the_backend = "the back end";
+
+/// Nothing is returned, or `place` left alone, when a diagnostic was added.
+class OptionReader {
+ public:
+  OptionReader(std::string verb, Diagnostics& diagnostics)
+      : verb_(std::move(verb)), diagnostics_(diagnostics), scope_(graph_, diagnostics, {}) {}
+
+  /// A number known before the run, SI. unit: absent where nothing is declared, and anything goes.
+  std::optional<double> number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit, double least,
+                               double most, bool whole = false);
+  void whole(ast::Option const& option, std::string const& name, double least, double most, int& place);
+  /// yes or no.
+  void flag(ast::Option const& option, std::string const& name, bool& place);
+  void seed(ast::Option const& option, std::optional<std::uint64_t>& place);
+  /// record, rest or estimated(rows = 50).
+  void start(ast::Option const& option, StartRule& place);
+  /// `substeps = n`, short for rk4, or `solver = cvode(relative = 1e-8)`; one of them, once. Whether its accuracy was stated.
+  bool solver(ast::Option const& option, SolverSettings& place);
+  /// Where the solver was stated.
+  std::optional<Span> const& solver_span() const { return solver_; }
+  /// A table of settings against `name(key = value, ...)`.
+  void settings(ast::Call const& call, std::span<SettingRow const> rows, Settings& place);
+
+  /// False, with a diagnostic, when the option was given before.
+  bool fresh(ast::Option const& option, std::string const& key);
+  void unknown(ast::Option const& option, std::vector<std::string> const& known);
+
+ private:
+  std::optional<bool> yes_or_no(ast::Expression const& tree, std::string const& name);
+  void setting(ast::Argument const& argument, SettingRow const& row, Settings& place);
+
+  std::string verb_;
+  Diagnostics& diagnostics_;
+  Graph graph_;
+  Scope scope_;
+  std::map<std::string, Span> seen_;
+  std::optional<Span> solver_;  // where the solver was stated
+};
+
+}  // namespace sysid

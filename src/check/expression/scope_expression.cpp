@@ -1,0 +1,311 @@
+// Expressions to nodes: operators, calls and choices, each with the units that it asks for.
+#include <algorithm>
+#include <utility>
+
+#include "check/expression/scope.hpp"
+#include "check/message/errors.hpp"
+#include "check/message/errors_reuse.hpp"
+#include "function/table.hpp"
+
+namespace sysid {
+
+namespace {
+
+constexpr std::size_t most_expressions = 2'000'000;
+// Each takes up to 3 kB of a stack of 8 MB.
+constexpr std::size_t deepest_tree = 1000;
+// Of one file; twenty are shown.
+constexpr std::size_t most_messages = 100;
+
+bool is_sum(ast::Binary const& binary) { return binary.symbol == "+" || binary.symbol == "-"; }
+
+}  // namespace
+
+std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<UnitOperand>& terms, int side) {
+  std::optional<Typed> value;
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node);
+  if (binary != nullptr && is_sum(**binary)) {
+    auto left = sum(*(*binary)->left, terms, side), right = sum(*(*binary)->right, terms, side);
+    if (left && right) {
+      bool const agreed = units_.one_zero(graph_, {*left, &*(*binary)->left}, {*right, &*(*binary)->right}, true);
+      value = add(graph_, *left, *right, (*binary)->symbol == "-");
+      if (!agreed) value->kind = Typed::Kind::wrong;
+    }
+  } else if (unary != nullptr && (*unary)->symbol == "-") {
+    auto operand = sum(*(*unary)->operand, terms, side);
+    if (operand) value = negate(graph_, *operand);
+  } else {
+    value = other_than_sum(tree);
+    if (value) value->span = tree.span;
+    if (value) terms.push_back({settled(*value), &tree, side});
+  }
+  if (value) {
+    value->span = tree.span;
+    graph_.set_span(value->node, tree.span);
+  }
+  return value;
+}
+
+std::optional<Typed> Scope::expression(ast::Expression const& tree) {
+  std::vector<UnitOperand> terms;
+  std::optional<Typed> value = sum(tree, terms);
+  if (terms.size() > 1 && !units_.agree(Occasion{}, terms) && value) value->kind = Typed::Kind::wrong;
+  return value;
+}
+
+std::optional<Typed> Scope::expression_in(std::optional<Unit> const& unit, Span place, ast::Expression const& tree,
+                                          Occasion const& occasion) {
+  if (!unit) return expression(tree);
+  std::vector<UnitOperand> terms;
+  std::optional<Typed> value = sum(tree, terms);
+  UnitOperand const declared{with_unit(0, unit, place)};
+  terms.push_back(declared);
+  if (!units_.agree(occasion, terms) && value) value->kind = Typed::Kind::wrong;
+  if (value && !occasion.is_width && !units_.one_zero(graph_, {*value, &tree}, declared, false)) value->kind = Typed::Kind::wrong;
+  return value;
+}
+
+std::optional<std::pair<Typed, Typed>> Scope::equation(ast::Equation const& equation) {
+  std::vector<UnitOperand> terms;
+  auto left = sum(equation.left, terms, 0), right = sum(equation.right, terms, 1);
+  bool agreed = units_.agree(Occasion{}, terms);
+  if (!left || !right) return std::nullopt;
+  agreed = agreed && units_.one_zero(graph_, {*left, &equation.left}, {*right, &equation.right}, false);
+  Typed sides[] = {*left, *right};
+  unify(graph_, sides);
+  if (!agreed) sides[0].kind = Typed::Kind::wrong;
+  return std::pair(sides[0], sides[1]);
+}
+
+Typed Scope::compared(Operation operation, UnitOperand left, UnitOperand right) {
+  UnitOperand const operands[] = {std::move(left), std::move(right)};
+  if (operation == Operation::conjunction || operation == Operation::disjunction) {
+    units_.condition(operands[0]);
+    units_.condition(operands[1]);
+  } else {
+    if (units_.agree({Occasion::Kind::comparison}, operands)) units_.one_zero(graph_, operands);
+  }
+  return compare(graph_, operation, operands[0].value, operands[1].value);
+}
+
+std::optional<Typed> Scope::binary(ast::Binary const& binary) {
+  std::string const& symbol = binary.symbol;
+  if (symbol == "..") {
+    diagnostics_.add(errors::range_out_of_place(binary.span));
+    return std::nullopt;
+  }
+  // A long product leans to the left: it is walked, not descended.
+  std::vector<ast::Binary const*> spine = {&binary};
+  while (auto const* inner = std::get_if<ast::Box<ast::Binary>>(&spine.back()->left->node)) {
+    if (is_sum(**inner) || (*inner)->symbol == "..") break;
+    spine.push_back(&**inner);
+  }
+  auto value = expression(*spine.back()->left);
+  for (; !spine.empty(); spine.pop_back()) {
+    auto const right = expression(*spine.back()->right);
+    value = value && right ? std::optional(combined(*spine.back(), *value, *right)) : std::nullopt;
+    if (!value || spine.size() == 1) continue;
+    value->span = spine[spine.size() - 2]->left->span;
+    graph_.set_span(value->node, value->span);
+  }
+  return value;
+}
+
+Typed Scope::combined(ast::Binary const& binary, Typed const& left, Typed const& right) {
+  std::string const& symbol = binary.symbol;
+  UnitOperand const a{settled(left), &*binary.left}, b{settled(right), &*binary.right};
+  if (symbol == "*") return multiply(graph_, left, right);
+  if (symbol == "/") return divide(graph_, left, right);
+  if (symbol == "^") {
+    bool const good = units_.power(a, b, graph_.constant_value(right.node));
+    Typed result = power(graph_, left, right);
+    if (!good) result.kind = Typed::Kind::wrong;
+    return result;
+  }
+  if (symbol == "<") return compared(Operation::less, a, b);
+  if (symbol == "<=") return compared(Operation::less_equal, a, b);
+  if (symbol == ">") return compared(Operation::less, b, a);
+  if (symbol == ">=") return compared(Operation::less_equal, b, a);
+  if (symbol == "==") return compared(Operation::equal, a, b);
+  if (symbol == "!=") {
+    Typed result = compared(Operation::equal, a, b);
+    result.node = graph_.unary(Operation::negation, result.node);
+    return result;
+  }
+  if (symbol == "and") return compared(Operation::conjunction, a, b);
+  if (symbol == "or") return compared(Operation::disjunction, a, b);
+  throw InternalError("operator " + symbol + " in an expression");
+}
+
+std::optional<Typed> Scope::function_call(ast::Call const& call) {
+  if (is_past_call(call)) return past_call(call);
+  std::string const& name = call.function.text;
+  for (std::size_t i = 0; i < processes_.size(); ++i)
+    if (processes_[i].definition->name.text == name) return process_call(call, i);
+  bool good = true;
+  bool counted = true;  // unless a list of lags is wrong, or a range stands for several arguments
+  std::size_t count = 0;
+  std::vector<UnitOperand> arguments;
+  for (ast::Argument const& argument : call.arguments) {
+    if (auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
+        inner != nullptr && !argument.name && (*inner)->function.text == "lags" && is_past_call(**inner)) {
+      auto const lags = lag_calls(**inner);
+      good = good && lags;
+      counted = counted && lags;
+      if (!lags) continue;
+      count += lags->values.size();
+      for (Typed const& lag : lags->values) arguments.push_back({settled(lag), &argument.value});
+      continue;
+    }
+    auto const* range = std::get_if<ast::Box<ast::Binary>>(&argument.value.node);
+    counted = counted && !(range != nullptr && (*range)->symbol == "..");
+    ++count;
+    if (argument.name) {
+      diagnostics_.add(errors::named_argument_of_function(*argument.name, name));
+      good = false;
+    }
+    auto value = expression(argument.value);
+    good = good && value;
+    if (value) arguments.push_back({settled(*value), &argument.value});
+  }
+  auto const user = functions_.find(name);
+  if (user != functions_.end()) {
+    ast::FunctionDefinition const& function = *user->second;
+    if (good && arguments.size() != function.parameters.size()) {
+      diagnostics_.add(
+          errors::argument_count(call.function, arguments.size(), function.parameters.size(), function.parameters.size()));
+      return std::nullopt;
+    }
+    if (!good) return std::nullopt;
+    std::string const key = name + "()";
+    if (auto const begin = std::find(resolving_.begin(), resolving_.end(), key); begin != resolving_.end()) {
+      std::vector<std::string> loop(begin, resolving_.end());
+      loop.push_back(key);
+      diagnostics_.add(errors::definition_cycle(call.span, loop));
+      return std::nullopt;
+    }
+    Arguments local;
+    for (std::size_t i = 0; i < arguments.size(); ++i) local.emplace(function.parameters[i].text, arguments[i].value);
+    resolving_.push_back(key);
+    auto const* outer = std::exchange(arguments_, &local);
+    units_.enter_call(call.span, name);
+    auto value = expression(function.value);
+    units_.leave_call();
+    arguments_ = outer;
+    resolving_.pop_back();
+    if (value) value->span = call.span;
+    return value;
+  }
+  FunctionRow const* row = find_function(name);
+  if (row == nullptr) {
+    std::vector<std::string> known;
+    for (FunctionRow const& each : functions()) known.emplace_back(each.name);
+    for (auto const& [each, definition] : functions_) known.push_back(each);
+    for (ProcessName const& each : processes_) known.push_back(each.definition->name.text);
+    diagnostics_.add(errors::unknown_function(call.function, known, find(name) != nullptr));
+    return std::nullopt;
+  }
+  if (counted &&
+      (count < static_cast<std::size_t>(row->minimum_arguments) || count > static_cast<std::size_t>(row->maximum_arguments))) {
+    diagnostics_.add(errors::argument_count(call.function, count, static_cast<std::size_t>(row->minimum_arguments),
+                                            static_cast<std::size_t>(row->maximum_arguments)));
+    return std::nullopt;
+  }
+  if (row->unit_rule == UnitRule::branches && counted && count % 2 == 0) {
+    diagnostics_.add(errors::piecewise_without_otherwise(call));
+    return std::nullopt;
+  }
+  if (!good) return std::nullopt;
+  return built_in(*row, arguments);
+}
+
+Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> arguments) {
+  std::string const name(row.name);
+  bool agreed = true;
+  switch (row.unit_rule) {
+    case UnitRule::same:
+    case UnitRule::ratio:
+      agreed = units_.agree({Occasion::Kind::arguments, name}, arguments) && units_.one_zero(graph_, arguments);
+      break;
+    case UnitRule::dimensionless:
+    case UnitRule::angle:
+      for (UnitOperand const& argument : arguments) units_.pure(name, argument, row.unit_rule == UnitRule::angle);
+      break;
+    case UnitRule::branches: {  // condition, value, condition, value, ..., otherwise
+      std::vector<UnitOperand> branches;
+      for (std::size_t i = 0; i < arguments.size(); ++i) {
+        bool const condition = i % 2 == 0 && i + 1 < arguments.size();
+        if (condition)
+          agreed = units_.condition(arguments[i]) && agreed;
+        else
+          branches.push_back(arguments[i]);
+      }
+      agreed = units_.agree({Occasion::Kind::branches, name}, branches) && units_.one_zero(graph_, branches) && agreed;
+      break;
+    }
+    case UnitRule::root:
+    case UnitRule::none:
+      break;
+  }
+  std::vector<Typed> values;
+  for (UnitOperand const& argument : arguments) values.push_back(argument.value);
+  Typed result = call(graph_, row, std::move(values));
+  if (!agreed && row.unit_rule != UnitRule::ratio) result.kind = Typed::Kind::wrong;
+  return result;
+}
+
+bool Scope::affordable(Span span) {
+  if (diagnostics_.all().size() >= most_messages && diagnostics_.has_errors()) return false;
+  if (!too_large_ && ++looked_at_ <= most_expressions && depth_ <= deepest_tree) return true;
+  if (!too_large_) diagnostics_.add(errors::model_too_large(span));
+  too_large_ = true;
+  return false;
+}
+
+std::optional<Typed> Scope::other_than_sum(ast::Expression const& tree) {
+  std::optional<Typed> value;
+  if (!affordable(tree.span)) return value;
+  ++depth_;
+  if (auto const* number = std::get_if<ast::Number>(&tree.node)) {
+    if (!number->unit) {
+      value = literal(graph_, number->value, tree.span);
+    } else if (auto const unit = this->unit(number->unit)) {
+      value = tagged(graph_, number->value, *unit, tree.span);
+    }
+  } else if (auto const* text = std::get_if<ast::Text>(&tree.node)) {
+    diagnostics_.add(errors::not_a_number(text->span, "a text"));
+  } else if (auto const* name = std::get_if<ast::Reference>(&tree.node)) {
+    value = reference(*name);
+  } else if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) {
+    auto operand = expression(*(*unary)->operand);
+    if (operand) {
+      units_.condition({*operand, &*(*unary)->operand});
+      value = with_unit(graph_.unary(Operation::negation, operand->node), Unit{}, tree.span);
+    }
+  } else if (auto const* operation = std::get_if<ast::Box<ast::Binary>>(&tree.node)) {
+    value = binary(**operation);
+  } else if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
+    value = function_call(**call);
+  } else if (auto const* conditional = std::get_if<ast::Box<ast::Conditional>>(&tree.node)) {
+    value = choice(**conditional);
+  } else {
+    diagnostics_.add(errors::list_here(tree.span));
+  }
+  --depth_;
+  return value;
+}
+
+std::optional<Typed> Scope::choice(ast::Conditional const& conditional) {
+  auto const condition = expression(*conditional.condition);
+  auto const then = expression(*conditional.then), otherwise = expression(*conditional.otherwise);
+  bool const true_or_false = !condition || units_.condition({*condition, &*conditional.condition});
+  if (!condition || !then || !otherwise) return std::nullopt;
+  UnitOperand const branches[] = {{settled(*then), &*conditional.then}, {settled(*otherwise), &*conditional.otherwise}};
+  bool const agreed = units_.agree({Occasion::Kind::branches}, branches) && units_.one_zero(graph_, branches);
+  Typed result = select(graph_, *condition, *then, *otherwise);
+  if (!agreed || !true_or_false) result.kind = Typed::Kind::wrong;
+  return result;
+}
+
+}  // namespace sysid

@@ -1,0 +1,75 @@
+// Lists in words, guesses, and the two shapes of a message.
+#include "check/message/error_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sysid::errors {
+
+Diagnostic error(std::string code, Span span, std::string message, std::string help, std::string label) {
+  return {Severity::error, std::move(code), std::move(message), Label{span, std::move(label)}, {}, std::move(help)};
+}
+
+Diagnostic conflict(std::string code, Span span, std::string label, Span other, std::string other_label, std::string message,
+                    std::string help) {
+  Diagnostic result = error(std::move(code), span, std::move(message), std::move(help), std::move(label));
+  result.secondary.push_back({other, std::move(other_label)});
+  return result;
+}
+
+std::string quoted(Names const& names, std::string const& last) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i != 0) text += i + 1 == names.size() ? fmt::format(" {} ", last) : ", ";
+    text += fmt::format("`{}`", names[i]);
+  }
+  return text;
+}
+
+std::string guess_or(std::string const& text, Names const& known, std::string fallback) {
+  std::string guess = did_you_mean(text, known);
+  return guess.empty() ? std::move(fallback) : guess;
+}
+
+std::string choose(Names const& known, std::string const& what) {
+  if (known.empty()) return fmt::format("there is no {} here", what);
+  return fmt::format("there {} {}", known.size() == 1 ? "is" : "are", quoted(known));
+}
+
+std::string positive_prior(Names const& names) {
+  if (names.empty()) return "correct its numbers";
+  return fmt::format(
+      "look at the prior{} of {} and at what is made of {}: `half_normal(sd = 1)` and `log_uniform(0.1, 10)` have positive "
+      "values alone",
+      names.size() == 1 ? "" : "s", quoted(names), names.size() == 1 ? "it" : "them");
+}
+
+std::string measure(Unit const& unit) {
+  if (unit.dimensionless()) return "a pure number";
+  return fmt::format("in [{}]", unit.text.empty() ? format_dimension(unit.dimension) : unit.text);
+}
+
+std::string primed(std::string const& name, int primes) { return name + std::string(static_cast<std::size_t>(primes), '\''); }
+std::string primed(ast::Reference const& reference) { return primed(reference.name.text, reference.primes); }
+
+namespace {
+
+// Our word for a foreign one, if it is among the known; whatever the capitals.
+std::string synonym(std::span<Synonym const> table, std::string text, Names const& known) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (Synonym const& each : table)
+    if (each.foreign == text && std::find(known.begin(), known.end(), each.ours) != known.end())
+      return fmt::format("did you mean `{}`?", each.ours);
+  return {};
+}
+
+}  // namespace
+
+std::string guess_or(std::span<Synonym const> table, std::string const& text, Names const& known, std::string fallback) {
+  std::string guess = synonym(table, text, known);
+  return guess.empty() ? guess_or(text, known, std::move(fallback)) : guess;
+}
+
+}  // namespace sysid::errors

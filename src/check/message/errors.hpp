@@ -1,0 +1,258 @@
+// Every message of the checker, one named constructor per mistake; wording lives in errors_*.cpp alone.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "check/message/unit_slips.hpp"
+#include "core/numeric/unit.hpp"
+#include "core/text/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid::errors {
+
+using Names = std::vector<std::string>;
+
+// names, functions, units (E20)
+Diagnostic unknown_name(ast::Name const& name, Names const& known);
+Diagnostic duplicate_name(ast::Name const& name, Span first);
+Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity);
+Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most);
+Diagnostic piecewise_without_otherwise(ast::Call const& call);
+Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function);
+Diagnostic definition_cycle(Span span, Names const& loop);
+Diagnostic primes_on(ast::Reference const& reference, std::string const& what);
+Diagnostic beyond_highest(ast::Reference const& reference, int order);
+Diagnostic second_input_derivative(ast::Reference const& reference);
+Diagnostic not_a_number(Span span, std::string const& what);
+Diagnostic constant_needed(Span span, std::string const& what);
+/// meant: what it seems to stand for, when its letters tell; whole: the unit it stands in, as it should be written.
+Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant = std::nullopt, std::string const& whole = {});
+Diagnostic unit_exponent(Span span);
+Diagnostic list_here(Span span);
+Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted);
+Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted);
+
+// distributions (E21)
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known);
+Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known);
+Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other);
+Diagnostic argument_missing(ast::Call const& call, Names const& spellings);
+Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings);
+Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature);
+Diagnostic not_a_noise(ast::Call const& call, Names const& known);
+Diagnostic truncated_noise(ast::Call const& call);
+Diagnostic cannot_truncate(Span span, std::string const& distribution);
+Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
+Diagnostic prior_cycle(Span span, Names const& loop);
+Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason);
+/// names: of the parameters that the argument reads.
+Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
+                         std::vector<std::string> const& names);
+Diagnostic no_mass(Span span, std::string const& distribution);
+Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit);
+Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit);
+Diagnostic count_as_prior(ast::Call const& call);
+Diagnostic noise_of_counts(Span span, std::string const& channel, std::string const& distribution);
+Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter);
+
+// structure of a model (E30)
+Diagnostic state_without_equation(Span declaration, std::string const& state, std::string const& highest);
+Diagnostic algebraic_state(Span declaration, std::string const& state);
+Diagnostic surplus_equation(ast::Equation const& equation, Names const& states);
+Diagnostic explicit_solver(Span option, std::string const& solver, Span equation, std::string const& unknown);
+Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input);
+Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown);
+Diagnostic start_off_constraint(Span equation, Span initial);
+Diagnostic estimated_start_of_constraint(Span start, Span equation);
+Diagnostic undetermined(Span declaration, std::string const& unknown);
+Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order);
+Diagnostic initial_missing(Span declaration, Names const& components);
+Diagnostic initial_twice(Span second, Span first, std::string const& component);
+Diagnostic initial_moves(Span span);
+Diagnostic not_a_state(ast::Name const& name, Names const& states);
+Diagnostic channel_twice(ast::Name const& name, Span first);
+Diagnostic nothing_observed(ast::Name const& model);
+Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first);
+/// Warnings.
+Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where = "model");
+Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where = "model");
+Diagnostic time_twice(Span second, Span first);
+
+// samples and discrete time (E31)
+Diagnostic lag_without_discrete_time(ast::Call const& call);
+Diagnostic lag_count(Span span);
+Diagnostic lags_out_of_place(ast::Call const& call);
+Diagnostic primes_in_discrete_time(ast::Reference const& reference);
+/// name: what stands in place of the channel, when it is a name.
+Diagnostic not_a_channel(Span span, std::string const& function, std::string const& name, Names const& channels);
+Diagnostic samples_in_differential_equation(ast::Call const& call);
+Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_states);
+Diagnostic own_sample(Span span, std::string const& channel);
+Diagnostic prediction_cycle(Span span, std::string const& channel);
+Diagnostic present_prediction(Span span, std::string const& channel);
+Diagnostic range_out_of_place(Span span);
+Diagnostic initial_past_missing(Span declaration, std::string const& state);
+Diagnostic implicit_in_discrete_time(Span equation, std::string const& state);
+
+// data blocks (E40; the file's own contents: data/errors.hpp)
+Diagnostic no_file(ast::Name const& block);
+Diagnostic no_time(ast::Name const& block);
+Diagnostic time_and_rate(Span second, Span first);
+Diagnostic stated_twice(Span second, Span first, std::string const& what);
+Diagnostic rule_missing(Span span, std::string const& input);
+Diagnostic unknown_rule(ast::Name const& rule);
+Diagnostic not_a_time(Span span, Unit const& unit);
+Diagnostic rate_not_positive(Span span);
+Diagnostic bad_rows(Span span);
+// owner: "model `duffing`" or "dictionary `restoring`"
+Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data);
+Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels);
+Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs);
+Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels);
+Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input);
+Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit);
+
+// tasks (E60)
+Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
+/// A part of something named: "data `bench` has no part `trian`".
+Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::string const& kind, Names const& known);
+Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);
+Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
+Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example);
+Diagnostic option_range(Span span, std::string const& option, double given, double least, double most);
+/// Of an option whose 0 stands for something else.
+Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most);
+Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices);
+Diagnostic backend_missing(ast::Task const& task, Names const& known);
+Diagnostic unknown_backend(ast::Name const& name, Names const& known);
+Diagnostic data_missing(ast::Task const& task, std::string const& preposition);
+Diagnostic data_unused(ast::Task const& task, Span data);
+Diagnostic not_a_fit(ast::Name const& name, std::string const& verb);
+Diagnostic fixed_parameter(ast::Name const& name, Span declaration);
+Diagnostic value_missing(Span span, Names const& parameters);
+Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate);
+Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution);
+Diagnostic prediction_without_lags(Span span, std::string const& model);
+Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model);
+Diagnostic other_step(Span span, double given, double declared, std::string const& model);
+Diagnostic task_too_late(ast::Name const& name);
+
+// candidate models and their selection (E65)
+Diagnostic candidate_twice(Span second, Span first, std::string const& model);
+/// open: how many of `models` have no probability of their own.
+Diagnostic probabilities(ast::Name const& set, double sum, int open, int models);
+Diagnostic not_a_probability(Span span, double value);
+Diagnostic shared_by_none(ast::Name const& name, std::string const& set, Names const& known);
+Diagnostic shared_by_one(ast::Name const& name, std::string const& model);
+Diagnostic shared_parameter_differs(ast::Name const& name, Span first, std::string const& one, Span other, std::string const& model,
+                                    bool same_unit);
+Diagnostic no_candidates(ast::Name const& set);
+Diagnostic candidate_without_channel(Span candidate, std::string const& model, Span channel, std::string const& other,
+                                     std::string const& name);
+Diagnostic channel_of_two_units(Span one, std::string const& model, Unit const& unit, Span other, std::string const& other_model,
+                                Unit const& other_unit, std::string const& name);
+Diagnostic distance_choice(Span span, std::string const& given, std::string const& channel);
+Diagnostic distance_reads(Span span, std::string const& name);
+Diagnostic distance_of_one_channel(Span span, Names const& channels, std::string const& example);
+Diagnostic distance_may_be_negative(Span span, std::string const& expression);
+Diagnostic distance_lacks_channel(Span span, std::string const& channel);
+Diagnostic distances_of_two_kinds(Span span, std::string const& one, Unit const& unit, std::string const& other,
+                                  Unit const& other_unit);
+Diagnostic expressions_of_two_units(Span second, Unit const& unit, Span first, Unit const& first_unit);
+Diagnostic no_weight(Span span);
+/// own: the verb that it is for.
+Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, std::string const& own, Names const& known);
+Diagnostic arguments_of_candidates(Span span, std::string const& set);
+Diagnostic model_and_candidates(ast::Name const& name, Span model);
+
+// dictionaries and discovery (E66)
+Diagnostic no_target(ast::Name const& dictionary);
+Diagnostic target_twice(Span second, Span first, std::string const& text);
+Diagnostic no_terms(ast::Name const& dictionary);
+Diagnostic nothing_left_of_terms(Span target, std::string const& equation);
+Diagnostic unknown_generator(ast::Name const& name, Names const& families);
+Diagnostic generator_arguments(ast::Name const& generator, std::string const& missing, std::string const& example);
+Diagnostic generator_number(Span span, std::string const& option, int most, std::string const& example);
+Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters);
+Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter);
+Diagnostic coefficient_inside(Span term, std::string const& text);
+Diagnostic state_without_channel(Span state, std::string const& name);
+Diagnostic derivative_of_nothing(ast::Name const& state, int primes);
+Diagnostic derivative_without_channel(ast::Name const& state, int primes);
+Diagnostic channel_bound_twice(ast::Name const& channel, Span first);
+Diagnostic excludes_nothing(Span span, std::string const& text, Names const& known);
+Diagnostic unit_of_no_term(Span span, std::string const& unit, Names const& possible);
+Diagnostic too_many_terms(Span span, std::size_t most);
+Diagnostic index_in_dictionary(ast::Reference const& reference);
+Diagnostic channel_not_measured(Span data, std::string const& block, Span state, std::string const& channel, Names const& measured);
+
+// several experiments (E63)
+Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known);
+Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter);
+Diagnostic constant_missing(Span use, Span declaration, std::string const& parameter, std::string const& data);
+Diagnostic experiment_twice(Span second, Span first, std::string const& experiment);
+Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other);
+Diagnostic shared_prior_reads_own(Span prior, std::string const& parameter, std::string const& own);
+
+// Gaussian processes (E32)
+Diagnostic not_a_process(ast::Name const& name);
+Diagnostic one_covariance(Span span);
+Diagnostic not_a_covariance(Span span);
+Diagnostic unknown_kernel(ast::Name const& name, Names const& known);
+/// given: empty where it is no name.
+Diagnostic not_an_input_of_process(Span span, std::string const& given, std::string const& process, Names const& inputs);
+Diagnostic kernel_input_twice(Span span, std::string const& input);
+Diagnostic kernel_of_one_input(Span span, std::string const& kernel, std::size_t given);
+Diagnostic hyper_parameter_count(Span span, std::string const& name, std::size_t given, std::size_t wanted);
+/// input: that it belongs to, given in a unit at a place; empty: to none.
+Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given, Unit const& wanted,
+                                Span input_place, std::optional<Unit> const& of_input);
+Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right);
+Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string const& what);
+Diagnostic hyper_parameter_not_positive(Span span, std::string const& name);
+/// names: of the parameters that it reads.
+Diagnostic hyper_parameter_never_positive(Span span, std::string const& name, std::string const& process,
+                                          std::vector<std::string> const& names);
+/// Of `within` and `terms`; inputs: of the process.
+Diagnostic expansion_range(Span span, std::size_t inputs);
+Diagnostic expansion_range_empty(Span span);
+Diagnostic expansion_without_range(Span span);
+Diagnostic expansion_condition_outside(Span span, std::string const& input);
+Diagnostic expansion_of_number(Span span, std::string const& name);
+Diagnostic expansion_beside_process(Span span, std::string const& process, std::string const& expansion);
+Diagnostic expansion_by_likelihood(Span span, std::string const& model);
+/// parameter: that an amplitude or a length of `function` reads, which has a prior.
+Diagnostic expansion_by_optimum(Span span, std::string const& function, std::string const& parameter);
+Diagnostic expansion_terms(Span span, std::size_t inputs);
+Diagnostic expansion_too_large(Span span, long most);
+Diagnostic expansion_too_small(Span span, std::size_t conditions);
+/// what: a kernel's name, "a product of kernels".
+Diagnostic no_expansion(Span span, std::string const& what);
+Diagnostic expansion_of_lags(Span span, std::string const& name);
+Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted);
+Diagnostic process_in_differential_equation(Span span, std::string const& name);
+/// what: "lagged", "the argument of another".
+Diagnostic process_out_of_place(Span span, std::string const& what);
+Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel);
+Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel);
+Diagnostic process_unobserved(Span span, std::string const& name);
+Diagnostic process_with_moving_noise(Span span, std::string const& channel);
+Diagnostic process_without_normal_noise(Span span, std::string const& channel, std::string const& noise);
+Diagnostic process_applied_twice(Span second, Span first, std::string const& name);
+Diagnostic process_of_two_channels(Span span, std::string const& name, std::string const& first, std::string const& second);
+Diagnostic process_never_applied(ast::Name const& name);
+Diagnostic channel_without_process(Span span, std::string const& channel);
+/// verb: "simulated", "selected among".
+Diagnostic process_task(Span span, std::string const& verb, std::string const& model);
+Diagnostic process_beside_estimated_start(Span span, std::string const& model);
+Diagnostic process_of_many_samples(Span span, std::string const& model, int most);
+Diagnostic process_beside_constraints(Span span, std::string const& model);
+/// rule: "in free run".
+Diagnostic process_feeds_back(Span span, std::string const& rule);
+Diagnostic condition_moves(Span span, std::string const& name, std::string const& what);
+Diagnostic condition_count(Span span, std::string const& name, std::string const& process, std::size_t given, std::size_t wanted);
+Diagnostic condition_without_derivative(Span span, std::string const& kernel);
+Diagnostic process_of_one_experiment(Span span, std::string const& name, std::string const& parameter);
+
+}  // namespace sysid::errors

@@ -1,0 +1,102 @@
+// The checker's wording about data blocks, and about bringing them together with models.
+#include <fmt/format.h>
+
+#include "check/message/error_words.hpp"
+
+namespace sysid::errors {
+
+Diagnostic no_file(ast::Name const& block) {
+  return error("E4101", block.span, fmt::format("data block `{}` names no file", block.text), "add `file \"measurement.csv\"`");
+}
+
+Diagnostic no_time(ast::Name const& block) {
+  return error("E4102", block.span, fmt::format("data block `{}` does not say when its rows were taken", block.text),
+               "add `time t [s]` (a column) or `rate 1000 [Hz]`");
+}
+
+Diagnostic time_and_rate(Span second, Span first) {
+  return conflict("E4103", second, "and here", first, "here", "times are given twice, by a column and by a rate",
+                  "keep one of them");
+}
+
+Diagnostic stated_twice(Span second, Span first, std::string const& what) {
+  return conflict("E4104", second, "again here", first, "first here", fmt::format("{} is given twice", what), "keep one");
+}
+
+Diagnostic rule_missing(Span span, std::string const& input) {
+  return error(
+      "E4105", span, fmt::format("what does input `{}` do between its samples?", input),
+      "add `hold zero_order`, `hold linear`, `hold cubic` or `hold band_limited`: it changes the answer more than anything else");
+}
+
+Diagnostic unknown_rule(ast::Name const& rule) {
+  Names const known = {"zero_order", "linear", "cubic", "band_limited"};
+  std::string help = guess_or(rule.text, known, fmt::format("rules: {}", quoted(known)));
+  if (rule.text == "zoh") help = "did you mean `zero_order`?";
+  return error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help));
+}
+
+Diagnostic not_a_time(Span span, Unit const& unit) {
+  return error("E4114", span, fmt::format("time cannot be {}", measure(unit)), "give a unit of time: [s], [ms], [min], [h]");
+}
+
+Diagnostic rate_not_positive(Span span) {
+  return error("E4107", span, "the sampling rate or step must be a positive number",
+               "for example `rate 1000 [Hz]` or `step 1 [ms]`");
+}
+
+Diagnostic bad_rows(Span span) {
+  return error("E4108", span, "rows are whole numbers from 1, the first not after the last",
+               "for example `split train = rows 1..500`");
+}
+
+Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data) {
+  return error("E4109", span, fmt::format("data `{}` does not give input `{}` of {}", data, input, owner),
+               fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input));
+}
+
+Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels) {
+  return error("E4110", span, fmt::format("data `{}` measures no channel of {}", data, owner),
+               fmt::format("add `measure {} = COLUMN [unit]` to the data block", channels.empty() ? "CHANNEL" : channels.front()));
+}
+
+Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs) {
+  return error("E4115", span, fmt::format("{} has no input `{}`", owner, input), guess_or(input, inputs, choose(inputs, "input")));
+}
+
+Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels) {
+  return error("E4111", span, fmt::format("{} has no channel `{}`", owner, channel),
+               guess_or(channel, channels, choose(channels, "channel")));
+}
+
+Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input) {
+  return conflict("E4112", rule, "held between samples", use, "its derivative is used here",
+                  fmt::format("`{}'` does not exist: input `{}` is held constant between its samples", input, input),
+                  "choose `hold linear`, `hold cubic` or `hold band_limited`");
+}
+
+Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {
+  return error("E4113", span, fmt::format("{} is in [{}], the declaration says [{}]", what, column_unit, declared_unit),
+               "the two must measure the same kind of quantity");
+}
+
+Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {
+  return error("E6301", span, fmt::format("model `{}` has no parameter `{}`", model, name),
+               guess_or(name, known,
+                        known.empty() ? fmt::format("declare it in the model: `parameter {} per experiment`", name)
+                                      : fmt::format("what a data block may fix: {}", quoted(known))));
+}
+
+Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter) {
+  return conflict("E6302", span, "fixed for one experiment", declaration, "shared by all",
+                  fmt::format("parameter `{}` is shared by all experiments, a data block cannot fix it", parameter),
+                  fmt::format("declare it as `parameter {} per experiment`, or give it this value in the model", parameter));
+}
+
+Diagnostic constant_missing(Span use, Span declaration, std::string const& parameter, std::string const& data) {
+  return conflict("E6303", use, "used here", declaration, "neither prior nor value",
+                  fmt::format("data `{}` does not say what `{}` is", data, parameter),
+                  fmt::format("add `constant {} = ...` to data `{}`, or give the parameter a prior or a value", parameter, data));
+}
+
+}  // namespace sysid::errors

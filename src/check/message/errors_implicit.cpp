@@ -1,0 +1,51 @@
+// The checker's wording about implicit and differential-algebraic models.
+#include <fmt/format.h>
+
+#include "check/message/errors.hpp"
+
+namespace sysid::errors {
+
+Diagnostic explicit_solver(Span option, std::string const& solver, Span equation, std::string const& unknown) {
+  Diagnostic result{Severity::error,   "E3004", fmt::format("`{}` needs equations that can be solved for `{}`", solver, unknown),
+                    Label{option, {}}, {},      fmt::format("use `solver = ida`, or solve the equation for `{}` by hand", unknown)};
+  result.secondary.push_back({equation, fmt::format("not linear in `{}`", unknown)});
+  return result;
+}
+
+Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input) {
+  return {Severity::error,
+          "E3015",
+          fmt::format("this constraint prescribes a motion: the force behind it needs the second derivative of input `{}`", input),
+          Label{equation.span, {}},
+          {},
+          fmt::format("take the acceleration as the input, or the motion itself: `{}` in place of the state", input)};
+}
+
+Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown) {
+  return {Severity::error,
+          "E3016",
+          fmt::format("this equation would have to be differentiated in time, and with it `{}`, which has no derivative", unknown),
+          Label{equation.span, {}},
+          {},
+          fmt::format("solve it for `{}` and write that as a definition: `let {} = ...`", unknown, unknown)};
+}
+
+Diagnostic start_off_constraint(Span equation, Span initial) {
+  Diagnostic result{Severity::error,
+                    "E3017",
+                    "the initial values do not satisfy this equation",
+                    Label{equation, {}},
+                    {},
+                    "choose initial values that satisfy it and its time derivative for all parameters: as expressions of them"};
+  result.secondary.push_back({initial, "given here"});
+  return result;
+}
+
+Diagnostic estimated_start_of_constraint(Span start, Span equation) {
+  Diagnostic result{Severity::error,  "E3018", "an estimated start would leave a constraint between the states",
+                    Label{start, {}}, {},      "begin at the record's first row, with parameters in the initial values"};
+  result.secondary.push_back({equation, "this one"});
+  return result;
+}
+
+}  // namespace sysid::errors

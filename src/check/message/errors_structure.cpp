@@ -1,0 +1,100 @@
+// The checker's wording about equations, initial values, channels, and names given twice.
+#include <fmt/format.h>
+
+#include "check/message/error_words.hpp"
+
+namespace sysid::errors {
+
+Diagnostic state_without_equation(Span declaration, std::string const& state, std::string const& highest) {
+  return error("E3001", declaration, fmt::format("state `{}` has no equation", state),
+               fmt::format("write the equation that contains {}", highest));
+}
+
+Diagnostic algebraic_state(Span declaration, std::string const& state) {
+  return error(
+      "E3002", declaration,
+      fmt::format("nothing determines `{0}`: no equation has `{0}'`, and none is left for `{0}` itself", state),
+      fmt::format("give an equation for it; what follows from other quantities is a local definition: `let {} = ...`", state));
+}
+
+Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
+  return error("E3003", equation.span, "one equation too many: the others already determine every state",
+               fmt::format("states: {}; delete this equation or declare the state it is for", quoted(states)));
+}
+
+Diagnostic undetermined(Span declaration, std::string const& unknown) {
+  return error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
+               "two equations say the same thing about the highest derivatives");
+}
+
+Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {
+  Names components;
+  for (int k = 0; k < order; ++k) components.push_back(primed(state, k));
+  return error("E3006", reference.span, fmt::format("`{}` follows from the equations: it has no initial value", primed(reference)),
+               fmt::format("`{}` is of order {}: give {}", state, order, quoted(components)));
+}
+
+Diagnostic initial_missing(Span declaration, Names const& components) {
+  bool const one = components.size() == 1;
+  return error("E3007", declaration,
+               fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
+               fmt::format("write `initial {} = 0`", fmt::join(components, " = 0, ")));
+}
+
+Diagnostic initial_twice(Span second, Span first, std::string const& component) {
+  return conflict("E3008", second, "again here", first, "first given here",
+                  fmt::format("the initial value of `{}` is given twice", component), "keep one");
+}
+
+Diagnostic initial_moves(Span span) {
+  return error("E3009", span, "an initial value cannot read states, inputs or time", "use numbers, constants and parameters");
+}
+
+Diagnostic not_a_state(ast::Name const& name, Names const& states) {
+  return error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
+               guess_or(name.text, states, choose(states, "state")));
+}
+
+Diagnostic channel_twice(ast::Name const& name, Span first) {
+  return conflict("E3011", name.span, "again here", first, "first observed here",
+                  fmt::format("channel `{}` is observed twice", name.text),
+                  "one `observe` per channel; two sensors are two channels");
+}
+
+Diagnostic nothing_observed(ast::Name const& model) {
+  return error("E3012", model.span, fmt::format("model `{}` observes nothing", model.text),
+               "say how data arise: `observe displacement ~ normal(y, sd = sigma)`");
+}
+
+Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first) {
+  return conflict("E3013", name.span, "again here", first, "first here",
+                  fmt::format("there are two {}s named `{}`", kind, name.text), "rename one of the two");
+}
+
+namespace {
+
+Diagnostic unused(Span declaration, std::string message, std::string help) {
+  Diagnostic result = error("E3019", declaration, std::move(message), std::move(help));
+  result.severity = Severity::warning;
+  return result;
+}
+
+}  // namespace
+
+Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where) {
+  return unused(declaration, fmt::format("nothing in this {} reads the parameter `{}`", where, parameter),
+                where == "dictionary" ? "put it before a term or into the target, or delete it"
+                : has_prior ? "use it in an equation, an observation or another prior; as it is, its posterior is its prior"
+                            : "use it in an equation, an observation or a prior, or delete it");
+}
+Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where) {
+  return unused(declaration, fmt::format("nothing in this {} reads the input `{}`", where, input),
+                where == "dictionary" ? "put it into the target or a term: a force that acts and is left out stays in the residual"
+                                      : "use it in an equation or an observation, or delete it");
+}
+
+Diagnostic time_twice(Span second, Span first) {
+  return conflict("E3014", second, "again here", first, "first declared here", "time is declared twice", "keep one");
+}
+
+}  // namespace sysid::errors

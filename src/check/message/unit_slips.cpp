@@ -1,0 +1,64 @@
+// A table of habits, then rules in the order of what is likeliest: a power without its sign, capitals, a product without its blank.
+#include "check/message/unit_slips.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "core/numeric/unit.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::pair<std::string_view, std::string_view> quotients[] = {
+    {"ms2", "m/s^2"}, {"mss", "m/s^2"}, {"kmh", "km/h"}, {"kph", "km/h"}, {"mps", "m/s"}, {"rps", "rev/s"}, {"fps", "ft/s"},
+};
+
+bool is_common(std::string_view word) {
+  return std::find(common_unit_names().begin(), common_unit_names().end(), word) != common_unit_names().end();
+}
+
+std::string lower(std::string_view word) {
+  std::string text(word);
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+// The one common unit that differs in capitals alone.
+std::optional<std::string> in_other_capitals(std::string_view word) {
+  std::vector<std::string> found;
+  for (std::string const& name : common_unit_names())
+    if (lower(name) == lower(word)) found.push_back(name);
+  return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
+}
+
+// Two common units without a blank between them.
+std::optional<std::string> as_product(std::string_view word) {
+  for (std::size_t i = 1; i < word.size(); ++i)
+    if (is_common(word.substr(0, i)) && is_common(word.substr(i)))
+      return std::string(word.substr(0, i)) + " " + std::string(word.substr(i));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<UnitSlip> unit_slip(std::string_view word) {
+  for (auto const& [written, meant] : quotients)
+    if (word == written) return UnitSlip{UnitSlip::Kind::quotient, std::string(meant)};
+  std::size_t const end = word.find_last_not_of("0123456789") + 1;
+  if (end > 0 && end < word.size()) {
+    std::string_view const stem = word.substr(0, end);
+    std::optional<std::string> base;
+    if (unit_atom(stem)) base = stem;
+    if (!base) base = in_other_capitals(stem);
+    if (!base) base = as_product(stem);
+    if (!base) return std::nullopt;
+    return UnitSlip{UnitSlip::Kind::power, *base + "^" + std::string(word.substr(end))};
+  }
+  if (auto name = in_other_capitals(word)) return UnitSlip{UnitSlip::Kind::capitals, *std::move(name)};
+  if (auto product = as_product(word)) return UnitSlip{UnitSlip::Kind::product, *std::move(product)};
+  return std::nullopt;
+}
+
+}  // namespace sysid

@@ -1,0 +1,124 @@
+// One model on its way from the tree to what every later stage works from: the passes and what they share. Each pass is defined in
+// a file of its own, model_*.cpp; `run` in model.cpp puts them in order.
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "check/expression/leaves.hpp"
+#include "check/expression/scope.hpp"
+#include "core/text/diagnostic.hpp"
+#include "model/model.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+class ModelChecker {
+ public:
+  ModelChecker(ast::Model const& tree, std::vector<ast::FunctionDefinition const*> const& shared, Diagnostics& diagnostics);
+
+  /// The checked model, or nothing when an error was reported.
+  std::optional<Model> run();
+
+  UnitCheck const& units() const { return scope_.units(); }
+
+ private:
+  struct StateInfo {
+    ast::Declared const* declaration = nullptr;
+    int order = 0;
+    int first = 0;
+  };
+
+  bool failed() const { return diagnostics_.has_errors(before_); }
+
+  template <class Statement, class Visit>
+  void each(Visit const& visit) {
+    for (ast::ModelStatement const& statement : tree_.statements)
+      if (auto const* one = std::get_if<Statement>(&statement)) visit(*one);
+  }
+
+  // --- model_declarations.cpp
+  void declare();
+  void declare_step(ast::DiscreteTimeDeclaration const& discrete);
+  StateInfo* find_state(std::string const& name);
+  std::size_t index_of(StateInfo const& info) const;
+  std::vector<std::string> state_names() const;
+  // The order of a state is the most primes it carries in an equation or in what an equation uses.
+  void find_orders();
+  void lay_out_states();
+
+  // --- model_equations.cpp
+  void equations();
+  std::string unknown_name(std::size_t state) const;
+  // A state that is never differentiated is an algebraic unknown, where others are.
+  bool may_be_algebraic(std::string const& name, StateInfo const& info);
+  // As many equations as states, differentiated where they are constraints; said by name where that cannot be.
+  bool reduce_to_index_one(std::vector<ast::Equation const*> const& trees, std::vector<NodeId>& residuals);
+  bool mentioned(std::string const& state);
+  // The most primes of a state in `initial`; -1 without any.
+  int initial_primes(std::string const& state);
+  // Names the derivative to write an equation for: the initial values tell the order that the user has in mind.
+  Diagnostic without_equation(std::string const& name, StateInfo const& info);
+  // Where an equation could not be understood, only a state that stands in none is surely left without one.
+  void report_unmentioned_states();
+  // As many equations as states, each state with one that contains its highest derivative: said by name where it is not so.
+  bool enough_equations(std::vector<ast::Equation const*> const& trees, std::vector<NodeId> const& residuals);
+  // In channels and derived quantities a highest derivative (an acceleration) stands for its solution.
+  NodeId solved(NodeId node);
+
+  // --- model_initial.cpp
+  // In discrete time one value stands for all samples before the first; it may be what a channel measured there.
+  void initial_pasts();
+  void initial_values();
+  // Where the search for an unknown's first value begins.
+  void guess(ast::InitialValue const& initial, Unknown& unknown);
+  // Equations that were differentiated must hold at the start.
+  void constraints();
+
+  // --- model_processes.cpp
+  // Where Gaussian processes stand: each applied, an addend of what one channel with normal noise is centred on.
+  void processes();
+  // One function for all experiments has no hyper-parameter of one.
+  void shared_by_all(Process const& process, Span call);
+  // Inside the arguments of a process, what a channel predicts is without processes: else they would need themselves.
+  void resolve_process_arguments(std::vector<NodeId> const& predicted);
+  void place_processes();
+
+  // --- model_widths.cpp
+  void positive_widths();
+  std::vector<std::string> parameters_of(NodeId root) const;
+
+  // --- model_samples.cpp
+  void name_samples();
+  // Place holders of samples become what they stand for.
+  void finish_samples();
+  bool reads_input_rate() const;
+  void lay_out_lags(std::vector<NodeId> const& predicted);
+
+  // --- model_quantities.cpp
+  void parameters();
+  // Each sampled parameter after those its prior refers to.
+  void order_priors();
+  void channels();
+  // The unit of what the noise is centred on, when it is known; a failing expression is reported by the caller's second look.
+  std::optional<Unit> location_unit(ast::Call const& noise);
+  void derived();
+
+  ast::Model const& tree_;
+  Diagnostics& diagnostics_;
+  std::size_t before_;
+  Model model_;
+  Scope scope_;
+  std::vector<std::pair<std::string, StateInfo>> states_;
+  std::vector<ast::ParameterDeclaration const*> parameter_trees_;
+  std::vector<NodeId> highest_;                       // solutions for the unknowns; none for an implicit model
+  std::vector<Invariant> constraints_;                // of every differentiation
+  bool orders_doubtful_ = false;                      // after a mistake in the units of an equation: a prime may be missing there
+  std::vector<std::optional<NodeId>> initial_pasts_;  // of each state of a discrete-time model
+};
+
+}  // namespace sysid

@@ -1,0 +1,118 @@
+// Initial values: of states, of the past in discrete time, of the search for unknowns; and whether constraints hold there.
+#include "check/model/model_checker.hpp"
+
+#include <algorithm>
+
+#include "check/message/errors.hpp"
+#include "model/invariant.hpp"
+
+namespace sysid {
+
+void ModelChecker::initial_pasts() {
+  initial_pasts_.resize(states_.size());
+  std::map<std::string, Span> given;
+  each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
+    for (ast::InitialValue const& initial : declaration.values) {
+      auto const place =
+          std::find_if(states_.begin(), states_.end(), [&](auto const& state) { return state.first == initial.state.name.text; });
+      if (place == states_.end()) {
+        diagnostics_.add(errors::not_a_state(initial.state.name, state_names()));
+        continue;
+      }
+      if (initial.state.primes > 0) {
+        diagnostics_.add(errors::primes_in_discrete_time(initial.state));
+        continue;
+      }
+      if (auto const [first, fresh] = given.emplace(place->first, initial.span); !fresh) {
+        diagnostics_.add(errors::initial_twice(initial.span, first->second, place->first));
+        continue;
+      }
+      Symbol const& state = *scope_.find(place->first);
+      auto const value = scope_.expression_in(state.unit, state.span, initial.value, {Occasion::Kind::declared, place->first});
+      if (!value) continue;
+      bool const moves = model_.graph.depends(value->node, [](Node const& node) {
+        return node.operation == Operation::leaf && node.leaf_kind != LeafKind::parameter &&
+               !(node.leaf_kind == LeafKind::measured && node.lag == 0);
+      });
+      if (moves) {
+        diagnostics_.add(errors::initial_moves(initial.value.span));
+        continue;
+      }
+      initial_pasts_[static_cast<std::size_t>(place - states_.begin())] = adapt(model_.graph, *value, state.unit);
+    }
+  });
+}
+
+void ModelChecker::initial_values() {
+  if (scope_.samples().discrete) {
+    initial_pasts();
+    return;
+  }
+  std::map<int, Span> given;
+  each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
+    for (ast::InitialValue const& initial : declaration.values) {
+      StateInfo const* info = find_state(initial.state.name.text);
+      if (info == nullptr) {
+        diagnostics_.add(errors::not_a_state(initial.state.name, state_names()));
+        continue;
+      }
+      if (info->order == 0 && model_.unknowns.empty()) continue;  // reported with the equations
+      if (initial.state.primes == info->order && (info->order == 0 || model_.implicit)) {
+        guess(initial, model_.unknowns[index_of(*info)]);
+        continue;
+      }
+      if (initial.state.primes >= info->order) {
+        if (!orders_doubtful_) diagnostics_.add(errors::initial_of_highest(initial.state, initial.state.name.text, info->order));
+        continue;
+      }
+      int const component = info->first + initial.state.primes;
+      State& state = model_.states[static_cast<std::size_t>(component)];
+      if (auto const [place, fresh] = given.emplace(component, initial.span); !fresh) {
+        diagnostics_.add(errors::initial_twice(initial.span, place->second, state.name));
+        continue;
+      }
+      auto const value = scope_.expression_in(state.unit, state.span, initial.value, {Occasion::Kind::declared, state.name});
+      if (!value) continue;
+      if (!moving_part(model_.graph, value->node).empty()) {
+        diagnostics_.add(errors::initial_moves(initial.value.span));
+        continue;
+      }
+      state.initial = adapt(model_.graph, *value, state.unit);
+      state.initial_given = true;
+    }
+  });
+  for (std::size_t i = 0; i < model_.states.size() && !orders_doubtful_;) {
+    Span const declaration = model_.states[i].span;
+    std::vector<std::string> missing;
+    for (; i < model_.states.size() && model_.states[i].span == declaration; ++i)
+      if (!given.contains(static_cast<int>(i))) missing.push_back(model_.states[i].name);
+    if (!missing.empty()) diagnostics_.add(errors::initial_missing(declaration, missing));
+  }
+}
+
+void ModelChecker::guess(ast::InitialValue const& initial, Unknown& unknown) {
+  auto const value = scope_.expression_in(unknown.unit, unknown.span, initial.value, {Occasion::Kind::declared, unknown.name});
+  if (!value) return;
+  if (moving_part(model_.graph, value->node).empty())
+    unknown.guess = adapt(model_.graph, *value, unknown.unit);
+  else
+    diagnostics_.add(errors::initial_moves(initial.value.span));
+}
+
+void ModelChecker::constraints() {
+  std::optional<Span> given;
+  each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) { given = given.value_or(declaration.span); });
+  std::vector<NodeId> initial;
+  for (State const& state : model_.states) initial.push_back(state.initial);
+  std::set<std::size_t> seen;
+  for (Invariant const& constraint : constraints_) {
+    bool const original = seen.insert(constraint.span.begin).second;
+    if (original) model_.invariants.push_back(constraint);
+    if (given && violated_at_start(model_, constraint, initial)) {
+      diagnostics_.add(errors::start_off_constraint(constraint.span, *given));
+      return;
+    }
+  }
+}
+
+}  // namespace sysid

@@ -1,0 +1,59 @@
+// Widths that no value of a prior makes possible: said here, not after hours of draws of which none has a likelihood.
+#include <algorithm>
+
+#include "check/expression/value_range.hpp"
+#include "check/message/errors.hpp"
+#include "check/model/model_checker.hpp"
+
+namespace sysid {
+namespace {
+
+/// Why no number of `range` in the place of argument `i` is allowed, which a positive one would be; empty where some is.
+std::string_view never_allowed(DistributionRow const& row, std::size_t i, ValueRange const& range) {
+  if (row.refuse == nullptr || (!range.empty && range.high > 0)) return {};
+  std::vector<double> numbers(row.arguments.size(), 1.0);
+  if (!row.refuse(numbers).empty()) return {};
+  numbers[i] = range.empty ? -1 : std::max(range.high, -1.0);
+  return row.refuse(numbers);
+}
+
+}  // namespace
+
+std::vector<std::string> ModelChecker::parameters_of(NodeId root) const {
+  std::vector<std::string> names;
+  for (NodeId const id : model_.graph.reachable({&root, 1}))
+    if (is_leaf(model_.graph[id], LeafKind::parameter))
+      names.push_back(model_.parameters[static_cast<std::size_t>(model_.graph[id].index)].name);
+  return names;
+}
+
+void ModelChecker::positive_widths() {
+  ValueRanges ranges(model_);
+  auto const look_at = [&](Distribution const& use, Quantity const& variate) {
+    for (std::size_t i = 0; i < use.arguments.size(); ++i)
+      if (std::string_view const reason = never_allowed(*use.row, i, ranges.of(use.arguments[i])); !reason.empty())
+        diagnostics_.add(
+            errors::never_allowed(variate.span, std::string(use.row->name), variate.name, reason, parameters_of(use.arguments[i])));
+  };
+  for (Parameter const& parameter : model_.parameters)
+    if (parameter.prior) look_at(*parameter.prior, parameter);
+  for (Channel const& channel : model_.channels) look_at(channel.noise, channel);
+  auto const look_into = [&](Process const& process) {
+    for (KernelUse const& kernel : process.kernels) {
+      std::size_t k = 0;
+      for (gaussian_process::HyperParameterRow const& row : kernel.row->hyper_parameters)
+        for (std::size_t d = 0; d < (row.per_input ? kernel.inputs.size() : 1); ++d) {
+          NodeId const node = kernel.hyper_parameters[k++];
+          ValueRange const range = ranges.of(node);
+          if (!range.empty && range.high > 0) continue;
+          diagnostics_.add(
+              errors::hyper_parameter_never_positive(process.span, std::string(row.name), process.name, parameters_of(node)));
+          return;
+        }
+    }
+  };
+  for (Process const& process : model_.processes) look_into(process);
+  for (Expansion const& expansion : model_.expansions) look_into(expansion.process);
+}
+
+}  // namespace sysid

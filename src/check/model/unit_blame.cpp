@@ -1,0 +1,174 @@
+// By trial: the model is checked again with another unit in a declaration, and the messages are compared.
+#include "check/model/unit_blame.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "check/model/model_checker.hpp"
+#include "check/units/unit_errors.hpp"
+#include "check/units/units.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::size_t most_statements = 200;
+// A conflict of which a declaration is to blame says by which factor, up to the power with which the name enters.
+constexpr Rational powers[] = {{1, 1}, {-1, 1}, {1, 2}, {-1, 2}, {1, 3}, {-1, 3}};
+constexpr std::size_t most_factors = 4;
+
+template <class Visit>
+void each_declared(ast::Model& model, Visit const& visit) {
+  for (ast::ModelStatement& statement : model.statements) {
+    if (auto* inputs = std::get_if<ast::InputDeclaration>(&statement))
+      for (ast::Declared& input : inputs->names) visit(input);
+    if (auto* states = std::get_if<ast::StateDeclaration>(&statement))
+      for (ast::Declared& state : states->names) visit(state);
+    if (auto* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) visit(parameter->name);
+    if (auto* definition = std::get_if<ast::Definition>(&statement)) visit(definition->name);
+    if (auto* observation = std::get_if<ast::Observation>(&statement)) visit(observation->channel);
+  }
+}
+
+// What tells errors apart; the units of those that remain may change.
+using Mistake = std::tuple<std::string, std::uint32_t, std::uint32_t>;
+Mistake place_of(Diagnostic const& each) {
+  return {each.code, each.primary ? each.primary->span.begin : 0, each.primary ? each.primary->span.end : 0};
+}
+// About names, numbers and units: what may follow from a unit. Mistakes of structure come to light when those before are gone.
+std::set<Mistake> errors_from(std::size_t first, Diagnostics const& diagnostics) {
+  std::set<Mistake> places;
+  for (std::size_t i = first; i < diagnostics.all().size(); ++i) {
+    Diagnostic const& each = diagnostics.all()[i];
+    if (each.severity == Severity::error && each.code.starts_with("E2")) places.insert(place_of(each));
+  }
+  return places;
+}
+
+ast::UnitExpression written(Dimension const& dimension, Span span) {
+  constexpr char const* bases[] = {"kg", "m", "s", "A", "K", "mol", "cd"};
+  ast::UnitExpression unit{{span}, {}};
+  for (std::size_t i = 0; i < dimension.size(); ++i) {
+    if (dimension[i].numerator == 0) continue;
+    ast::UnitFactor factor{{span}, ast::Name{{span}, bases[i]}, std::nullopt, false};
+    double const exponent = static_cast<double>(dimension[i].numerator) / dimension[i].denominator;
+    factor.exponent = ast::Box<ast::Expression>(ast::Expression{{span}, ast::Number{{span}, exponent, std::nullopt}});
+    unit.factors.push_back(std::move(factor));
+  }
+  if (unit.factors.empty()) unit.factors.push_back({{span}, ast::Name{{span}, "-"}, std::nullopt, false});
+  return unit;
+}
+
+Dimension product(Dimension const& a, Dimension const& b, Rational power) {
+  Dimension result;
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = a[i] + b[i] * power;
+  return result;
+}
+
+class Search {
+ public:
+  Search(ast::Model const& model, std::vector<ast::FunctionDefinition const*> const& shared, std::set<Mistake> before)
+      : model_(model), shared_(shared), before_(std::move(before)) {}
+
+  struct Blame {
+    ast::Name name;
+    std::string unit;
+    std::set<Mistake> resolved;
+  };
+
+  std::optional<Blame> run() {
+    Diagnostics said;
+    ModelChecker checker(model_, shared_, said);
+    checker.run();
+    std::vector<Dimension> factors;
+    for (Dimension const& each : checker.units().missing())
+      if (factors.size() < most_factors && std::find(factors.begin(), factors.end(), each) == factors.end())
+        factors.push_back(each);
+    std::vector<ast::Declared> declared;  // elements of a vector share a place
+    each_declared(model_, [&](ast::Declared const& each) {
+      bool const fresh = std::none_of(declared.begin(), declared.end(),
+                                      [&](ast::Declared const& other) { return other.name.span == each.name.span; });
+      if (each.unit && fresh) declared.push_back(each);
+    });
+    std::optional<Blame> best;
+    bool alone = true;
+    for (ast::Declared const& each : declared) {
+      if (resolved_by(each, std::nullopt).size() < 2) continue;
+      auto const blame = best_unit(each, factors, checker.units());
+      if (!blame) continue;
+      if (!best || blame->resolved.size() > best->resolved.size()) {
+        best = blame;
+        alone = true;
+      } else if (blame->resolved.size() == best->resolved.size()) {
+        alone = false;
+      }
+    }
+    return alone ? best : std::nullopt;
+  }
+
+ private:
+  std::optional<Blame> best_unit(ast::Declared const& declared, std::vector<Dimension> const& factors, UnitCheck const& units) {
+    Diagnostics said_before;
+    auto const now = check_unit(*declared.unit, said_before);
+    if (!now) return std::nullopt;
+    std::optional<Blame> best;
+    for (Dimension const& factor : factors)
+      for (Rational const power : powers) {
+        Unit unit;
+        unit.dimension = product(now->dimension, factor, power);
+        std::set<Mistake> resolved = resolved_by(declared, written(unit.dimension, declared.unit->span));
+        if (resolved.size() >= 2 && (!best || resolved.size() > best->resolved.size()))
+          best = Blame{declared.name, units.words(unit), std::move(resolved)};
+      }
+    return best;
+  }
+
+  // The errors that are gone with another unit, or none, in a declaration; nothing where there are new ones.
+  std::set<Mistake> resolved_by(ast::Declared const& declared, std::optional<ast::UnitExpression> const& unit) {
+    ast::Model changed = model_;
+    each_declared(changed, [&](ast::Declared& each) {
+      if (each.name.span == declared.name.span) each.unit = unit;
+    });
+    Diagnostics said;
+    ModelChecker(changed, shared_, said).run();
+    std::set<Mistake> const after = errors_from(0, said);
+    std::set<Mistake> resolved;
+    if (!std::includes(before_.begin(), before_.end(), after.begin(), after.end())) return resolved;
+    std::set_difference(before_.begin(), before_.end(), after.begin(), after.end(), std::inserter(resolved, resolved.end()));
+    return resolved;
+  }
+
+  ast::Model model_;
+  std::vector<ast::FunctionDefinition const*> const& shared_;
+  std::set<Mistake> before_;
+};
+
+}  // namespace
+
+void blame_declaration(ast::Model const& model, std::vector<ast::FunctionDefinition const*> const& shared, std::size_t first,
+                       Diagnostics& diagnostics) {
+  std::set<Mistake> const before = errors_from(first, diagnostics);
+  std::set<Mistake> conflicts;
+  for (std::size_t i = first; i < diagnostics.all().size(); ++i)
+    if (errors::is_unit_conflict(diagnostics.all()[i])) conflicts.insert(place_of(diagnostics.all()[i]));
+  if (conflicts.size() < 2 || model.statements.size() > most_statements) return;
+  auto const blame = Search(model, shared, before).run();
+  if (!blame) return;
+  std::vector<Diagnostic> kept = diagnostics.all(), resolved;
+  std::erase_if(kept, [&](Diagnostic const& each) {
+    bool const gone = static_cast<std::size_t>(&each - kept.data()) >= first && blame->resolved.contains(place_of(each));
+    if (gone) resolved.push_back(each);
+    return gone;
+  });
+  auto const earliest = std::min_element(resolved.begin(), resolved.end(), [](Diagnostic const& a, Diagnostic const& b) {
+    return a.primary->span.begin < b.primary->span.begin;
+  });
+  kept.push_back(errors::blamed(std::move(*earliest), blame->name, blame->unit, static_cast<int>(blame->resolved.size())));
+  diagnostics.replace(std::move(kept));
+}
+
+}  // namespace sysid

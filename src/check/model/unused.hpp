@@ -1,0 +1,12 @@
+// What a model declares and never reads.
+#pragma once
+#include "core/text/diagnostic.hpp"
+#include "model/model.hpp"
+
+namespace sysid {
+
+/// Warns (E3019) of parameters and inputs that neither the equations nor what starts, observes or derives from them reads, directly
+/// or through the priors of parameters that they read: a posterior equal to the prior, a column that changes nothing.
+void warn_of_unused(Model const& model, Diagnostics& diagnostics);
+
+}  // namespace sysid

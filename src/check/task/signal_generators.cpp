@@ -1,0 +1,129 @@
+// One row for each signal: its arguments with their units, how it runs between samples.
+#include "check/task/signal_generators.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "check/message/errors.hpp"
+#include "core/setting/table.hpp"
+
+namespace sysid {
+namespace {
+
+struct SignalArgument {
+  std::string_view name;
+  std::string_view unit;  // of its own; "input": that of the input
+  double fallback;        // NaN: needed
+};
+struct SignalRow {
+  std::string_view name;
+  InputGenerator::Kind kind;
+  std::vector<SignalArgument> arguments;
+  InputRule rule;
+};
+std::vector<SignalRow> const& signals() {
+  double const needed = std::nan("");
+  static std::vector<SignalRow> const rows = {
+      {"gaussian", InputGenerator::Kind::gaussian, {{"mean", "input", 0}, {"sd", "input", needed}}, InputRule::zero_order},
+      {"sine",
+       InputGenerator::Kind::sine,
+       {{"amplitude", "input", needed}, {"frequency", "Hz", needed}, {"phase", "", 0}, {"mean", "input", 0}},
+       InputRule::cubic},
+      {"multisine",
+       InputGenerator::Kind::multisine,
+       {{"sd", "input", needed}, {"lowest", "Hz", needed}, {"highest", "Hz", needed}, {"mean", "input", 0}},
+       InputRule::band_limited},
+      {"constant", InputGenerator::Kind::constant, {{"value", "input", needed}}, InputRule::zero_order},
+  };
+  return rows;
+}
+
+std::vector<std::string> arguments_of(SignalRow const& row) {
+  std::vector<std::string> names;
+  for (SignalArgument const& argument : row.arguments) names.emplace_back(argument.name);
+  names.emplace_back("hold");
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> signal_names() {
+  std::vector<std::string> names;
+  for (SignalRow const& row : signals()) names.emplace_back(row.name);
+  return names;
+}
+
+std::vector<std::string> signal_arguments(std::string_view signal) {
+  SignalRow const* row = row_named(signals(), signal);
+  return row == nullptr ? std::vector<std::string>() : arguments_of(*row);
+}
+
+std::optional<InputGenerator> check_generator(ast::Option const& option, Quantity const& input, OptionReader& reader,
+                                              Diagnostics& diagnostics) {
+  ast::Call const* call = as_call(option.value);
+  std::vector<std::string> const names = signal_names();
+  if (call == nullptr) {
+    diagnostics.add(errors::option_kind(option.value.span, "input " + input.name, "a generated signal", "gaussian(sd = 10)"));
+    return std::nullopt;
+  }
+  auto const row =
+      std::find_if(signals().begin(), signals().end(), [&](auto const& each) { return each.name == call->function.text; });
+  if (row == signals().end()) {
+    diagnostics.add(errors::option_choice(call->function.span, "input " + input.name, call->function.text, names));
+    return std::nullopt;
+  }
+  InputGenerator result{row->kind, {}, row->rule};
+  std::map<std::string, Span> given;  // rightly or not
+  std::vector<std::string> const known = arguments_of(*row);
+  for (ast::Argument const& argument : call->arguments) {
+    std::string const name = argument.name ? argument.name->text : "";
+    auto const place =
+        std::find_if(row->arguments.begin(), row->arguments.end(), [&](auto const& each) { return each.name == name; });
+    if (!argument.name) {
+      diagnostics.add(errors::must_be_named(argument.span, call->function.text, known));
+    } else if (place == row->arguments.end() && name != "hold") {
+      diagnostics.add(errors::unknown_argument(*argument.name, call->function.text, known));
+    } else if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
+      diagnostics.add(errors::stated_twice(argument.span, first->second, "`" + name + "`"));
+    } else if (name == "hold") {
+      std::vector<std::string> const rules = {"zero_order", "linear", "cubic", "band_limited"};
+      auto const word = as_word(argument.value);
+      auto const rule = std::find(rules.begin(), rules.end(), word.value_or(""));
+      if (rule == rules.end())
+        diagnostics.add(errors::option_choice(argument.value.span, name, word.value_or(""), rules));
+      else
+        result.rule = static_cast<InputRule>(rule - rules.begin());
+    } else {
+      std::optional<Unit> unit = place->unit == "input" ? input.unit : unit_of(place->unit);
+      if (unit && (name == "sd" || name == "amplitude")) unit = difference(*unit);
+      double const least = name == "mean" || name == "value" || name == "phase" ? -1e300 : 0;
+      if (auto const value = reader.number(argument.value, name, unit, least, 1e300)) result.arguments[name] = *value;
+    }
+  }
+  for (SignalArgument const& argument : row->arguments) {
+    if (given.contains(std::string(argument.name))) continue;
+    if (std::isnan(argument.fallback))
+      diagnostics.add(errors::argument_missing(*call, {std::string(argument.name)}));
+    else
+      result.arguments[std::string(argument.name)] = argument.fallback;
+  }
+  return result;
+}
+
+void check_band(InputGenerator const& generator, SimulateTask const& task, Span place, Diagnostics& diagnostics) {
+  if (generator.kind != InputGenerator::Kind::multisine) return;
+  double const lowest = generator.arguments.at("lowest"), highest = generator.arguments.at("highest");
+  double const resolution = 1 / (task.samples * task.step);
+  if (highest >= 0.5 / task.step) {
+    diagnostics.add(errors::multisine_beyond_half_rate(place, highest, 0.5 / task.step));
+    return;
+  }
+  double const last = std::floor(highest / resolution);
+  if (last < 1 || last * resolution < lowest)
+    diagnostics.add(errors::multisine_without_harmonic(place, lowest, highest, resolution));
+}
+
+}  // namespace sysid

@@ -1,0 +1,100 @@
+// One task on its way from the tree to what it runs from: what the verbs share, and one function for each verb, in a file of its
+// own (task_fit.cpp, task_predict.cpp, task_simulate.cpp).
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "check/expression/option_reader.hpp"
+#include "check/task/tasks.hpp"
+
+namespace sysid {
+
+class TaskChecker {
+ public:
+  TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile& file, Backends const& backends,
+              std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics);
+
+  /// The checked task, or nothing when an error was reported or the task refers to something that failed its own check.
+  std::optional<Task> run();
+
+ private:
+  // --- tasks.cpp
+  std::optional<int> item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items, std::string const& kind);
+  // Equations that cannot be solved for their highest derivatives need a solver that does without.
+  void suit(SolverSettings& solver, Model const& model);
+  void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options);
+  void suit(FitTask& task, Model const& model);
+  // `prediction = one_step`, for models that have lags to read.
+  void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule);
+  // Whether the option says how a fit simulates; read into `task` then.
+  bool simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task);
+  // Each argument of `values(m = 1, ...)`, `noise(displacement = 0.1 [mm])` with the index of its name among `known`, once.
+  // owner, member: "model `duffing`", "parameter".
+  void each_named(ast::Call const& call, std::string const& owner, std::string const& member, std::vector<std::string> const& known,
+                  std::function<void(ast::Argument const&, std::size_t)> const& visit);
+  // Whether the option names a back end, known or not.
+  bool backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
+                      std::string& backend, Settings& settings);
+
+  // --- task_experiments.cpp
+  // One experiment of the task, without its name; nothing when a diagnostic was added.
+  std::optional<ExperimentUse> experiment(ast::DataReference const& reference, Model const* model);
+  // All of the task, named. preposition: before its data, `to`, `on` or `from`; no sample is fitted twice.
+  std::vector<ExperimentUse> experiments(Model const* model, std::string const& preposition);
+
+  // --- task_fit.cpp
+  FitTask fit();
+  // `search = near(posterior)`, or `search = everywhere`.
+  void search(ast::Option const& option, std::optional<int>& near);
+  // One step ahead, and no differential equations beside it.
+  void suit_processes(FitTask const& task, Model const& model);
+  void suit_scales(Model const& model);
+
+  // --- task_select.cpp
+  SelectTask select();
+  // What the task selects among: index into the sets of the file.
+  std::optional<int> candidate_set();
+  std::vector<FitTask> candidate_fits(CandidateSet const& set, FitTask const& common);
+  // The channels that the data measure; all candidates observe them in units of one kind.
+  std::vector<std::string> common_channels(CandidateSet const& set, std::vector<ExperimentUse> const& experiments);
+
+  // --- task_discover.cpp
+  DiscoverTask discover();
+  // `spike_slab(derivatives = weak(...), ...)`.
+  void discover_method(ast::Option const& option, std::string const& key, DiscoverTask& task);
+  void derivatives(ast::Expression const& tree, DiscoverTask& task);
+  // `noise(displacement = 0.1 [mm])`.
+  void noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task);
+  // Every channel of the dictionary is measured in every experiment.
+  void require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task);
+
+  // --- task_predict.cpp
+  PredictTask predict();
+  // Index of the task above whose draws are used; nothing when it is none.
+  std::optional<int> fitted_task(ast::Name const& name, bool or_selection);
+
+  // --- task_simulate.cpp
+  SimulateTask simulate();
+  // `values(m = 1, ...)`.
+  void values(ast::Call const& call, Model const& model, SimulateTask& task);
+  // The names that states, channel locations and (when the model makes the noise) noise need.
+  std::vector<std::string> values_needed(Model const& model, SimulateTask const& task) const;
+
+  ast::Task const& tree_;
+  TaskNames const& names_;
+  CheckedFile& file_;
+  Backends backends_;
+  std::span<ast::Task const* const> all_tasks_;
+  Diagnostics& diagnostics_;
+  std::size_t before_;
+  OptionReader options_;
+  bool unresolved_ = false;  // the task refers to something that failed its own check
+};
+
+std::vector<std::string> names_of(std::span<BackendSettings const> backends);
+
+}  // namespace sysid

@@ -1,0 +1,98 @@
+// `discover`: the dictionary, the selector with its settings, the form of derivatives, what is reported.
+#include <algorithm>
+
+#include "check/message/errors.hpp"
+#include "check/task/task_checker.hpp"
+#include "check/task/task_options.hpp"
+
+namespace sysid {
+
+void TaskChecker::derivatives(ast::Expression const& tree, DiscoverTask& task) {
+  ast::Call const* call = as_call(tree);
+  std::string const name = call != nullptr ? call->function.text : as_word(tree).value_or("");
+  auto const row = std::find_if(backends_.derivatives.begin(), backends_.derivatives.end(),
+                                [&](BackendSettings const& each) { return each.name == name; });
+  if (row == backends_.derivatives.end()) {
+    diagnostics_.add(errors::option_choice(head_span(tree), "derivatives", name, names_of(backends_.derivatives)));
+    return;
+  }
+  task.form = name;
+  task.form_settings = Settings(row->settings);
+  if (call != nullptr) options_.settings(*call, row->settings, task.form_settings);
+}
+
+void TaskChecker::discover_method(ast::Option const& option, std::string const& key, DiscoverTask& task) {
+  ast::Option selector = option;
+  if (auto* call = std::get_if<ast::Box<ast::Call>>(&selector.value.node)) {
+    std::vector<ast::Argument>& arguments = (*call)->arguments;
+    std::optional<Span> first;
+    for (ast::Argument const& argument : arguments) {
+      if (!argument.name || argument.name->text != "derivatives") continue;
+      if (first)
+        diagnostics_.add(errors::stated_twice(argument.span, *first, "`derivatives`"));
+      else
+        derivatives(argument.value, task);
+      first = argument.span;
+    }
+    std::erase_if(arguments, [](ast::Argument const& each) { return each.name && each.name->text == "derivatives"; });
+  }
+  if (!backend_option(selector, key, backends_.discovering, task.selector, task.selector_settings))
+    options_.unknown(option, task_option_names("discover"));
+}
+
+void TaskChecker::noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task) {
+  std::vector<std::string> known;
+  for (Channel const& channel : dictionary.measured.channels) known.push_back(channel.name);
+  task.noise.resize(known.size());
+  each_named(call, "dictionary `" + dictionary.name + "`", "channel", known, [&](ast::Argument const& argument, std::size_t index) {
+    std::optional<Unit> unit = dictionary.measured.channels[index].unit;
+    if (unit) unit->offset = 0;  // an sd is a difference
+    if (auto const value = options_.number(argument.value, argument.name->text, unit, 1e-300, 1e300)) task.noise[index] = *value;
+  });
+}
+
+void TaskChecker::require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task) {
+  for (std::size_t i = 0; i < task.experiments.size(); ++i) {
+    DataBlock const& block = file_.data[static_cast<std::size_t>(task.experiments[i].data)];
+    std::vector<std::string> measured;
+    for (DataMeasureUse const& use : block.measured) measured.push_back(use.channel);
+    for (std::size_t c = 0; c < dictionary.measured.channels.size(); ++c) {
+      std::string const& channel = dictionary.measured.channels[c].name;
+      if (std::find(measured.begin(), measured.end(), channel) == measured.end())
+        diagnostics_.add(
+            errors::channel_not_measured(tree_.data[i].span, block.name, dictionary.channel_spans[c], channel, measured));
+    }
+  }
+}
+
+DiscoverTask TaskChecker::discover() {
+  DiscoverTask task;
+  task.selector = backends_.discovering.front().name;
+  task.selector_settings = Settings(backends_.discovering.front().settings);
+  task.form = backends_.derivatives.front().name;
+  task.form_settings = Settings(backends_.derivatives.front().settings);
+  auto const found = item(tree_.subject, names_.dictionaries, "dictionary");
+  CheckedDictionary const* dictionary = found ? &file_.dictionaries[static_cast<std::size_t>(*found)] : nullptr;
+  if (found) task.dictionary = *found;
+  task.experiments = experiments(dictionary == nullptr ? nullptr : &dictionary->measured, "from");
+  if (dictionary != nullptr && !diagnostics_.has_errors(before_)) require_channels(*dictionary, task);
+  for (ast::Option const& option : tree_.options) {
+    std::string const key = key_of(option);
+    if (!option.input && option.key && (key == "top" || key == "candidates" || key == "refit" || key == "seed")) {
+      if (!options_.fresh(option, key)) continue;
+      if (key == "top")
+        options_.whole(option, key, 1, 1000, task.top);
+      else if (key == "seed")
+        options_.seed(option, task.seed);
+      else
+        options_.flag(option, key, key == "refit" ? task.refit : task.candidates);
+    } else if (key == "noise" && as_call(option.value) != nullptr) {
+      if (options_.fresh(option, key) && dictionary != nullptr) noise(*as_call(option.value), *dictionary, task);
+    } else {
+      discover_method(option, key, task);
+    }
+  }
+  return task;
+}
+
+}  // namespace sysid

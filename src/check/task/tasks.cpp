@@ -1,0 +1,173 @@
+// Tasks: which verb it is, and what several verbs share.
+#include "check/task/tasks.hpp"
+
+#include <algorithm>
+
+#include "check/message/errors.hpp"
+#include "check/task/task_checker.hpp"
+
+namespace sysid {
+
+TaskChecker::TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedFile& file, Backends const& backends,
+                         std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics)
+    : tree_(tree),
+      names_(names),
+      file_(file),
+      backends_(backends),
+      all_tasks_(all_tasks),
+      diagnostics_(diagnostics),
+      before_(diagnostics.all().size()),
+      options_(tree.verb.text, diagnostics) {}
+
+std::optional<Task> TaskChecker::run() {
+  Task task;
+  task.name = task_name(tree_);
+  task.span = tree_.verb.span;
+  if (tree_.verb.text == "simulate") {
+    task.what = simulate();
+  } else if (tree_.verb.text == "fit") {
+    task.what = fit();
+  } else if (tree_.verb.text == "select") {
+    task.what = select();
+  } else if (tree_.verb.text == "discover") {
+    task.what = discover();
+  } else {
+    task.what = predict();
+  }
+  bool const errors = diagnostics_.has_errors(before_);
+  if (errors || unresolved_) return std::nullopt;
+  return task;
+}
+
+std::optional<int> TaskChecker::item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items,
+                                     std::string const& kind) {
+  auto const place = items.find(name.text);
+  if (place == items.end()) {
+    std::vector<std::string> known;
+    for (auto const& [each, index] : items) known.push_back(each);
+    diagnostics_.add(errors::unknown_item(name, kind, known));
+    return std::nullopt;
+  }
+  if (!place->second) unresolved_ = true;
+  return place->second;
+}
+
+void TaskChecker::suit(SolverSettings& solver, Model const& model) {
+  if (!model.implicit) return;
+  if (!options_.solver_span())
+    solver = {.method = "ida"};
+  else if (solver.row().stepping != Stepping::ida)
+    diagnostics_.add(
+        errors::explicit_solver(*options_.solver_span(), solver.method, model.implicit->equation, model.implicit->unknown));
+}
+
+void TaskChecker::suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options) {
+  if (start.kind != StartRule::Kind::estimated || model.invariants.empty()) return;
+  for (ast::Option const& option : options)
+    if (key_of(option) == "start")
+      diagnostics_.add(errors::estimated_start_of_constraint(option.span, model.invariants.front().span));
+}
+
+bool TaskChecker::simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task) {
+  if (option.input || !option.key) return false;
+  if (key != "start" && key != "substeps" && key != "solver" && key != "prediction" && key != "seed") return false;
+  if (!options_.fresh(option, key)) return true;
+  if (key == "start")
+    options_.start(option, task.start);
+  else if (key == "prediction")
+    prediction(option, models, task.prediction);
+  else if (key == "seed")
+    options_.seed(option, task.seed);
+  else
+    task.settle = !options_.solver(option, task.solver);
+  return true;
+}
+
+void TaskChecker::each_named(ast::Call const& call, std::string const& owner, std::string const& member,
+                             std::vector<std::string> const& known,
+                             std::function<void(ast::Argument const&, std::size_t)> const& visit) {
+  std::map<std::string, Span> given;
+  for (ast::Argument const& argument : call.arguments) {
+    if (!argument.name) {
+      diagnostics_.add(errors::must_be_named(argument.span, call.function.text, known));
+      continue;
+    }
+    auto const place = std::find(known.begin(), known.end(), argument.name->text);
+    if (place == known.end()) {
+      diagnostics_.add(errors::unknown_member(*argument.name, owner, member, known));
+      continue;
+    }
+    if (auto const [first, is_fresh] = given.emplace(argument.name->text, argument.span); !is_fresh)
+      diagnostics_.add(errors::stated_twice(argument.span, first->second, "`" + argument.name->text + "`"));
+    else
+      visit(argument, static_cast<std::size_t>(place - known.begin()));
+  }
+}
+
+bool TaskChecker::backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
+                                 std::string& backend, Settings& settings) {
+  if (option.input || option.key || key.empty()) return false;
+  auto const row = std::find_if(known.begin(), known.end(), [&](BackendSettings const& each) { return each.name == key; });
+  if (row == known.end()) {
+    auto const among = [&](std::span<BackendSettings const> rows) {
+      return std::any_of(rows.begin(), rows.end(), [&](BackendSettings const& each) { return each.name == key; });
+    };
+    std::string const own = among(backends_.fitting)       ? "fit"
+                            : among(backends_.selecting)   ? "select"
+                            : among(backends_.discovering) ? "discover"
+                                                           : "";
+    diagnostics_.add(!own.empty()
+                         ? errors::backend_of_other_verb({{head_span(option.value)}, key}, tree_.verb.text, own, names_of(known))
+                         : errors::unknown_backend({{head_span(option.value)}, key}, names_of(known)));
+    backend = key;  // said once is enough
+    return true;
+  }
+  if (!options_.fresh(option, the_backend)) return true;
+  backend = key;
+  settings = Settings(row->settings);
+  if (ast::Call const* call = as_call(option.value)) options_.settings(*call, row->settings, settings);
+  return true;
+}
+
+void TaskChecker::suit(FitTask& task, Model const& model) {
+  suit(task.solver, model);
+  suit(task.start, model, tree_.options);
+  if (model.integrated()) return;  // else there is nothing to solve
+  task.solver = {};
+  task.settle = false;
+}
+
+void TaskChecker::prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule) {
+  std::vector<std::string> names;
+  std::optional<PredictionRule> chosen;
+  for (PredictionRule const each : {PredictionRule::as_written, PredictionRule::one_step, PredictionRule::free_run}) {
+    names.emplace_back(prediction_name(each));
+    if (as_word(option.value) == names.back()) chosen = each;
+  }
+  if (!chosen) {
+    diagnostics_.add(errors::option_choice(option.value.span, "prediction", as_word(option.value).value_or(""), names));
+    return;
+  }
+  rule = *chosen;
+  if (rule == PredictionRule::as_written) return;
+  for (int const index : models) {
+    Model const& model = file_.models[static_cast<std::size_t>(index)];
+    if (model.dynamics != Dynamics::discrete) return diagnostics_.add(errors::prediction_without_lags(option.span, model.name));
+    if (!with_prediction(model, rule)) return diagnostics_.add(errors::nothing_measured_to_predict_from(option.span, model.name));
+  }
+}
+
+std::vector<std::string> names_of(std::span<BackendSettings const> backends) {
+  std::vector<std::string> names;
+  for (BackendSettings const& backend : backends) names.emplace_back(backend.name);
+  return names;
+}
+
+std::string task_name(ast::Task const& tree) { return tree.name ? tree.name->text : tree.verb.text + "_" + tree.subject.text; }
+
+std::optional<Task> check_task(ast::Task const& tree, TaskNames const& names, CheckedFile& file, Backends const& backends,
+                               std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics) {
+  return TaskChecker(tree, names, file, backends, all_tasks, diagnostics).run();
+}
+
+}  // namespace sysid

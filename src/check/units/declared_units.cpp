@@ -1,0 +1,158 @@
+// Words for units that are missing, from the names and units that the file uses.
+#include "check/units/declared_units.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include "check/units/unit_errors.hpp"
+#include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
+
+namespace sysid {
+namespace {
+
+// A factor of a product that is a number without a unit; null when there is none.
+ast::Expression const* bare_factor(ast::Expression const& tree) {
+  if (auto const* number = std::get_if<ast::Number>(&tree.node)) return number->unit ? nullptr : &tree;
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return bare_factor(*(*unary)->operand);
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return nullptr;
+  ast::Expression const* left = bare_factor(*(*binary)->left);
+  return left != nullptr || (*binary)->symbol == "/" ? left : bare_factor(*(*binary)->right);
+}
+
+// A factor of a product that is a name with primes or without; null when there is none.
+ast::Reference const* named_factor(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
+  if (auto const* reference = std::get_if<ast::Reference>(&tree.node)) {
+    bool const moves = std::any_of(declared.begin(), declared.end(),
+                                   [&](DeclaredUnit const& each) { return each.moves && each.name == reference->name.text; });
+    return moves ? reference : nullptr;
+  }
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return named_factor(*(*unary)->operand, declared);
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return nullptr;
+  ast::Reference const* left = named_factor(*(*binary)->left, declared);
+  return left != nullptr || (*binary)->symbol == "/" ? left : named_factor(*(*binary)->right, declared);
+}
+
+// A unit in coherent SI, without the name it was written by.
+Unit plain(Unit const& unit) {
+  Unit result;
+  result.dimension = unit.dimension;
+  return result;
+}
+
+std::vector<std::string> names_in(ast::Expression const& tree) {
+  std::vector<std::string> names;
+  each_reference(tree, [&](ast::Reference const& reference) { names.push_back(reference.name.text); });
+  return names;
+}
+
+// The one declared name in an expression that does not move and is no pure number: what its unit depends on, beside the states.
+std::optional<DeclaredUnit> only_coefficient(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
+  std::optional<DeclaredUnit> found;
+  for (std::string const& name : names_in(tree))
+    for (DeclaredUnit const& each : declared) {
+      if (each.name != name || each.moves || each.unit.dimensionless()) continue;
+      if (found) return std::nullopt;
+      found = each;
+    }
+  return found;
+}
+
+}  // namespace
+
+void DeclaredUnits::declare(DeclaredUnit declared) {
+  add_unit_names(declared.unit.text, names_in_use_);
+  declared_.push_back(std::move(declared));
+}
+
+std::string DeclaredUnits::words(Unit const& unit) const {
+  if (unit.text.empty() && !unit.dimensionless())
+    for (DeclaredUnit const& each : declared_)
+      if (each.unit.dimension == unit.dimension && each.unit.scale == 1 && each.unit.offset == unit.offset &&
+          each.unit.radian == unit.radian && each.unit.hertz == unit.hertz)
+        return each.unit.text;
+  return unit_words(unit, names_in_use_);
+}
+
+std::string DeclaredUnits::named(Dimension const& dimension, std::vector<std::string> const& but) const {
+  Unit second;
+  second.dimension[2] = {1, 1};
+  std::string text;
+  int count = 0;
+  for (DeclaredUnit const& each : declared_) {
+    if (std::find(but.begin(), but.end(), each.name) != but.end()) continue;
+    std::string name;
+    if (each.unit.dimension == dimension)
+      name = each.name;
+    else if (each.moves && divide(each.unit, second).dimension == dimension)
+      name = each.name + "'";
+    if (name.empty() || ++count > 2) continue;
+    text += (text.empty() ? "`" : " or `") + name + "`";
+  }
+  return text;
+}
+
+std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure) const {
+  std::vector<std::string> but;
+  if (pure && odd != nullptr) but = names_in(*odd);
+  if (odd != nullptr && !pure) {
+    // A number in the place of a coefficient: nothing else in the product could carry its unit.
+    ast::Expression const* number = bare_factor(*odd);
+    std::vector<std::string> const used = names_in(*odd);
+    bool const coefficient = std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
+      return !each.moves && std::find(used.begin(), used.end(), each.name) != used.end();
+    });
+    Unit unit;
+    unit.dimension = missing;
+    if (number != nullptr && !coefficient && !used.empty()) return errors::tag_the_number(unparse(*number), words(unit));
+  }
+  // A prime too few or too many is likelier than a missing rate or time, whatever there is by that unit.
+  ast::Reference const* moving = odd == nullptr || pure ? nullptr : named_factor(*odd, declared_);
+  for (int const primes : {1, 2}) {
+    Dimension time{};
+    time[2] = {primes, 1};
+    if (moving != nullptr && (missing == inverse(time) || (missing == time && moving->primes >= primes))) {
+      Unit factor;
+      factor.dimension = missing;
+      auto const coefficient = only_coefficient(*odd, declared_);
+      std::string const other = coefficient ? words(multiply(plain(coefficient->unit), factor)) : "";
+      return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes),
+                                  coefficient ? coefficient->name : "", other);
+    }
+  }
+  if (std::string const names = named(missing, but); !names.empty())
+    return errors::multiply_by(kind_words(missing, names_in_use_), names);
+  if (std::string const names = named(inverse(missing), but); !names.empty())
+    return errors::divide_by(kind_words(inverse(missing), names_in_use_), names);
+  if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing, names_in_use_), "");
+  if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing), names_in_use_), "");
+  return errors::should_be_in(wanted);
+}
+
+bool DeclaredUnits::used_as_angular(ast::Expression const* cycles, Unit const& ours, ast::Expression const* other,
+                                    Unit const& theirs) const {
+  if (cycles == nullptr || ours.hertz.numerator == 0 || theirs.hertz.numerator != 0 || !(ours.radian == theirs.radian))
+    return false;
+  if (std::abs(ours.hertz.numerator) == 2 && ours.hertz.denominator == 1) return true;
+  bool derivative = false;
+  if (other != nullptr)
+    each_reference(*other, [&](ast::Reference const& reference) { derivative = derivative || reference.primes > 0; });
+  return derivative && std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
+           std::vector<std::string> const names = names_in(*cycles);
+           bool const stands_here = std::find(names.begin(), names.end(), each.name) != names.end();
+           return stands_here && each.moves && each.unit.hertz.numerator == 0;
+         });
+}
+
+std::string DeclaredUnits::frequency_in(ast::Expression const& tree) const {
+  for (std::string const& name : names_in(tree))
+    for (DeclaredUnit const& each : declared_)
+      if (each.name == name && each.unit.hertz.numerator != 0) return name;
+  return {};
+}
+
+}  // namespace sysid

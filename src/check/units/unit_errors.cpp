@@ -1,0 +1,177 @@
+// Messages about units. As everywhere: lower case, no full stop; the units stand under the places, `help` says what to do.
+#include "check/units/unit_errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/units/units.hpp"
+
+namespace sysid::errors {
+namespace {
+
+Diagnostic at(Severity severity, std::string code, Label primary, std::vector<Label> secondary, std::string message,
+              std::string help) {
+  return {severity, std::move(code), std::move(message), std::move(primary), std::move(secondary), std::move(help)};
+}
+
+std::string term_message(UnitConflict const& conflict) {
+  switch (conflict.position) {
+    case UnitConflict::Position::other_side:
+      return "the two sides of this equation have different units";
+    case UnitConflict::Position::after:
+      return fmt::format("this term cannot be added to the {} before it", conflict.several ? "ones" : "one");
+    case UnitConflict::Position::before:
+      break;
+  }
+  return fmt::format("this term cannot be added to the {} after it", conflict.several ? "ones" : "one");
+}
+
+std::string with_names(std::string const& cure, std::string const& names) {
+  if (names.empty()) return cure;
+  return fmt::format("{}; {} is one", cure, names);
+}
+
+std::string subject(Temperature const& temperature) {
+  return temperature.is_name ? "`" + temperature.text + "`" : "what gives this quantity";
+}
+
+}  // namespace
+
+Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
+  std::string code, message, help = conflict.help;
+  switch (occasion.kind) {
+    case Occasion::Kind::terms:
+      code = "E2103";
+      message = term_message(conflict);
+      break;
+    case Occasion::Kind::comparison:
+      code = "E2201";
+      message = "quantities of different units cannot be compared";
+      break;
+    case Occasion::Kind::branches:
+      code = "E2202";
+      message = fmt::format("the branches of `{}` have different units", occasion.what.empty() ? "if" : occasion.what);
+      break;
+    case Occasion::Kind::arguments:
+      code = "E2203";
+      message = fmt::format("the arguments of `{}` have different units", occasion.what);
+      break;
+    case Occasion::Kind::declared:
+      code = "E2204";
+      message = fmt::format("`{}` is in [{}], this is in [{}]", occasion.what, conflict.wanted, conflict.found);
+      break;
+    case Occasion::Kind::distribution:
+      code = "E2205";
+      message = fmt::format("`{}` for `{}` must be {}, this is in [{}]", occasion.what, occasion.of,
+                            conflict.wanted == "-" ? "a pure number" : fmt::format("in [{}]", conflict.wanted), conflict.found);
+      break;
+  }
+  return at(Severity::error, code, conflict.primary, conflict.secondary, message, help);
+}
+
+Diagnostic pure_argument(Label argument, std::string const& function, std::string help) {
+  return at(Severity::error, "E2206", std::move(argument), {}, fmt::format("`{}` takes a pure number", function), std::move(help));
+}
+Diagnostic exponent_with_unit(Label exponent, std::string help) {
+  return at(Severity::error, "E2207", std::move(exponent), {}, "an exponent is a pure number", std::move(help));
+}
+Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, std::string const& unit) {
+  return at(Severity::error, "E2208", std::move(base), {{exponent, "not known before the run"}},
+            "the unit of this power is not known: its base has one, and its exponent is no constant",
+            fmt::format("make the base a pure number: divide `{}` by a reference in [{}]", text, unit));
+}
+Diagnostic condition_with_unit(Label condition, std::string const& text) {
+  return at(Severity::error, "E2209", std::move(condition), {}, "a condition is true or false, not a quantity with a unit",
+            fmt::format("compare it: `{} > 0`", text));
+}
+Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
+  bool const shows_zero = shown.unit.offset != 0;
+  Temperature const &with_zero = shows_zero ? shown : other, &without = shows_zero ? other : shown;
+  std::string message, help;
+  switch (zeros) {
+    case Zeros::in_doubt:
+      message = "in this sum it is open whether a temperature or a difference of temperatures is meant";
+      help = without.unit.offset == 0
+                 ? fmt::format("declare {} in [{}] if it is a difference, in [{}] if it is a temperature", subject(without),
+                               difference(with_zero.unit).text, with_zero.unit.text)
+                 : fmt::format("declare {} and {} in one unit, [{}] for temperatures or [{}] for differences", subject(without),
+                               subject(with_zero), with_zero.unit.text, difference(with_zero.unit).text);
+      break;
+    case Zeros::of_difference:
+      message = "one of these is a temperature, the other a difference of temperatures";
+      help = without.text.empty() ? fmt::format("subtract the temperature that the difference counts from: `{} - 20 [{}]`",
+                                                with_zero.text, with_zero.unit.text)
+                                  : fmt::format("a temperature is `20 [{}] + {}`; a difference is declared in [{}]",
+                                                with_zero.unit.text, without.text, difference(with_zero.unit).text);
+      break;
+    case Zeros::agree:
+    case Zeros::apart:
+      message = "these temperatures count from different zeros";
+      help = fmt::format("declare {} in [{}], too: columns and numbers are converted to it, expressions are not", subject(shown),
+                         other.unit.text.empty() ? "K" : other.unit.text);
+      break;
+  }
+  return at(Severity::error, "E2211", std::move(shown.label), {std::move(other.label)}, message, help);
+}
+Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
+  return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
+            "a frequency in cycles meets one in radians without 2*pi",
+            counts_cycles ? "multiply this by 2*pi if it counts cycles" : "divide this by 2*pi if the other counts cycles");
+}
+Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) {
+  shown.text = name.empty() ? "counts cycles" : fmt::format("`{}` counts cycles", name);
+  return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
+            "a frequency in cycles is used as an angular one, without 2*pi",
+            name.empty() ? "multiply the frequency by 2*pi if it counts cycles"
+                         : fmt::format("write `2*pi*{0}` for `{0}` if it counts cycles", name));
+}
+Diagnostic cycles_in_angle(Span argument, std::string const& function) {
+  return at(Severity::warning, "E2210", {argument, "cycles"}, {}, fmt::format("`{}` takes radians, this counts cycles", function),
+            "multiply by 2*pi");
+}
+
+bool is_unit_conflict(Diagnostic const& diagnostic) {
+  return diagnostic.severity == Severity::error && diagnostic.primary &&
+         (diagnostic.code == "E2103" || diagnostic.code.starts_with("E22"));
+}
+Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string const& unit, int places) {
+  std::string const more =
+      places == 2 ? "one more place conflicts with this unit" : fmt::format("{} more places conflict with this unit", places - 1);
+  auto const shown = std::find_if(conflict.secondary.begin(), conflict.secondary.end(),
+                                  [&](Label const& each) { return each.span == declared.span; });
+  if (shown == conflict.secondary.end())
+    conflict.secondary.push_back({declared.span, more});
+  else
+    shown->text += ", " + more;
+  std::string const vector = declared.text.substr(0, declared.text.find('['));  // whose elements share a declaration
+  conflict.help = fmt::format("declare `{}` in [{}]: then {} agree", vector, unit,
+                              places == 2 ? "both places" : fmt::format("all {} places", places));
+  return conflict;
+}
+
+void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function) {
+  diagnostic.message = fmt::format("in the function `{}`: {}", function, diagnostic.message);
+  diagnostic.secondary.insert(diagnostic.secondary.begin(), *diagnostic.primary);
+  diagnostic.primary = Label{call, "called here"};
+}
+
+std::string multiply_by(std::string const& kind, std::string const& names) {
+  return with_names(fmt::format("multiply it by {}", kind), names);
+}
+std::string divide_by(std::string const& kind, std::string const& names) {
+  return with_names(fmt::format("divide it by {}", kind), names);
+}
+std::string should_be_in(std::string const& unit) {
+  return unit == "-" ? "make it a pure number" : fmt::format("make it a quantity in [{}]", unit);
+}
+std::string tag_the_number(std::string const& number, std::string const& unit) {
+  return fmt::format("a number as a factor has no unit of its own: write `{} [{}]`", number, unit);
+}
+std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit) {
+  auto const primed = [&](int count) { return name + std::string(static_cast<std::size_t>(count), '\''); };
+  std::string const meant = fmt::format("did you mean `{}` for `{}`", primed(wanted), primed(primes));
+  return coefficient.empty() ? meant + "?" : fmt::format("{}, or `{} [{}]`?", meant, coefficient, unit);
+}
+
+}  // namespace sysid::errors

@@ -1,0 +1,60 @@
+// The wording of mistakes in units (E2103, E22): named constructors, called by unit_check.cpp alone.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "check/units/unit_check.hpp"
+#include "core/text/diagnostic.hpp"
+
+namespace sysid {
+
+/// What differs from what, as places with their units.
+struct UnitConflict {
+  enum class Position { before, after, other_side };  // the odd one stands before or after those it is shown against
+  Label primary;
+  std::vector<Label> secondary;
+  Position position = Position::after;
+  bool several = false;       // it is shown against several terms
+  std::string found, wanted;  // units
+  std::string help;
+};
+
+namespace errors {
+
+Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict);
+Diagnostic pure_argument(Label argument, std::string const& function, std::string help);
+Diagnostic exponent_with_unit(Label exponent, std::string help);
+Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, std::string const& unit);
+Diagnostic condition_with_unit(Label condition, std::string const& text);
+/// A temperature, or a difference of two, where it meets another.
+struct Temperature {
+  Label label;
+  std::string text;  // as written; empty: a declaration
+  bool is_name = false;
+  Unit unit;
+};
+Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other);
+/// Warnings. counts_cycles: the shown quantity does, the other is in radians.
+Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles);
+/// name: of the frequency, or empty.
+Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name);
+Diagnostic cycles_in_angle(Span argument, std::string const& function);
+
+/// Quantities whose units do not agree, as an error.
+bool is_unit_conflict(Diagnostic const& diagnostic);
+/// The first of `places` conflicts that another unit of one declaration would resolve.
+Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string const& unit, int places);
+
+/// A mistake in the body of a function, told at the call.
+void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function);
+
+// What to do, for `help`. names: declared quantities that would do ("`y` or `l`"), or empty.
+std::string multiply_by(std::string const& kind, std::string const& names);
+std::string divide_by(std::string const& kind, std::string const& names);
+std::string should_be_in(std::string const& unit);
+std::string tag_the_number(std::string const& number, std::string const& unit);
+/// coefficient: the name whose unit may be wrong in place of the primes, and what it would be in; or empty.
+std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit);
+
+}  // namespace errors
+}  // namespace sysid

@@ -1,0 +1,26 @@
+// Unit expressions of the syntax tree to units; and what the checker knows of the unit of an expression.
+#pragma once
+#include <optional>
+
+#include "core/numeric/unit.hpp"
+#include "core/text/diagnostic.hpp"
+#include "syntax/ast.hpp"
+
+namespace sysid {
+
+/// The unit written between brackets, with its text as the user wrote it; nothing (and a diagnostic) for an unknown atom or a
+/// non-constant exponent.
+std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics);
+std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics);
+/// The unit of what lies between two quantities in `unit`: without a zero point, [delta_degC] for [degC].
+Unit difference(Unit unit);
+/// Whether one has a zero point and the other measures differences of temperature ([delta_degC], or a product): neither converts to
+/// the other. [K] measures both.
+bool zero_against_difference(Unit const& a, Unit const& b);
+/// What forbids a number in unit `given` where one in `wanted` is meant: another kind of quantity, a temperature for a difference
+/// of two, cycles for radians. what: "`rate`", "the constant `w`".
+std::optional<Diagnostic> refuse_number(Span span, std::string const& what, Unit const& given, Unit const& wanted);
+/// A declared unit of time measures time.
+void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics);
+
+}  // namespace sysid

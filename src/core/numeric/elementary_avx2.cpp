@@ -1,0 +1,29 @@
+// Elementary functions over vectors of 4 lanes (compiled for AVX2 and FMA, see CMakeLists.txt): SLEEF's deterministic family.
+#include <immintrin.h>
+
+#include "core/numeric/elementary_vector.hpp"
+
+#define SYSID_UNARY(name, accuracy) extern "C" __m256d Sleef_finz_##name##d4_##accuracy##avx2(__m256d);
+#define SYSID_BINARY(name, accuracy) extern "C" __m256d Sleef_finz_##name##d4_##accuracy##avx2(__m256d, __m256d);
+SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
+SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
+#undef SYSID_UNARY
+#undef SYSID_BINARY
+
+namespace sysid::elementary::avx2 {
+
+#define SYSID_UNARY(name, accuracy)                                                                                               \
+  void name(double const* x, double* out, int width) {                                                                            \
+    for (int i = 0; i < width; i += 4) _mm256_storeu_pd(out + i, Sleef_finz_##name##d4_##accuracy##avx2(_mm256_loadu_pd(x + i))); \
+  }
+#define SYSID_BINARY(name, accuracy)                                                                                     \
+  void name(double const* x, double const* y, double* out, int width) {                                                  \
+    for (int i = 0; i < width; i += 4)                                                                                   \
+      _mm256_storeu_pd(out + i, Sleef_finz_##name##d4_##accuracy##avx2(_mm256_loadu_pd(x + i), _mm256_loadu_pd(y + i))); \
+  }
+SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
+SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
+#undef SYSID_UNARY
+#undef SYSID_BINARY
+
+}  // namespace sysid::elementary::avx2

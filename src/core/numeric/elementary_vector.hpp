@@ -1,0 +1,21 @@
+// Elementary functions over whole vectors: what the files for one instruction set offer to core/elementary.cpp.
+#pragma once
+
+#include "core/numeric/elementary_list.hpp"
+
+namespace sysid::elementary {
+
+#define SYSID_UNARY(name, accuracy) void name(double const* x, double* out, int width);
+#define SYSID_BINARY(name, accuracy) void name(double const* x, double const* y, double* out, int width);
+namespace avx2 {  // width: a multiple of 4
+SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
+SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
+}  // namespace avx2
+namespace avx512 {  // width: a multiple of 8
+SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
+SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
+}  // namespace avx512
+#undef SYSID_UNARY
+#undef SYSID_BINARY
+
+}  // namespace sysid::elementary

@@ -1,0 +1,55 @@
+// Philox 4x64 with ten rounds (Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3"), as Random123 ships it.
+#include "core/numeric/random.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/numeric/elementary.hpp"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include <Random123/philox.h>
+#pragma GCC diagnostic pop
+
+namespace sysid {
+
+std::uint64_t Stream::bits() {
+  if (used_ == 4) {
+    r123::Philox4x64 generator;
+    r123::Philox4x64::ctr_type const counter = {{key_.index, key_.step, block_, 0}};
+    r123::Philox4x64::key_type const key = {{key_.seed, static_cast<std::uint64_t>(key_.purpose)}};
+    r123::Philox4x64::ctr_type const words = generator(counter, key);
+    for (std::size_t i = 0; i < 4; ++i) words_[i] = words[i];
+    ++block_;
+    used_ = 0;
+  }
+  return words_[static_cast<std::size_t>(used_++)];
+}
+
+double Stream::uniform() {
+  // The middles of 2^52 equal cells: never 0, never 1, symmetric about 1/2.
+  return (static_cast<double>(bits() >> 12) + 0.5) * 0x1p-52;
+}
+
+double Stream::normal() {
+  if (has_normal_) {
+    has_normal_ = false;
+    return normal_;
+  }
+  double const radius = std::sqrt(-2 * elementary::log(uniform()));
+  double const angle = 2 * std::numbers::pi * uniform();
+  normal_ = radius * elementary::sin(angle);
+  has_normal_ = true;
+  return radius * elementary::cos(angle);
+}
+
+std::uint64_t Stream::below(std::uint64_t n) {
+  // Words below 2^64 mod n would make the first residues likelier; they are drawn again.
+  std::uint64_t const reject = (0 - n) % n;
+  std::uint64_t word = bits();
+  while (word < reject) word = bits();
+  return word % n;
+}
+
+}  // namespace sysid

@@ -1,0 +1,118 @@
+// The table of solvers and the arithmetic of their settings.
+#include "core/setting/solver.hpp"
+
+#include <fmt/format.h>
+#include <cstdlib>
+
+#include <algorithm>
+#include <string>
+
+#include "core/setting/table.hpp"
+#include "core/text/diagnostic.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr SettingRow fixed_settings[] = {
+    {"substeps", SettingKind::integer, "1", 1, 10000, "",
+     "equal steps per sampling interval; left out in a fit: chosen by the tolerance guard"},
+};
+
+constexpr SettingRow adaptive_settings[] = {
+    {"relative", SettingKind::real, "1e-8", 1e-13, 0.1, "", "error allowed per step, as a part of each state"},
+    {"absolute", SettingKind::real, "0", 0, 1e300, "",
+     "error allowed per step near zero, SI; 0: relative times a thousandth of the size reached"},
+    {"steps", SettingKind::integer, "10000", 1, 1e9, "", "most steps between two samples: then the solve has failed"},
+};
+
+// To the digits that a person would write: 1e-5/100 is not the number nearest to 1e-7.
+double hundredth(double value) { return std::strtod(fmt::format("{:.12e}", value / 100).c_str(), nullptr); }
+
+}  // namespace
+
+std::span<SolverRow const> solvers() {
+  static constexpr SolverRow rows[] = {
+      {"rk4", Stepping::fixed, "the classical Runge-Kutta method of order 4", fixed_settings},
+      {"heun", Stepping::fixed, "Heun's method of order 2 (explicit trapezoidal rule)", fixed_settings},
+      {"euler", Stepping::fixed, "Euler's explicit method of order 1", fixed_settings},
+      {"dopri5", Stepping::lanes, "the adaptive method of Dormand and Prince of order 5, each lane with its own steps",
+       adaptive_settings},
+      {"cvode", Stepping::cvode, "backward differentiation of order 1 to 5, for stiff equations", adaptive_settings},
+      {"ida", Stepping::ida, "backward differentiation for implicit and differential-algebraic equations", adaptive_settings},
+  };
+  return rows;
+}
+
+SolverRow const* find_solver(std::string_view name) { return row_named(solvers(), name); }
+
+SolverRow const& SolverSettings::row() const {
+  SolverRow const* found = find_solver(method);
+  if (found == nullptr) throw InternalError(fmt::format("there is no solver `{}`", method));
+  return *found;
+}
+
+SolverSettings SolverSettings::finer() const {
+  SolverSettings result = *this;
+  if (fixed_step()) {
+    result.substeps *= 2;
+  } else {
+    result.relative = std::max(hundredth(result.relative), 1e-14);  // rounding is not far below
+    result.absolute = hundredth(result.absolute);
+  }
+  return result;
+}
+
+std::string SolverSettings::finer_words() const { return fixed_step() ? "half the step" : "tolerances 100 times smaller"; }
+
+std::string SolverSettings::option() const {
+  SolverSettings const usual{.method = method};
+  if (method == SolverSettings{}.method) return fmt::format("substeps = {}", substeps);
+  Settings const values = settings(), defaults = usual.settings();
+  std::string arguments;
+  for (SettingRow const& each : row().settings) {
+    std::string const name(each.name);
+    if (values.all().at(name) != defaults.all().at(name))
+      arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, setting_text(values.all().at(name)));
+  }
+  return fmt::format("solver = {}{}", method, arguments.empty() ? "" : "(" + arguments + ")");
+}
+
+Settings SolverSettings::settings() const {
+  Settings values(row().settings);
+  auto const set = [&](char const* name, SettingValue value) {
+    if (find_setting(row().settings, name) != nullptr) values.set(name, value);
+  };
+  set("substeps", static_cast<std::int64_t>(substeps));
+  set("relative", relative);
+  set("absolute", absolute);
+  set("steps", static_cast<std::int64_t>(steps));
+  return values;
+}
+
+std::string SolverSettings::text() const {
+  // In the order of the table.
+  Settings const values = settings();
+  std::string arguments;
+  for (SettingRow const& each : row().settings)
+    arguments +=
+        fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", each.name, setting_text(values.all().at(std::string(each.name))));
+  return fmt::format("{}({})", method, arguments);
+}
+
+double SolverSettings::near_zero(double reached) const {
+  return absolute > 0 ? absolute : relative * std::max(reached, smallest_size) / 1000;
+}
+
+SolverSettings make_solver(SolverRow const& row, Settings const& values) {
+  SolverSettings result;
+  result.method = row.name;
+  for (auto const& [name, value] : values.all()) {
+    if (name == "substeps") result.substeps = static_cast<int>(values.integer(name));
+    if (name == "relative") result.relative = values.real(name);
+    if (name == "absolute") result.absolute = values.real(name);
+    if (name == "steps") result.steps = static_cast<int>(values.integer(name));
+  }
+  return result;
+}
+
+}  // namespace sysid

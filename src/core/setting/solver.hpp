@@ -1,0 +1,66 @@
+// Which method integrates a model's equations between the samples of a record, and how accurately: what a task states, every layer
+// passes on, and results keep. The methods themselves live in program/ (fixed steps) and simulate/.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/setting/settings.hpp"
+
+namespace sysid {
+
+/// What brings the states from one sample to the next.
+enum class Stepping {
+  fixed,  // a one-step method expanded into the program: `substeps` equal steps in every interval, all lanes together
+  lanes,  // an embedded method in the program's own lanes, each with its own steps
+  cvode,  // variable-order BDF for stiff equations, lane by lane (simulate/sundials_cvode.cpp)
+  ida,    // the same for implicit and differential-algebraic equations (simulate/sundials_ida.cpp)
+};
+
+struct SolverRow {
+  std::string_view name;
+  Stepping stepping;
+  std::string_view summary;
+  std::span<SettingRow const> settings;
+};
+
+/// In the order that `sysid list solvers` prints.
+std::span<SolverRow const> solvers();
+/// nullptr when there is none of that name.
+SolverRow const* find_solver(std::string_view name);
+
+/// Stands for the size of a state that has never moved, so that its error of 0 may be divided by something: far below any quantity
+/// in any unit, with squares of its inverse still finite.
+constexpr double smallest_size = 1e-120;
+
+/// A solver with its settings. Those that its method does not have are left at their defaults.
+struct SolverSettings {
+  std::string method = "rk4";
+  int substeps = 1;        // fixed: steps per sampling interval
+  double relative = 1e-8;  // adaptive: error allowed per step, as a part of each state
+  double absolute = 0;     // adaptive: error allowed per step near zero, in the state's SI unit; 0: see `near_zero`
+  int steps = 10000;       // adaptive: most steps between two samples, the work budget of a solve
+
+  SolverRow const& row() const;
+  bool fixed_step() const { return row().stepping == Stepping::fixed; }
+  /// What the tolerance guard compares with: half the step, or a hundredth of the tolerances.
+  SolverSettings finer() const;
+  /// What `finer` does, in words: "half the step".
+  std::string finer_words() const;
+  /// "rk4(substeps = 8)": every setting that the method has.
+  std::string text() const;
+  /// The option of a task that asks for it, in its shortest spelling: "substeps = 8", "solver = heun(substeps = 8)".
+  std::string option() const;
+  /// The settings that its method has, by name.
+  Settings settings() const;
+  /// The error allowed near zero for a state whose largest magnitude so far is `reached`: `absolute` where it is given, else
+  /// relative * max(reached, smallest_size) / 1000.
+  double near_zero(double reached) const;
+
+  friend bool operator==(SolverSettings const&, SolverSettings const&) = default;
+};
+
+/// From a table row and values that it allows; back from `settings()`.
+SolverSettings make_solver(SolverRow const& row, Settings const& values);
+
+}  // namespace sysid

@@ -1,0 +1,158 @@
+// Files by system calls: every result is checked, since a full disk may show itself as late as fsync or close.
+#include "core/system/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "core/text/diagnostic.hpp"
+
+namespace sysid {
+
+std::vector<std::string> files_beside(std::filesystem::path const& path) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  std::filesystem::path const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (auto const& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.is_regular_file(ignored)) names.push_back((path.parent_path() / entry.path().filename()).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+namespace {
+
+/// The system's words, as the rest of our messages: lower case.
+std::string reason(int error) {
+  std::string text = std::generic_category().message(error);
+  if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a' && text[1] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'A' + 'a');
+  return text;
+}
+
+std::string help_to_read(std::filesystem::path const& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return fmt::format("`{}` is a folder: name a file in it", path.string());
+  std::string const guess = did_you_mean(path.string(), files_beside(path));
+  return guess.empty() ? "check the path and the permissions" : guess;
+}
+
+std::string help_to_write(std::filesystem::path const& path, int error) {
+  std::error_code ignored;
+  std::filesystem::path const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (error == ENOENT && !std::filesystem::exists(folder, ignored))
+    return fmt::format("there is no folder `{}`: make it, or name another one", folder.string());
+  if (error == EISDIR) return fmt::format("`{}` is a folder: name a file in it", path.string());
+  if (error == ENOTDIR || error == EEXIST) return "a file stands where a folder should be: name another one";
+  if (error == EACCES || error == EPERM || error == EROFS) return "check the permissions, or name another folder";
+  return "check that the folder takes files and the disk has room";
+}
+
+[[noreturn]] void fail(std::string_view what, std::filesystem::path const& path, int error) {
+  std::string const help = what == "read" ? help_to_read(path) : help_to_write(path, error);
+  throw IoError(fmt::format("cannot {} `{}`: {}", what, path.string(), reason(error)), help);
+}
+
+int open_file(std::filesystem::path const& path, int flags) {
+  int descriptor;
+  do descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  while (descriptor < 0 && errno == EINTR);
+  return descriptor;
+}
+
+/// 0, or the error of the first call that failed. Always closes.
+int write_and_close(int descriptor, std::string_view bytes, bool durable) {
+  int error = 0;
+  while (!bytes.empty() && error == 0) {
+    ssize_t const written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written >= 0)
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    else if (errno != EINTR)
+      error = errno;
+  }
+  if (error == 0 && durable && ::fsync(descriptor) != 0) error = errno;
+  // After EINTR the descriptor is closed all the same (Linux).
+  if (::close(descriptor) != 0 && errno != EINTR && error == 0) error = errno;
+  return error;
+}
+
+/// Makes the rename itself durable. Some file systems cannot; the file is whole in any case.
+void flush_folder(std::filesystem::path const& folder) {
+  int const descriptor = open_file(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+  if (descriptor < 0) return;
+  (void)::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+std::string read_file(std::filesystem::path const& path, std::size_t most) {
+  int const descriptor = open_file(path, O_RDONLY);
+  if (descriptor < 0) fail("read", path, errno);
+  std::string bytes;
+  struct stat facts = {};
+  if (::fstat(descriptor, &facts) == 0 && facts.st_size > 0) bytes.reserve(std::min(most, static_cast<std::size_t>(facts.st_size)));
+  char buffer[1 << 16];
+  int error = 0;
+  while (bytes.size() < most) {
+    ssize_t const got = ::read(descriptor, buffer, sizeof buffer);
+    if (got == 0) break;
+    if (got > 0) {
+      bytes.append(buffer, static_cast<std::size_t>(got));
+    } else if (errno != EINTR) {
+      error = errno;
+      break;
+    }
+  }
+  ::close(descriptor);
+  if (error != 0) fail("read", path, error);
+  return bytes;
+}
+
+void write_file(std::filesystem::path const& path, std::string_view bytes) {
+  std::filesystem::path target = path;
+  struct stat facts = {};
+  bool const there = ::stat(path.c_str(), &facts) == 0;
+  if (there) {
+    if (!S_ISREG(facts.st_mode) && !S_ISDIR(facts.st_mode)) {
+      // A device or pipe keeps its name: renaming over /dev/null would replace it.
+      int const descriptor = open_file(path, O_WRONLY);
+      if (descriptor < 0) fail("write", path, errno);
+      if (int const error = write_and_close(descriptor, bytes, false)) fail("write", path, error);
+      return;
+    }
+    std::error_code ignored;
+    std::filesystem::path const real = std::filesystem::canonical(path, ignored);
+    if (!ignored) target = real;
+  }
+  std::filesystem::path partial = target;
+  partial += ".partial";
+  int const descriptor = open_file(partial, O_WRONLY | O_CREAT | O_TRUNC);
+  if (descriptor < 0) fail("write", path, errno);
+  if (there)
+    (void)::fchmod(descriptor, facts.st_mode & 07777U);  // whoever could read the old bytes can read the new, and no one else
+  int error = write_and_close(descriptor, bytes, true);
+  if (error == 0 && ::rename(partial.c_str(), target.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(partial.c_str());
+    fail("write", path, error);
+  }
+  flush_folder(target.parent_path());
+}
+
+void make_folder(std::filesystem::path const& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) fail("make the folder", path, error.value());
+  if (!std::filesystem::is_directory(path)) fail("make the folder", path, ENOTDIR);
+}
+
+void remove_file(std::filesystem::path const& path) {
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail("remove", path, errno);
+}
+
+}  // namespace sysid

@@ -1,0 +1,57 @@
+// Signal handlers that only set a flag; Ctrl-C pressed again gives up waiting for a safe point.
+#include "core/system/interrupt.hpp"
+
+#include <unistd.h>
+#include <csignal>
+
+#include <atomic>
+#include <cstdint>
+#include <ctime>
+
+namespace sysid {
+
+namespace {
+
+// timeout(1), shells and launchers pass one request on twice, to the program and to its process group; what arrives within this
+// time of the first signal is the same request.
+constexpr std::int64_t same_request_nanoseconds = 500'000'000;
+
+// When an interruption was requested, in nanoseconds of the monotonic clock; 0 where none is. One word, since two signals may be
+// handled by two threads at once.
+std::atomic<std::int64_t> requested_at{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler may touch lock-free atomics alone");
+
+std::int64_t nanoseconds() {
+  timespec now = {};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+void on_signal(int signal) {
+  std::int64_t const now = nanoseconds();
+  std::int64_t first = 0;
+  if (requested_at.compare_exchange_strong(first, now)) return;
+  // Whoever supervises the program and has no more patience sends SIGKILL: SIGTERM may come as often as it likes.
+  if (signal == SIGINT && now - first > same_request_nanoseconds) _exit(130);
+}
+
+}  // namespace
+
+void install_interrupt_handlers() {
+  struct sigaction action = {};
+  action.sa_handler = &on_signal;
+  // Reads and writes go on: files are finished before the flag is looked at.
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupt_requested() { return requested_at.load(std::memory_order_relaxed) != 0; }
+void request_interrupt() {
+  std::int64_t none = 0;
+  requested_at.compare_exchange_strong(none, nanoseconds());
+}
+void clear_interrupt() { requested_at.store(0); }
+
+}  // namespace sysid

@@ -1,0 +1,89 @@
+// Trajectories to bands, quantity by quantity.
+#include "diagnostics/bands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "diagnostics/scores.hpp"
+#include "diagnostics/verdict.hpp"
+#include "likelihood/simulated_parameters.hpp"
+
+namespace sysid {
+
+Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
+                       Experiment const& experiment, Model const& model) {
+  Prediction prediction;
+  prediction.experiment = experiment.name;
+  prediction.time = experiment.time;
+  if (experiment.time_unit) {
+    prediction.time_unit = experiment.time_unit->text;
+    prediction.time_scale = experiment.time_unit->scale;
+  }
+  prediction.rows = model.dynamics == Dynamics::none;
+  if (prediction.rows)  // of any order: shown as they stand in the file
+    for (std::size_t i = 0; i < prediction.time.size(); ++i) prediction.time[i] = experiment.first_row + static_cast<double>(i);
+  prediction.scored = experiment.scored;
+  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+    Quantity const& input = model.inputs[k];
+    PredictedInput driven{input.name, input.unit_text(), {}};
+    for (int i = 0; i < static_cast<int>(experiment.time.size()); ++i)
+      driven.values.push_back(input.from_si(experiment.inputs[k].sample(i)));
+    prediction.inputs.push_back(std::move(driven));
+  }
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    TrajectoryQuantity const& quantity = quantities[q];
+    // A state that a channel of its name observes is shown once, as the channel.
+    bool const shown = quantity.channel < 0 && std::any_of(model.channels.begin(), model.channels.end(),
+                                                           [&](Channel const& channel) { return channel.name == quantity.name; });
+    if (shown) continue;
+    PredictedQuantity predicted;
+    predicted.name = quantity.name;
+    predicted.unit = quantity.unit;
+    predicted.response = band(result.values[q]);
+    if (quantity.channel >= 0) {
+      auto const channel = static_cast<std::size_t>(quantity.channel);
+      if (result.noisy[channel].size() > 1) predicted.noisy = band(result.noisy[channel]);  // one trajectory has no width
+      for (double const si : experiment.measured[channel]) predicted.measured.push_back(model.channels[channel].from_si(si));
+    }
+    prediction.quantities.push_back(std::move(predicted));
+  }
+  return prediction;
+}
+
+Findings leave_out_noise(Model const& model, Prediction& prediction) {
+  std::vector<std::string> const names = derived_from_noise(model);
+  std::string gone;
+  std::erase_if(prediction.quantities, [&](PredictedQuantity const& each) {
+    bool const reads = each.measured.empty() && std::find(names.begin(), names.end(), each.name) != names.end();
+    if (reads) gone += (gone.empty() ? "`" : ", `") + each.name + "`";
+    return reads;
+  });
+  if (gone.empty()) return {};
+  return {{Severity::note, "reads_noise",
+           fmt::format("{} left out: a selection by distance says nothing about the noise that is read there", gone), ""}};
+}
+
+Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several) {
+  Findings findings;
+  for (PredictedQuantity const& quantity : prediction.quantities) {
+    bool const measured = !quantity.measured.empty();
+    Band const& widest = quantity.noisy.left_out > quantity.response.left_out ? quantity.noisy : quantity.response;
+    int const left_out = widest.left_out - (measured ? failed : failed_elsewhere);
+    if (left_out <= 0) continue;
+    Severity severity = failure_severity(static_cast<std::uint64_t>(left_out), static_cast<std::uint64_t>(widest.draws));
+    if (severity == Severity::error && !measured) severity = Severity::warning;  // the others are what they are
+    findings.push_back(
+        {severity, "undefined_in_band",
+         fmt::format("{}{} has no value somewhere along {} of {} trajectories, and its band is that of the others", quantity.name,
+                     several ? " on " + prediction.experiment : std::string(), left_out, widest.draws),
+         "look for a root or a logarithm of what may be negative, or a division by what may be zero"});
+  }
+  return findings;
+}
+
+StreamKey prediction_noise(std::uint64_t seed, int experiment) {
+  return {seed, Purpose::prediction, static_cast<std::uint64_t>(experiment) << 32, 0};
+}
+
+}  // namespace sysid

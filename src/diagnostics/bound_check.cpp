@@ -1,0 +1,60 @@
+// Posterior mass at prior bounds.
+#include "diagnostics/bound_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::size_t least_draws = 50;  // fewer cannot tell a density
+
+}  // namespace
+
+BoundCheck check_bounds(std::span<double const> draws, double lower, double upper) {
+  if (draws.size() < least_draws || !std::isfinite(lower) || !std::isfinite(upper)) return {};
+  std::vector<double> x(draws.begin(), draws.end());
+  if (lower > 0 && upper >= 10 * lower) {
+    for (double& v : x) v = elementary::log(v);
+    lower = elementary::log(lower);
+    upper = elementary::log(upper);
+  }
+  if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) return {};
+  std::sort(x.begin(), x.end());
+  double const spread = quantile(x, 0.95) - quantile(x, 0.05);
+  if (!(spread > 0) || spread > 0.5 * (upper - lower)) return {};
+  double const window = 0.1 * spread;
+  std::ptrdiff_t peak = 0;
+  for (auto from = x.begin(), to = x.begin(); from != x.end(); ++from) {
+    while (to != x.end() && *to <= *from + window) ++to;
+    peak = std::max(peak, to - from);
+  }
+  std::ptrdiff_t const low = std::upper_bound(x.begin(), x.end(), lower + window) - x.begin();
+  std::ptrdiff_t const high = x.end() - std::lower_bound(x.begin(), x.end(), upper - window);
+  return {2 * low >= peak, 2 * high >= peak};
+}
+
+Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws) {
+  Findings findings;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    std::vector<double> values;
+    for (Chain const& chain : draws.chains)
+      for (auto const& draw : chain.values) values.push_back(draw[p]);
+    ParameterInfo const& info = parameters[p];
+    BoundCheck const check = check_bounds(values, info.lower, info.upper);
+    if (!check.at_lower && !check.at_upper) continue;
+    findings.push_back({Severity::warning, "piles_up_at_bound",
+                        fmt::format("the posterior of {} piles up at the {} bound of its prior, {:.4g}{}", info.name,
+                                    check.at_lower ? "lower" : "upper", check.at_lower ? info.lower : info.upper,
+                                    info.unit.empty() ? "" : " " + info.unit),
+                        "widen the prior, unless the bound is a physical limit"});
+  }
+  return findings;
+}
+
+}  // namespace sysid

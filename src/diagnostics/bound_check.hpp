@@ -1,0 +1,24 @@
+// Whether a posterior leans on a bound of its prior, so that the bound, not the data, decides the answer.
+#pragma once
+#include <span>
+
+#include "likelihood/target.hpp"
+#include "result/draws.hpp"
+#include "result/finding.hpp"
+
+namespace sysid {
+
+struct BoundCheck {
+  bool at_lower = false, at_upper = false;
+};
+
+/// Piles up at a bound: the density of the draws there is at least half its peak, while their central 90 % is narrower than half
+/// the prior (a posterior as wide as its prior does not pile up, it has learnt nothing). Density: share of draws in a window of a
+/// tenth of the central 90 %. On a log scale when both bounds are positive and a decade or more apart. Silent unless both bounds
+/// are finite: zero below a scale parameter is natural, not a choice.
+BoundCheck check_bounds(std::span<double const> draws, double lower, double upper);
+
+/// One warning per parameter that piles up, over all chains.
+Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws);
+
+}  // namespace sysid

@@ -1,0 +1,28 @@
+// What chains say about themselves: did they move, do they agree, are there enough independent draws.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/numeric/statistics.hpp"
+#include "result/finding.hpp"
+
+namespace sysid {
+
+// What chains are held to; Vehtari et al. 2021, sec. 4, for R-hat and the effective sample sizes, bulk and tail.
+inline constexpr double least_acceptance = 0.01;
+inline constexpr std::uint64_t least_distinct = 100;  // states a chain
+inline constexpr double rhat_bar = 1.01, rhat_loud = 1.05;
+inline constexpr double ess_bar = 400;
+
+struct ChainReport {
+  std::vector<Summary> summaries;              // one per parameter
+  std::vector<double> acceptance_rate;         // [chains]
+  std::vector<std::uint64_t> distinct_states;  // [chains]
+  bool adaptive = true;                        // the proposal fits itself; else the help says that it should
+};
+
+/// By the bars above; where R-hat is above the loud one, in louder words.
+Findings check_chains(ChainReport const& report);
+
+}  // namespace sysid

@@ -1,0 +1,22 @@
+// By intervals of 90 %, which heavy tails leave alone.
+#include "diagnostics/contraction.hpp"
+
+#include <cmath>
+
+#include "core/numeric/statistics.hpp"
+
+namespace sysid {
+
+std::pair<double, double> interval_90(Summary const& summary) {
+  if (std::isfinite(summary.q5) && std::isfinite(summary.q95) && summary.q95 > summary.q5) return {summary.q5, summary.q95};
+  return {summary.mean - normal_quantile_95 * summary.sd, summary.mean + normal_quantile_95 * summary.sd};
+}
+
+std::optional<double> narrowing(PriorInfo const& prior, Summary const& summary) {
+  if (!prior.q5 || !prior.q95) return std::nullopt;
+  auto const [low, high] = interval_90(summary);
+  double const ratio = (*prior.q95 - *prior.q5) / (high - low);
+  return std::isfinite(ratio) && ratio > 0 ? std::optional(ratio) : std::nullopt;
+}
+
+}  // namespace sysid

@@ -1,0 +1,285 @@
+// Convergence diagnostics, step for step as the R package `posterior` takes them, on deterministic elementary functions.
+#include "diagnostics/convergence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/fourier.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double mean_of(std::vector<double> const& x) {
+  double const n = static_cast<double>(x.size());
+  double const rough = std::accumulate(x.begin(), x.end(), 0.0) / n;
+  double rest = 0;
+  for (double const v : x) rest += v - rough;
+  return rough + rest / n;
+}
+
+/// Sample variance, divisor n - 1. What additions round off is summed beside (Neumaier 1974), so that the last digit is that of
+/// programs that sum in a wider type.
+double variance_of(std::vector<double> const& x) {
+  double const mean = mean_of(x);
+  double sum = 0, rest = 0;
+  for (double const v : x) {
+    double const square = (v - mean) * (v - mean), next = sum + square;
+    rest += sum > square ? sum - next + square : square - next + sum;
+    sum = next;
+  }
+  return (sum + rest) / (static_cast<double>(x.size()) - 1);
+}
+
+std::vector<double> pooled(ChainValues const& draws) {
+  std::vector<double> all;
+  for (auto const& chain : draws) all.insert(all.end(), chain.begin(), chain.end());
+  return all;
+}
+
+/// Whether diagnostics have no value: nothing there, something not finite, or all the same. `posterior` calls a range below 2.2e-16
+/// constant, which would blind it to quantities that are small in SI units; here only equal draws are constant.
+bool has_no_diagnostics(ChainValues const& draws) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (auto const& chain : draws) {
+    for (double const v : chain) {
+      if (!std::isfinite(v)) return true;
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  }
+  return !(high > low);
+}
+
+/// Each chain in two halves; the middle draw of an odd length is left out.
+ChainValues split(ChainValues const& draws) {
+  ChainValues first, second;
+  for (auto const& chain : draws) {
+    if (chain.size() < 2) return draws;
+    auto const half = static_cast<std::ptrdiff_t>(chain.size() / 2);
+    first.emplace_back(chain.begin(), chain.begin() + half);
+    second.emplace_back(chain.end() - half, chain.end());
+  }
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+/// Quantile of the standard normal, relative error about 1e-16.          Wichura 1988, algorithm AS 241, PPND16
+double normal_quantile(double p) {
+  auto const ratio = [](double r, std::array<double, 8> const& a, std::array<double, 8> const& b) {
+    double top = a[7], bottom = b[7];
+    for (std::size_t i = 7; i-- > 0;) {
+      top = top * r + a[i];
+      bottom = bottom * r + b[i];
+    }
+    return top / bottom;
+  };
+  double const q = p - 0.5;
+  if (std::fabs(q) <= 0.425) {
+    return q * ratio(0.180625 - q * q,
+                     {3.3871328727963666080, 133.14166789178437745, 1971.5909503065514427, 13731.693765509461125,
+                      45921.953931549871457, 67265.770927008700853, 33430.575583588128105, 2509.0809287301226727},
+                     {1.0, 42.313330701600911252, 687.18700749205790830, 5394.1960214247511077, 21213.794301586595867,
+                      39307.895800092710610, 28729.085735721942674, 5226.4952788528545610});
+  }
+  double const r = std::sqrt(-elementary::log(q < 0 ? p : 1 - p));
+  double const size =
+      r <= 5 ? ratio(r - 1.6,
+                     {1.42343711074968357734, 4.63033784615654529590, 5.76949722146069140550, 3.64784832476320460504,
+                      1.27045825245236838258, 2.41780725177450611770e-1, 2.27238449892691845833e-2, 7.74545014278341407640e-4},
+                     {1.0, 2.05319162663775882187, 1.67638483018380384940, 6.89767334985100004550e-1, 1.48103976427480074590e-1,
+                      1.51986665636164571966e-2, 5.47593808499534494600e-4, 1.05075007164441684324e-9})
+             : ratio(r - 5,
+                     {6.65790464350110377720, 5.46378491116411436990, 1.78482653991729133580, 2.96560571828504891230e-1,
+                      2.65321895265761230930e-2, 1.24266094738807843860e-3, 2.71155556874348757815e-5, 2.01033439929228813265e-7},
+                     {1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1, 1.48753612908506148525e-2,
+                      7.86869131145613259100e-4, 1.84631831751005468180e-5, 1.42151175831644588870e-7, 2.04426310338993978564e-15});
+  return q < 0 ? -size : size;
+}
+
+/// Normal scores of the ranks over all chains, ties sharing their average rank.          Vehtari et al. 2021, eq. 14
+ChainValues rank_normalised(ChainValues const& draws) {
+  std::vector<double> const all = pooled(draws);
+  std::vector<std::uint32_t> order(all.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return all[a] < all[b]; });
+  std::vector<double> score(all.size());
+  double const count = static_cast<double>(all.size());
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t last = first;
+    while (last + 1 < order.size() && all[order[last + 1]] == all[order[first]]) ++last;
+    double const rank = 0.5 * static_cast<double>(first + last) + 1;
+    double const z = normal_quantile((rank - 0.375) / (count + 0.25));
+    for (std::size_t i = first; i <= last; ++i) score[order[i]] = z;
+    first = last + 1;
+  }
+  ChainValues scores;
+  std::size_t next = 0;
+  for (auto const& chain : draws) {
+    scores.emplace_back(score.begin() + static_cast<std::ptrdiff_t>(next),
+                        score.begin() + static_cast<std::ptrdiff_t>(next + chain.size()));
+    next += chain.size();
+  }
+  return scores;
+}
+
+/// A transform long enough for the autocovariance of the halves of these chains.
+Fourier fourier_for(ChainValues const& draws) {
+  std::size_t const longest = draws.empty() ? 0 : draws.front().size();
+  return Fourier(std::bit_ceil(std::max<std::size_t>(4, 2 * ((longest + 1) / 2))));
+}
+
+/// Autocovariance (divisor N) at every lag, averaged over the chains. Two chains share one transform: the real part of the
+/// transform of |F(a + ib)|^2 is the sum of the autocovariances of a and b. The spectrum stays in bit-reversed order, which nothing
+/// minds.
+std::vector<double> mean_autocovariance(ChainValues const& chains, std::vector<double> const& means, Fourier const& fourier) {
+  std::size_t const n = chains.front().size();
+  std::size_t const size = fourier.size();
+  std::vector<double> power(size), re(size), im(size);
+  for (std::size_t c = 0; c < chains.size(); c += 2) {
+    std::fill(re.begin(), re.end(), 0.0);
+    std::fill(im.begin(), im.end(), 0.0);
+    for (std::size_t i = 0; i < n; ++i) re[i] = chains[c][i] - means[c];
+    for (std::size_t i = 0; i < n && c + 1 < chains.size(); ++i) im[i] = chains[c + 1][i] - means[c + 1];
+    fourier.to_reversed(re, im);
+    for (std::size_t k = 0; k < size; ++k) power[k] += re[k] * re[k] + im[k] * im[k];
+  }
+  std::fill(im.begin(), im.end(), 0.0);
+  fourier.from_reversed(power, im);  // its own inverse but for the scale, as only the real part is read
+  std::vector<double> covariance(n);
+  double const scale = static_cast<double>(size) * static_cast<double>(n) * static_cast<double>(chains.size());
+  for (std::size_t k = 0; k < n; ++k) covariance[k] = power[k] / scale;
+  return covariance;
+}
+
+/// Potential scale reduction of chains that are already split.          Gelman et al. 2013, eq. 11.4
+double basic_rhat(ChainValues const& chains) {
+  if (chains.empty() || has_no_diagnostics(chains)) return nan;
+  double const n = static_cast<double>(chains.front().size());
+  std::vector<double> means, variances;
+  for (auto const& chain : chains) {
+    means.push_back(mean_of(chain));
+    variances.push_back(variance_of(chain));
+  }
+  return std::sqrt((n * variance_of(means) / mean_of(variances) + n - 1) / n);
+}
+
+/// Effective sample size of chains that are already split: Geyer's initial monotone sequence.          Vehtari et al. 2021,
+/// sec. 3.2
+double basic_ess(ChainValues const& chains, Fourier const& fourier) {
+  if (chains.empty() || chains.front().size() < 3 || has_no_diagnostics(chains)) return nan;
+  std::size_t const length = chains.front().size();
+  double const n = static_cast<double>(length);
+  std::vector<double> means;
+  for (auto const& chain : chains) means.push_back(mean_of(chain));
+  std::vector<double> const covariance = mean_autocovariance(chains, means, fourier);
+  double const within = covariance[0] * n / (n - 1);
+  double const total = within * (n - 1) / n + (chains.size() > 1 ? variance_of(means) : 0.0);
+  auto const correlation = [&](std::size_t lag) { return 1 - (within - covariance[lag]) / total; };
+
+  std::vector<double> rho(length, 0.0);
+  double even = 1, odd = correlation(1);
+  rho[0] = even;
+  rho[1] = odd;
+  std::size_t t = 0;
+  while (t + 5 < length && even + odd > 0) {  // also ends at NaN
+    t += 2;
+    even = correlation(t);
+    odd = correlation(t + 1);
+    if (even + odd >= 0) {
+      rho[t] = even;
+      rho[t + 1] = odd;
+    }
+  }
+  std::size_t const last = t;
+  if (even > 0) rho[last] = even;
+  for (t = 2; t + 2 <= last; t += 2) {
+    if (rho[t] + rho[t + 1] > rho[t - 2] + rho[t - 1]) rho[t] = rho[t + 1] = (rho[t - 2] + rho[t - 1]) / 2;
+  }
+  // The sum over lags 0 .. last - 1; with last = 0 `posterior` still counts lag 0 (R's 1:0), and so do we.
+  double sum = last == 0 ? rho[0] : 0;
+  for (std::size_t i = 0; i < last; ++i) sum += rho[i];
+  double const count = static_cast<double>(chains.size()) * n;
+  // Antithetic chains can look better than independent ones; the bound keeps the estimate stable.
+  double const tau = std::max(-1 + 2 * sum + rho[last], 1 / elementary::log10(count));
+  return count / tau;
+}
+
+double ess_of_quantile(ChainValues const& draws, double bound, Fourier const& fourier) {
+  ChainValues below = draws;
+  for (auto& chain : below)
+    for (double& v : chain) v = v <= bound ? 1.0 : 0.0;
+  return basic_ess(split(below), fourier);
+}
+
+std::vector<double> sorted(ChainValues const& draws) {
+  std::vector<double> all = pooled(draws);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+double rhat_about(ChainValues const& draws, ChainValues const& scores, double median) {
+  ChainValues folded = draws;
+  for (auto& chain : folded)
+    for (double& v : chain) v = std::fabs(v - median);
+  double const bulk = basic_rhat(scores);
+  double const tail = basic_rhat(rank_normalised(split(folded)));
+  return std::isnan(bulk) || std::isnan(tail) ? nan : std::max(bulk, tail);
+}
+
+double smaller_or_nan(double a, double b) { return std::isnan(a) || std::isnan(b) ? nan : std::min(a, b); }
+
+}  // namespace
+
+double rhat(ChainValues const& draws) {
+  if (has_no_diagnostics(draws)) return nan;
+  return rhat_about(draws, rank_normalised(split(draws)), sorted_quantile(sorted(draws), 0.5));
+}
+
+double ess_bulk(ChainValues const& draws) {
+  return has_no_diagnostics(draws) ? nan : basic_ess(rank_normalised(split(draws)), fourier_for(draws));
+}
+
+double ess_tail(ChainValues const& draws) {
+  if (has_no_diagnostics(draws)) return nan;
+  std::vector<double> const all = sorted(draws);
+  Fourier const fourier = fourier_for(draws);
+  return smaller_or_nan(ess_of_quantile(draws, sorted_quantile(all, 0.05), fourier),
+                        ess_of_quantile(draws, sorted_quantile(all, 0.95), fourier));
+}
+
+double ess_mean(ChainValues const& draws) { return basic_ess(split(draws), fourier_for(draws)); }
+
+double mcse_mean(ChainValues const& draws) { return std::sqrt(variance_of(pooled(draws)) / ess_mean(draws)); }
+
+Summary summarise(std::string name, std::string unit, ChainValues const& draws) {
+  Summary summary{std::move(name), std::move(unit), nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
+  std::vector<double> all = pooled(draws);
+  if (all.empty() || std::any_of(all.begin(), all.end(), [](double v) { return !std::isfinite(v); })) return summary;
+  summary.mean = mean_of(all);
+  summary.sd = std::sqrt(variance_of(all));
+  std::sort(all.begin(), all.end());
+  summary.median = sorted_quantile(all, 0.5);
+  summary.q5 = sorted_quantile(all, 0.05);
+  summary.q95 = sorted_quantile(all, 0.95);
+  std::vector<double> deviation = all;
+  for (double& v : deviation) v = std::fabs(v - summary.median);
+  summary.mad = 1.4826 * quantile(std::move(deviation), 0.5);
+  if (has_no_diagnostics(draws)) return summary;
+  ChainValues const scores = rank_normalised(split(draws));
+  summary.rhat = rhat_about(draws, scores, summary.median);
+  Fourier const fourier = fourier_for(draws);
+  summary.ess_bulk = basic_ess(scores, fourier);
+  summary.ess_tail = smaller_or_nan(ess_of_quantile(draws, summary.q5, fourier), ess_of_quantile(draws, summary.q95, fourier));
+  summary.mcse_mean = summary.sd / std::sqrt(basic_ess(split(draws), fourier));
+  return summary;
+}
+
+}  // namespace sysid

@@ -1,0 +1,104 @@
+// Measured samples against the bands that should hold them.
+#include "diagnostics/coverage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/system/files.hpp"
+#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/scores.hpp"
+#include "diagnostics/verdict.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double least_coverage = 0.9;  // of a 95 % band: twice as many outside as should be
+
+std::size_t measured_samples(Report const& report, FitLine const& line) {
+  std::size_t count = 0;
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities) {
+      if (prediction.experiment != line.experiment || quantity.name != line.channel) continue;
+      for (std::size_t i = 0; i < quantity.measured.size(); ++i)
+        count += prediction.scored[i] != 0 && !std::isnan(quantity.measured[i]);
+    }
+  return count;
+}
+
+// So few inside a 95 % band that chance will not do it: 3.3 binomial sds and one sample besides.
+bool misses(double coverage, double samples) {
+  constexpr double expected = 0.95;
+  double const short_of = (expected - coverage) * samples;
+  return coverage < least_coverage && short_of > 3.3 * std::sqrt(samples * expected * (1 - expected)) + 1;
+}
+
+}  // namespace
+
+std::string prediction_verdict(Report const& report, bool missed) {
+  auto const has = [&](char const* code, Severity severity) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [&](Finding const& each) { return each.code == code && each.severity == severity; });
+  };
+  if (has("from_doubtful_fit", Severity::error))
+    return "do not use these bands: the fit that they are drawn from has failed its checks";
+  if (has("worse_than_the_mean", Severity::error)) return "do not use these bands: the mean of the record predicts better";
+  if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
+  if (report.ledger.failed() > 0) return "use with care: some trajectories do not stay finite";
+  if (has("worse_than_the_mean", Severity::warning)) return "use with care: the mean of the record predicts better";
+  if (missed) return "use with care: the data lie outside their bands";
+  if (has("from_doubtful_fit", Severity::warning)) return "use with care, as the fit that this is drawn from";
+  auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
+                                      [](Finding const& each) { return each.severity == Severity::warning; });
+  if (warnings > 0) return with_care(warnings);
+  return "all trajectories stay finite";
+}
+
+void add_source(std::filesystem::path const& fit, Report& report) {
+  auto const summary = nlohmann::json::parse(read_file(fit / "summary.json"), nullptr, false);
+  if (!summary.is_object() || !summary.contains("findings")) return;
+  std::vector<std::string> failed, doubtful;
+  for (auto const& finding : summary["findings"]) {
+    std::string const severity = finding.value("severity", ""), code = finding.value("code", "");
+    std::vector<std::string>* const codes = severity == "error" ? &failed : severity == "warning" ? &doubtful : nullptr;
+    if (codes != nullptr && std::find(codes->begin(), codes->end(), code) == codes->end()) codes->push_back(code);
+  }
+  std::string const name = summary.value("task", "");
+  if (!failed.empty())
+    report.findings.push_back({Severity::error, "from_doubtful_fit",
+                               fmt::format("`{}`, whose draws these are, has failed its checks: {}", name, fmt::join(failed, ", ")),
+                               "its verdict says what to do; then predict again"});
+  else if (!doubtful.empty())
+    report.findings.push_back(
+        {Severity::warning, "from_doubtful_fit",
+         fmt::format("`{}`, whose draws these are, is to be used with care: {}", name, fmt::join(doubtful, ", ")),
+         "its verdict says what there is to look at"});
+}
+
+bool add_coverage(Report& report, bool fed_back) {
+  bool any = false;
+  for (FitLine const& line : fit_lines(report))
+    for (Score const& score : line.scores)
+      if (score.name == "nmse" && score.value > as_bad_as_the_mean(measured_samples(report, line)))
+        report.findings.push_back(worse_than_the_mean(
+            score.value > useless_nmse ? Severity::error : Severity::warning, line.what(), score.value,
+            "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"));
+  for (FitLine const& line : fit_lines(report))
+    for (Score const& score : line.scores) {
+      if (score.name != "coverage_95" || !misses(score.value, static_cast<double>(measured_samples(report, line)))) continue;
+      any = true;
+      report.findings.push_back(
+          {Severity::warning, "coverage_low",
+           fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
+           fed_back
+               ? "a free run leaves out the noise that feeds back into later samples: its bands are those of the parameters and "
+                 "of each sample's own noise"
+               : "the model or its noise does not carry over to these data: look at the residuals, and at inputs outside the "
+                 "range that was fitted"});
+    }
+  return any;
+}
+
+}  // namespace sysid

@@ -1,0 +1,30 @@
+// One finding per constraint, with its text.
+#include "diagnostics/drift.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sysid {
+namespace {
+
+constexpr double tolerable_drift = 1e-3;
+
+}  // namespace
+
+Findings drift_findings(Source const& source, Model const& model, Trajectory::Result const& result, std::string const& record) {
+  Findings findings;
+  for (std::size_t i = 0; i < model.invariants.size(); ++i) {
+    double largest = 0;
+    for (double const drift : result.drift[i])
+      if (drift > largest) largest = drift;
+    findings.push_back(
+        {largest > tolerable_drift ? Severity::warning : Severity::note, "constraint_drift",
+         fmt::format("`{}` was differentiated to solve the model; on {} it is violated by at most {:.2g} of its terms",
+                     source.text(model.invariants[i].span), record, largest),
+         largest > tolerable_drift ? "integrate more accurately: more `substeps`, or a smaller `relative`" : ""});
+  }
+  return findings;
+}
+
+}  // namespace sysid

@@ -1,0 +1,106 @@
+// Populations, parameters without use, and the timing of the inputs.
+#include "diagnostics/fit_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/start_rule.hpp"
+#include "diagnostics/residual_checks.hpp"
+#include "likelihood/output.hpp"
+#include "search/refit.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double gain_per_sample = 0.2;  // nats
+constexpr double gain_at_least = 20;
+
+}  // namespace
+
+Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found) {
+  auto const estimated = [&](NodeId argument) {
+    return model.graph.depends(argument, [&](Node const& node) {
+      return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
+             model.parameters[static_cast<std::size_t>(node.index)].prior.has_value();
+    });
+  };
+  auto const member = std::find_if(model.parameters.begin(), model.parameters.end(), [&](Parameter const& parameter) {
+    // The first argument is where the population lies, what follows is how wide it is.
+    return parameter.per_experiment && parameter.prior && !parameter.prior->arguments.empty() &&
+           std::any_of(parameter.prior->arguments.begin() + 1, parameter.prior->arguments.end(), estimated);
+  });
+  if (member == model.parameters.end()) return {};
+  if (draws.total() == 1)
+    return {{Severity::warning, "optimum_of_hierarchy",
+             fmt::format("the density may grow without bound as the spread of `{}` vanishes: an optimum says little about it",
+                         member->name),
+             "sample it with mh"}};
+  bool const unmixed = std::any_of(found.begin(), found.end(), [](Finding const& each) {
+    return each.code == "chains_disagree" || each.code == "chains_not_quite_agreed" || each.code == "ess_bulk_low" ||
+           each.code == "ess_tail_low";
+  });
+  if (!unmixed) return {};
+  return {{Severity::note, "hierarchy_narrows",
+           fmt::format("the spread of `{}` is estimated: where it is small the posterior narrows, and chains pass slowly",
+                       member->name),
+           fmt::format("write `{}` by standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
+                       "spread*z` (docs/methods/several_experiments.md)",
+                       member->name, member->name)}};
+}
+
+Findings check_use(Model const& model, StartRule const& start) {
+  Findings findings;
+  bool const own_start = start.kind == StartRule::Kind::record;
+  Model read = model;  // as this fit reads it
+  if (!own_start)
+    for (State& state : read.states) state.initial = read.graph.constant(0);
+  std::vector<ParameterRole> const roles = parameter_roles(read), roles_elsewhere = parameter_roles(model);
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    // Terms that vanish over the whole range of an unknown function are another finding.
+    bool const idle = roles[p] == ParameterRole::none || roles[p] == ParameterRole::derived;
+    if (!model.parameters[p].prior || model.parameters[p].coefficient || !idle) continue;
+    std::string const& name = model.parameters[p].name;
+    if (roles_elsewhere[p] == ParameterRole::response)
+      findings.push_back({Severity::warning, "unused_parameter",
+                          fmt::format("{} enters initial values alone, which `start = {}` replaces: its posterior is its prior",
+                                      name, start_text(start)),
+                          "leave the start to the model, `start = record`, or leave the parameter out"});
+    else
+      findings.push_back({Severity::warning, "unused_parameter",
+                          fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", name),
+                          "remove it, or use it in an equation"});
+  }
+  return findings;
+}
+
+Findings check_input_timing(ModelTarget const& target, Aim aim, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
+  Model const& model = target.compiled()->model;
+  Findings findings;
+  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) {
+    auto const at = static_cast<std::size_t>(e);
+    auto const scored = std::count_if(target.residual_places().begin(), target.residual_places().end(),
+                                      [&](auto const& place) { return place.experiment == e && place.sample >= 0; });
+    for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+      double best_gain = 0, best_shift = 0;
+      for (double const shift : {-0.5, 0.5}) {
+        std::vector<Experiment> moved = target.experiments();
+        moved[at].inputs[i] = moved[at].inputs[i].shifted(shift);
+        ModelTarget const other(target.compiled(), target.space(), std::move(moved), target.options());
+        std::vector<Mode> const refitted = refit(other, aim, {mode}, seed, ledger);
+        double const gain = refitted.front().log_density - mode.log_density;
+        if (gain > best_gain) best_gain = gain, best_shift = shift;
+      }
+      if (best_gain <= gain_at_least || best_gain <= gain_per_sample * static_cast<double>(scored)) continue;
+      findings.push_back(
+          {Severity::warning, "input_timing",
+           fmt::format("input {}{} half a sample {} would fit much better (log posterior up by {:.0f} over {} samples)",
+                       model.inputs[i].name, on_experiment(target, e), best_shift > 0 ? "later" : "earlier", best_gain, scored),
+           "check the rule between input samples (hold zero_order, linear, cubic, band_limited) and the delay of the recording"});
+    }
+  }
+  return findings;
+}
+
+}  // namespace sysid

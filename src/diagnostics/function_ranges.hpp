@@ -1,0 +1,18 @@
+// Where the unknown functions of an equation are read, and whether their finite sums stand for something there.
+#pragma once
+#include "likelihood/trajectory.hpp"
+#include "result/finding.hpp"
+#include "result/function.hpp"
+
+namespace sysid {
+
+/// outside_range where a function was read beyond its range along an experiment, by any of up to 100 parameter vectors. A vector
+/// that the simulation fails for says nothing. parameters: of the model, SI [parameters x W].
+Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
+                      ConstLanes parameters, ExecutionOptions const& options);
+
+/// Adds the scored samples of an experiment to the visits of `functions`, which are those of the model's expansions in their order.
+void add_visits(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
+                ConstLanes parameters, ExecutionOptions const& options, std::vector<FunctionReport>& functions);
+
+}  // namespace sysid

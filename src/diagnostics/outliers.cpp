@@ -1,0 +1,26 @@
+// Hampel's identifier, against the stated size of the noise as well.
+#include "diagnostics/outliers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sysid {
+
+std::vector<std::size_t> outliers(std::span<double const> residuals) {
+  constexpr std::size_t least = 20;
+  constexpr double far = 6, sd_of_median = 1.4826;
+  std::vector<double> sizes;
+  for (double const residual : residuals)
+    if (!std::isnan(residual)) sizes.push_back(std::fabs(residual));
+  if (sizes.size() < least) return {};
+  auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  double const limit = far * std::max(1.0, sd_of_median * *middle);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < residuals.size(); ++i)
+    if (std::fabs(residuals[i]) > limit) places.push_back(i);
+  if (places.size() > std::max<std::size_t>(1, sizes.size() / 100)) places.clear();
+  return places;
+}
+
+}  // namespace sysid

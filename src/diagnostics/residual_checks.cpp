@@ -1,0 +1,346 @@
+// Scores and tests of what a fit leaves, and the words for what they find.
+#include "diagnostics/residual_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/contraction.hpp"
+#include "diagnostics/outliers.hpp"
+#include "diagnostics/residual_tests.hpp"
+#include "distribution/deviance.hpp"
+#include "likelihood/output.hpp"
+#include "likelihood/trajectory.hpp"
+
+namespace sysid {
+namespace {
+
+// Residuals of unit size, and how much heavier than normal their tails are: what chi-squared is taken of.
+struct SizedResiduals {
+  std::vector<double> values;
+  double excess_kurtosis = 0;  // mean over the samples
+};
+
+// Pearson's, of counts: the deviance residuals of small counts are not of unit size.
+// arguments: of the channel's noise, at every sample; deviance: one residual per sample, NaN where not scored.
+SizedResiduals pearson(DistributionRow const& noise, std::vector<double> const& measured,
+                       std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance) {
+  SizedResiduals result;
+  double count = 0;
+  for (std::size_t i = 0; i < deviance.size(); ++i) {
+    result.values.push_back(std::nan(""));
+    if (std::isnan(deviance[i]) || !(noise.variance(arguments[i]) > 0)) continue;
+    result.values.back() = (measured[i] - arguments[i][0]) / std::sqrt(noise.variance(arguments[i]));
+    result.excess_kurtosis += noise.excess_kurtosis(arguments[i]);
+    count += 1;
+  }
+  if (count > 0) result.excess_kurtosis /= count;
+  return result;
+}
+
+// Deviance residuals over their size under the noise, which for heavy tails is above 1. It depends on the shape of the noise alone,
+// not on place and width, and a shape that changes along the record is met at a few of its samples.
+SizedResiduals scaled(DistributionRow const& noise, std::vector<std::vector<double>> const& arguments,
+                      std::vector<double> deviance) {
+  constexpr std::size_t looked_at = 4;
+  DevianceMoments moments{0, 0};
+  double count = 0;
+  std::size_t const step = std::max<std::size_t>(1, deviance.size() / looked_at);
+  for (std::size_t i = 0; i < deviance.size(); ++i) {
+    if (std::isnan(deviance[i]) || (count > 0 && i % step != 0) || !noise.refuse(arguments[i]).empty()) continue;
+    DevianceMoments const here = deviance_moments(noise, arguments[i]);
+    moments.mean += here.mean;
+    moments.variance += here.variance;
+    count += 1;
+  }
+  if (count == 0) return {std::move(deviance), 0};
+  moments = {moments.mean / count, moments.variance / count};
+  constexpr double as_normal = 1e-4;
+  if (std::fabs(moments.mean - 1) < as_normal) return {std::move(deviance), 0};
+  for (double& residual : deviance) residual /= std::sqrt(moments.mean);
+  return {std::move(deviance), moments.excess_kurtosis()};
+}
+
+/// nmse [%] from which a fit that leaves more than noise explains little, and less than half.
+constexpr double little = 20, less_than_half = 50;
+
+// A channel over the scored rows of an experiment.
+struct ScoredChannel {
+  ModelTarget const& target;
+  int experiment, channel;
+  std::vector<double> residuals;            // [N] standardised, NaN where not scored
+  std::vector<double> observed, predicted;  // where scored, declared unit
+  std::vector<std::size_t> places;          // of these along the experiment
+  SizedResiduals sized;
+
+  Model const& model() const { return target.compiled()->model; }
+  Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
+  Experiment const& data() const { return target.experiments()[static_cast<std::size_t>(experiment)]; }
+  std::string name() const { return described().name + on_experiment(target, experiment); }
+  bool noise_is_estimated() const {
+    return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(), [&](NodeId argument) {
+      return model().graph.depends(argument, [&](Node const& node) {
+        return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
+               model().parameters[static_cast<std::size_t>(node.index)].prior.has_value();
+      });
+    });
+  }
+};
+
+std::vector<double> without(std::vector<double> residuals, std::vector<std::size_t> const& places) {
+  for (std::size_t const place : places) residuals[place] = std::nan("");
+  return residuals;
+}
+
+double error_at(ScoredChannel const& of, std::size_t place) {
+  auto const at = std::lower_bound(of.places.begin(), of.places.end(), place);
+  if (at == of.places.end() || *at != place) return 0;
+  auto const i = static_cast<std::size_t>(at - of.places.begin());
+  return std::fabs(of.observed[i] - of.predicted[i]);
+}
+
+// A response that is missed is missed most where it is largest, but never at one sample alone.
+std::vector<std::size_t> alone(ScoredChannel const& of, std::vector<std::size_t> places) {
+  constexpr double larger = 5;  // than its neighbours
+  std::erase_if(places, [&](std::size_t place) {
+    return error_at(of, place) < larger * std::max(place > 0 ? error_at(of, place - 1) : 0.0, error_at(of, place + 1));
+  });
+  return places;
+}
+
+// Single samples that do not belong; none of counts, where one is far from a small mean.
+std::vector<std::size_t> far_off(ScoredChannel const& of) {
+  if (of.described().noise.row->discrete) return {};
+  std::vector<std::size_t> const places = outliers(of.sized.values);
+  bool const noise_besides = of.model().dynamics == Dynamics::none || !whiteness(without(of.residuals, places)).fires();
+  return noise_besides ? places : alone(of, places);
+}
+
+// Single errors far from all others, whatever tails the noise has: of these alone the variance of a record may be.
+std::vector<std::size_t> spikes(ScoredChannel const& of) {
+  std::vector<double> errors(of.data().time.size(), std::nan(""));
+  std::vector<double> sizes;
+  for (std::size_t const place : of.places) sizes.push_back(errors[place] = error_at(of, place));
+  if (sizes.empty()) return {};
+  double const middle = quantile(sizes, 0.5);
+  if (!(middle > 0)) return {};
+  constexpr double sd_of_median = 1.4826;
+  for (double& error : errors) error /= sd_of_median * middle;
+  return alone(of, outliers(errors));
+}
+
+// nmse [%] without `left_out`, places that rise, on the scale on which the noise has one size: by logarithms where it multiplies.
+double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& left_out) {
+  DistributionRow const& noise = *of.described().noise.row;
+  std::vector<double> observed, predicted;
+  for (std::size_t i = 0; i < of.observed.size(); ++i) {
+    if (std::binary_search(left_out.begin(), left_out.end(), of.places[i])) continue;
+    observed.push_back(of.observed[i]);
+    predicted.push_back(of.predicted[i]);
+  }
+  if (noise.lower == nullptr || noise.discrete) return nmse(observed, predicted);
+  for (std::vector<double>* const series : {&observed, &predicted})
+    for (double& value : *series) value = value > 0 ? elementary::log(value) : std::nan("");
+  for (std::size_t i = 0; i < observed.size(); ++i)
+    if (std::isnan(predicted[i])) observed[i] = std::nan("");
+  return nmse(observed, predicted);
+}
+
+// coloured: what the fit leaves is more than noise.
+void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
+  constexpr char const* look = "look at units, signs and columns, at the initial values and the priors, then at the model";
+  double const left = unexplained(of, spikes(of));
+  if (left > as_bad_as_the_mean(of.observed.size()))
+    findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.name(), left,
+                                           fmt::format("the fit explains nothing of this channel: {}", look)));
+  else if (coloured && left > little)
+    findings.push_back({left > less_than_half ? Severity::error : Severity::warning, "explains_little",
+                        fmt::format("the fit explains {:.2g} % of the variance of {}, and what it leaves is not noise",
+                                    std::max(0.0, 100 - left), of.name()),
+                        look});
+}
+
+// Rows as the file counts them, with how far they lie off.
+void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& places, Findings& findings) {
+  if (places.empty()) return;
+  constexpr std::size_t most_named = 5;
+  std::vector<std::string> named;
+  for (std::size_t const place : places)
+    if (named.size() < most_named)
+      named.push_back(
+          fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(of.sized.values[place])));
+  if (places.size() > most_named) named.push_back("...");
+  findings.push_back(
+      {Severity::warning, "samples_far_off",
+       fmt::format("{} {} of {} {} far from all others ({})", places.size(), places.size() == 1 ? "sample" : "samples", of.name(),
+                   places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
+       "look at these rows: leave out what is no measurement (an empty cell), or state noise with heavy "
+       "tails: `student_t(y, 4, scale = sigma)`"});
+}
+
+void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Findings& findings) {
+  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis);
+  line.scores.push_back({"chi_squared_per_sample", size.per_sample});
+  if (!size.fires()) return;
+  char const* help =
+      "the noise is larger than stated, or the model misses something: estimate the noise, then look at the residuals";
+  if (of.noise_is_estimated())
+    help =
+        "the model misses something, a prior holds it where it cannot fit, or other channels share this noise: look at the "
+        "residuals";
+  else if (size.per_sample < 1)
+    help = "the stated noise is too large: estimate it";
+  if (with_outliers) help = "a few samples far off make the noise look larger: look at these first";
+  findings.push_back(
+      {Severity::error, "noise_size",
+       fmt::format("residuals of {} are not of the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
+                   of.name(), size.per_sample, size.low, size.high),
+       help});
+}
+
+// Of a model that has a past: correlation in time, and with the input's past. residuals: without samples far off.
+void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals, CorrelationTest const& white, FitLine& line,
+                  Findings& findings) {
+  line.scores.push_back({"whiteness_p", white.p_value});
+  if (white.fires())
+    findings.push_back({Severity::warning, "residuals_not_white",
+                        fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
+                                    white.outside, white.correlation.size()),
+                        "the model misses dynamics or the noise is coloured: posterior widths are too small"});
+  std::vector<Quantity> const& inputs = of.model().inputs;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    std::vector<double> input;
+    for (std::size_t k = 0; k < of.data().time.size(); ++k) input.push_back(of.data().inputs[i].sample(static_cast<int>(k)));
+    CorrelationTest const crossed = input_correlation(residuals, input);
+    line.scores.push_back(
+        {"input_correlation_p" + (inputs.size() > 1 ? "(" + inputs[i].name + ")" : std::string()), crossed.p_value});
+    if (crossed.fires())
+      findings.push_back(
+          {Severity::warning, "input_in_residuals",
+           fmt::format("past values of input {} still show in the residuals of {} ({} of {} lags outside the 99 % band)",
+                       inputs[i].name, of.name(), crossed.outside, crossed.correlation.size()),
+           "the model misses part of the response to the input"});
+  }
+}
+
+FitLine judge(ScoredChannel const& of, Findings& findings) {
+  FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
+  line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
+  std::vector<std::size_t> const far = far_off(of);
+  std::vector<double> const residuals = without(of.residuals, far);
+  std::optional<CorrelationTest> white;  // rows of any order have no past
+  if (of.model().dynamics != Dynamics::none) white = whiteness(residuals);
+  Findings shape;
+  judge_size(of, !far.empty(), line, shape);
+  judge_outliers(of, far, shape);
+  if (white) judge_memory(of, residuals, *white, line, shape);
+  // Deviances of small counts are neither centred nor alike.
+  judge_share(of, white && white->fires() && !of.described().noise.row->discrete, findings);
+  findings.insert(findings.end(), shape.begin(), shape.end());
+  return line;
+}
+
+// values: [D x 1] declared; residuals: all rows of the target.
+void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals, FitCheck& check) {
+  Model const& model = target.compiled()->model;
+  Experiment const& experiment = target.experiments()[static_cast<std::size_t>(e)];
+  Trajectory const trajectory(target.compiled(), experiment, target.options().solver, target.options().start_rows,
+                              target.options().execution);
+  LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
+  target.space()->select(target.space()->values_of_declared(values), e, parameters);
+  Trajectory::Result const predicted = trajectory.run(parameters, {});
+  for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {
+    auto const channel = static_cast<std::size_t>(c);
+    if (experiment.measured[channel].empty()) continue;
+    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}};
+    for (std::size_t r = 0; r < target.residual_places().size(); ++r) {
+      auto const [of_experiment, at_channel, sample] = target.residual_places()[r];
+      if (of_experiment != e || at_channel != c || sample < 0) continue;
+      auto const i = static_cast<std::size_t>(sample);
+      of.residuals[i] = residuals(static_cast<int>(r), 0);
+      of.observed.push_back(model.channels[channel].from_si(experiment.measured[channel][i]));
+      of.predicted.push_back(predicted.values[channel][0][i]);
+      of.places.push_back(i);
+    }
+    if (of.observed.empty()) continue;
+    DistributionRow const& noise = *model.channels[channel].noise.row;
+    std::vector<std::vector<double>> const arguments = trajectory.noise_arguments(parameters, c);
+    of.sized = noise.discrete ? pearson(noise, experiment.measured[channel], arguments, of.residuals)
+                              : scaled(noise, arguments, of.residuals);
+    check.lines.push_back(judge(of, check.findings));
+  }
+}
+
+}  // namespace
+
+void name_held(Report const& report, Findings& findings) {
+  std::vector<std::string> held;
+  for (PriorInfo const& prior : report.priors)
+    for (Summary const& summary : report.summary)
+      if (summary.name == prior.name && !summary.coefficient)
+        if (auto const ratio = narrowing(prior, summary); ratio && *ratio < hardly_narrower) held.push_back(summary.name);
+  constexpr std::size_t most_named = 6;
+  if (held.empty() || held.size() > most_named) return;
+  for (Finding& each : findings)
+    if (each.code == "explains_little" || each.code == "worse_than_the_mean")
+      each.help +=
+          fmt::format("; {} {} as wide as the prior: is it right?", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
+}
+
+Findings check_priors(Report const& report) {
+  Findings findings;
+  for (PriorInfo const& prior : report.priors)
+    for (Summary const& summary : report.summary) {
+      if (summary.name != prior.name || summary.coefficient || !prior.lowest || !prior.highest) continue;
+      double const place = std::isfinite(summary.median) ? summary.median : summary.mean;
+      bool const below = place < *prior.lowest;
+      if (!below && !(place > *prior.highest)) continue;
+      // A prior that ends there has no tail to be in: that is another finding.
+      constexpr double tail = 0.1;  // of the density where 5 % lie beyond
+      if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95)) continue;
+      std::string const unit = prior.unit.empty() ? "" : " " + prior.unit;
+      findings.push_back(
+          {Severity::warning, "prior_contradicted",
+           fmt::format("{} is at {}{}, and its prior leaves one part in 2000 to what is {} {}{}", prior.name, significant(place, 4),
+                       unit, below ? "below" : "above", significant(below ? *prior.lowest : *prior.highest, 4), unit),
+           "data and prior say different things, and the posterior is a compromise: widen the prior, or find what "
+           "pulls the parameter away"});
+    }
+  return findings;
+}
+
+Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help) {
+  return {severity, "worse_than_the_mean",
+          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
+                      channel, nmse),
+          std::move(help)};
+}
+
+double as_bad_as_the_mean(std::size_t samples) {
+  constexpr double excess = 13.8;
+  return 100 * (1 + excess / static_cast<double>(samples));
+}
+
+std::string on_experiment(ModelTarget const& target, int experiment) {
+  if (target.experiments().size() == 1) return {};
+  return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
+}
+
+FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared) {
+  FitCheck check;
+  int const dimension = target.dimension();
+  LaneArray values(dimension, 1), theta(dimension, 1), residuals(target.residual_count(), 1);
+  for (int p = 0; p < dimension; ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
+  target.unconstrain(values, theta);
+  Ledger ledger;
+  target.residuals(theta, residuals, ledger);
+  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) check_experiment(target, e, values, residuals, check);
+  return check;
+}
+
+}  // namespace sysid

@@ -1,0 +1,42 @@
+// What a fit leaves unexplained, experiment by experiment and channel by channel: how much of it there is, of which size, and
+// whether it is noise; and which priors it contradicts.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "likelihood/model_target.hpp"
+#include "result/finding.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+
+/// " on bench.train", where there is more than one experiment to tell apart.
+std::string on_experiment(ModelTarget const& target, int experiment);
+
+struct FitCheck {
+  std::vector<FitLine> lines;  // per experiment and channel: nmse, rmse, chi_squared_per_sample, whiteness_p, input_correlation_p
+  Findings findings;
+};
+
+/// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input.
+FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared);
+
+/// Where a fit explains little: adds to the help which parameters have kept the width of their prior, which may hold others where
+/// they cannot fit.
+void name_held(Report const& report, Findings& findings);
+
+/// Parameters whose posterior lies where their prior has next to nothing.
+Findings check_priors(Report const& report);
+
+/// `worse_than_the_mean` of a channel, with what to do.
+Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help);
+
+/// nmse [%] from which a model is none of its record, whatever its residuals: the error is larger than what there was to explain.
+inline constexpr double useless_nmse = 200;
+
+/// The nmse [%] that a prediction exceeds by chance once in a thousand records where the mean explains all there is: of n samples
+/// of noise about the right prediction the sums of squares about it and about the mean differ by less than sigma^2 chi-squared(2),
+/// of 99.9 % quantile 13.8. A channel that did not change has no nmse, which exceeds nothing.
+double as_bad_as_the_mean(std::size_t samples);
+
+}  // namespace sysid

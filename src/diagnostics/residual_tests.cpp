@@ -1,0 +1,131 @@
+// Correlation and size of residuals.
+#include "diagnostics/residual_tests.hpp"
+
+#include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/numeric/elementary.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double two_sided_99 = 2.5758293035489004;  // normal quantile of 0.995
+
+double mean_of(std::span<double const> x) {
+  double sum = 0, count = 0;
+  for (double const v : x) {
+    if (std::isnan(v)) continue;
+    sum += v;
+    ++count;
+  }
+  return sum / count;
+}
+
+struct Products {
+  double sum = 0;
+  double pairs = 0;
+};
+
+/// Sum over t of (a_(t+lag) - mean_a)(b_t - mean_b), where both are there.
+Products products(std::span<double const> a, double mean_a, std::span<double const> b, double mean_b, std::size_t lag) {
+  Products result;
+  std::size_t const n = std::min(a.size(), b.size());
+  for (std::size_t t = 0; t + lag < n; ++t) {
+    double const product = (a[t + lag] - mean_a) * (b[t] - mean_b);
+    if (std::isnan(product)) continue;
+    result.sum += product;
+    ++result.pairs;
+  }
+  return result;
+}
+
+int usable_lags(double samples, int lags) { return std::min(lags, static_cast<int>(samples / 4)); }
+
+}  // namespace
+
+CorrelationTest whiteness(std::span<double const> residuals, int lags) {
+  CorrelationTest test;
+  test.first_lag = 1;
+  auto const [power, samples] = products(residuals, 0, residuals, 0, 0);
+  int const count = usable_lags(samples, lags);
+  if (count < 1 || !(power > 0)) return test;
+  double q = 0;
+  int used = 0;
+  for (int k = 1; k <= count; ++k) {
+    auto const [sum, pairs] = products(residuals, 0, residuals, 0, static_cast<std::size_t>(k));
+    double const r = sum / power;
+    test.correlation.push_back(r);
+    test.bound.push_back(two_sided_99 * std::sqrt(pairs / (samples * (samples + 2))));
+    if (pairs == 0) continue;
+    q += r * r * samples * (samples + 2) / pairs;
+    ++used;
+    if (std::fabs(r) > test.bound.back()) ++test.outside;
+  }
+  if (used > 0) test.p_value = boost::math::gamma_q(0.5 * used, 0.5 * q);
+  return test;
+}
+
+CorrelationTest input_correlation(std::span<double const> residuals, std::span<double const> input, int lags) {
+  CorrelationTest test;
+  double const mean_e = mean_of(residuals), mean_u = mean_of(input);
+  auto const e = products(residuals, mean_e, residuals, mean_e, 0);
+  auto const u = products(input, mean_u, input, mean_u, 0);
+  int const count = usable_lags(std::min(e.pairs, u.pairs), lags);
+  if (count < 1 || !(e.sum > 0) || !(u.sum > 0)) return test;
+  double const sd = std::sqrt(e.sum / e.pairs) * std::sqrt(u.sum / u.pairs);
+  double colour = 1;
+  for (int k = 1; k <= count; ++k) {
+    auto const lag = static_cast<std::size_t>(k);
+    colour += 2 * products(residuals, mean_e, residuals, mean_e, lag).sum / e.sum *
+              products(input, mean_u, input, mean_u, lag).sum / u.sum;
+  }
+  colour = std::max(colour, 0.25);  // an estimate: sampling error must not shrink the bounds to nothing
+  double largest = 0;
+  int used = 0;
+  for (int k = 0; k <= count; ++k) {
+    auto const [sum, pairs] = products(residuals, mean_e, input, mean_u, static_cast<std::size_t>(k));
+    double const r = pairs > 0 ? sum / (pairs * sd) : 0;
+    test.correlation.push_back(r);
+    test.bound.push_back(two_sided_99 * std::sqrt(colour / std::max(1.0, pairs)));
+    if (pairs == 0) continue;
+    ++used;
+    largest = std::max(largest, std::fabs(r) * std::sqrt(pairs / colour));
+    if (std::fabs(r) > test.bound.back()) ++test.outside;
+  }
+  double const one_lag = elementary::erfc(largest / std::sqrt(2.0));
+  test.p_value = -elementary::expm1(used * elementary::log1p(-one_lag));
+  return test;
+}
+
+double nmse(std::span<double const> observed, std::span<double const> predicted) {
+  double const mean = mean_of(observed);
+  double misfit = 0, variance = 0;
+  for (std::size_t t = 0; t < std::min(observed.size(), predicted.size()); ++t) {
+    if (std::isnan(observed[t])) continue;
+    misfit += (observed[t] - predicted[t]) * (observed[t] - predicted[t]);
+    variance += (observed[t] - mean) * (observed[t] - mean);
+  }
+  return variance > 0 ? 100 * misfit / variance : nan;
+}
+
+double rmse(std::span<double const> observed, std::span<double const> predicted) {
+  double square = 0, samples = 0;
+  for (std::size_t t = 0; t < std::min(observed.size(), predicted.size()); ++t) {
+    if (std::isnan(observed[t])) continue;
+    square += (observed[t] - predicted[t]) * (observed[t] - predicted[t]);
+    ++samples;
+  }
+  return std::sqrt(square / samples);
+}
+
+ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis) {
+  auto const [sum, samples] = products(standardised, 0, standardised, 0, 0);
+  if (samples == 0) return {};
+  double const half = samples / (2 + excess_kurtosis);
+  return {sum / samples, boost::math::gamma_p_inv(half, 5e-4) / half, boost::math::gamma_q_inv(half, 5e-4) / half};
+}
+
+}  // namespace sysid

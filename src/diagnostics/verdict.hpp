@@ -1,0 +1,44 @@
+// All findings of a run in one answer: can these numbers be used, why not, what to do; and the exit code's class.
+#pragma once
+#include <cstddef>
+#include <string>
+
+#include "result/check_page.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+
+struct Verdict {
+  bool pass = true;
+  int exit_code = 0;  // 0 diagnostics pass, 1 a diagnostic fails
+  std::string text;   // one or more lines in plain words, no trailing newline
+};
+
+/// "use with care: 2 things to look at".
+std::string with_care(std::ptrdiff_t warnings);
+
+/// Of a run that was stopped; what: "these are the draws so far".
+Finding interrupted_finding(std::string const& what);
+
+/// That the run was interrupted first, then errors, warnings and notes; alike in the order found.
+Findings by_weight(Findings findings);
+
+/// Fails when any finding is an error; all are listed by weight.
+Verdict judge(Findings const& findings);
+
+/// The worst of the findings; note when there are none.
+Severity grade(Report const& report);
+
+/// What failed solves mean for a result: an error from 20 % on, a warning from 1 %, a note below.
+Severity failure_severity(std::uint64_t failed, std::uint64_t solves);
+
+/// Whether there is anything to judge: a plain simulation has no diagnostics.
+bool has_verdict(Report const& report);
+
+/// The verdict's first line, without the findings.
+std::string verdict_headline(Report const& report);
+
+/// The worst of the tasks' findings; note when there are none.
+Severity grade(CheckPage const& page);
+
+}  // namespace sysid

@@ -1,0 +1,11 @@
+// What stands between data and equation, in findings: which code, how grave, what to do.
+#pragma once
+#include "regression/column/concern.hpp"
+#include "result/finding.hpp"
+
+namespace sysid {
+
+/// equation: named where there are several, else empty.
+Finding finding_of(regression::Concern const& concern, std::string const& equation);
+
+}  // namespace sysid

@@ -1,0 +1,264 @@
+// Fits, ranks, scores, describes.
+#include "discovery/simulation_validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
+#include "discovery/coefficient_names.hpp"
+#include "discovery/forecast_errors.hpp"
+#include "discovery/found_equation.hpp"
+#include "discovery/simulated_structure.hpp"
+#include "discovery/structure_fits.hpp"
+#include "discovery/validation_findings.hpp"
+#include "discovery/validation_rows.hpp"
+#include "linear_algebra/decompositions.hpp"
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int draws = 50, draws_one_by_one = 10;
+constexpr int origins = 200, origins_one_by_one = 20;  // of forecasts, in each experiment
+
+/// R of R R^T = covariance: by eigenvalues where rounding has left one below zero.
+Eigen::MatrixXd root_of(Eigen::MatrixXd const& covariance) {
+  if (auto lower = cholesky(covariance)) return std::move(*lower);
+  auto const [values, vectors] = symmetric_eigen(covariance);
+  return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+class Judge {
+ public:
+  Judge(FoundSource const& source, std::vector<FoundStructure> structures, std::vector<ExperimentData> const& unused,
+        std::function<bool()> const& interrupted)
+      : source_(source),
+        structures_(std::move(structures)),
+        interrupted_(interrupted),
+        dictionary_(source.dictionary),
+        execution_(source.execution),
+        pool_(make_pool(execution_)) {
+    int states = 1;
+    for (FoundStructure const& each : structures_) {
+      models_.push_back(judged_model(source_, each));
+      states = std::max(states, static_cast<int>(models_.back().states.size()));
+    }
+    rows_ = judged_rows(source.data, unused, states, source.discovery.half_width);
+    scored_.resize(models_.size());
+    for (std::size_t m = 0; m < models_.size(); ++m) order_.push_back(m);
+  }
+
+  Judgement run() {
+    bool const any = std::any_of(models_.begin(), models_.end(), [](JudgedModel const& each) { return each.failure.empty(); });
+    if (any) {
+      std::vector<double> const& noise = source_.discovery.noise_sd;
+      StartGuess guess(dictionary_.numbers, rows_.records, noise);
+      std::vector<double> priors;
+      for (std::size_t m = 0; m < models_.size(); ++m) priors.push_back(log_prior(m));
+      fits_.emplace(models_, guess,
+                    StructureFitSettings{rows_.records, noise, std::move(priors), rows_.least, execution_, pool_, interrupted_});
+      fits_->run();
+      rank();
+      score();
+      check_stability();
+    }
+    Judgement out;
+    out.interrupted = interrupted_();
+    if (out.interrupted) return out;
+    report(out);
+    if (any) out.findings = judged_findings(out.report);
+    return out;
+  }
+
+ private:
+  struct Scored {
+    double probability = 0;
+    ForecastErrors errors;
+    int bounded = 0;
+  };
+
+  bool judged(std::size_t m) const { return fits_ && fits_->failure(m).empty(); }
+
+  // Every number of terms of an equation is as probable before, and among as many terms every choice (Scott, Berger 2010).
+  double log_prior(std::size_t m) const {
+    double sum = 0;
+    for (std::size_t e = 0; e < structures_[m].equations.size(); ++e) {
+      std::vector<DictionaryTerm> const& terms = dictionary_.equations[e].terms;
+      std::vector<regression::FoundTerm> const& found = source_.discovery.equations[e].terms;
+      int offered = 0, taken = 0;
+      for (std::size_t j = 0; j < terms.size(); ++j)
+        if (!terms[j].in_target && !found[j].left_out) ++offered;
+      for (int const j : structures_[m].equations[e]->terms)
+        if (!terms[static_cast<std::size_t>(j)].in_target) ++taken;
+      for (int i = 1; i <= taken; ++i) sum -= elementary::log(static_cast<double>(offered - taken + i) / i);
+    }
+    return sum;
+  }
+
+  void rank() {
+    auto const weight = [&](std::size_t m) { return fits_->log_posterior(m); };
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
+    double sum = 0;
+    for (std::size_t const m : order_)
+      if (judged(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
+    for (std::size_t const m : order_) scored_[m].probability /= sum > 0 ? sum : 1;
+  }
+
+  std::vector<Experiment> views(std::size_t m, std::vector<Experiment> const& experiments) const {
+    std::vector<Experiment> own;
+    for (Experiment const& each : experiments) own.push_back(models_[m].view(each));
+    return own;
+  }
+
+  int draws_of(std::size_t m) const { return fits_->one_by_one(m) ? draws_one_by_one : draws; }
+  ForecastSettings forecast(std::size_t m) const {
+    return {rows_.window, rows_.horizon, fits_->one_by_one(m) ? origins_one_by_one : origins, fits_->solver(m), execution_, pool_};
+  }
+
+  // With coefficients of rows that are not scored.
+  void score() {
+    if (rows_.aside.empty()) return;
+    StartGuess guess(dictionary_.numbers, rows_.aside, source_.discovery.noise_sd);
+    for (std::size_t m = 0; m < models_.size(); ++m) {
+      if (!judged(m) || interrupted_()) continue;
+      ShootingFit const fit = rows_.cut ? fits_->fit_before(m, rows_.ends) : fits_->fit(m);
+      if (fit.finite)
+        scored_[m].errors =
+            forecast_errors(models_[m], fit.point.coefficients, fit.noise_sd, views(m, rows_.aside), guess, forecast(m));
+    }
+  }
+
+  // Draws of the coefficients from the normal law about their fit, the start of one experiment moved along.
+  LaneArray drawn(std::size_t m, std::size_t segment) const {
+    ShootingFit const& fit = fits_->fit(m);
+    JudgedModel const& model = models_[m];
+    Eigen::Index const k = fit.point.coefficients.size();
+    auto const parameters = static_cast<int>(model.others.size());
+    Eigen::MatrixXd const root = root_of(fit.covariance);
+    LaneArray out(model.compiled->parameter_rows(), draws_of(m));
+    for (int w = 0; w < out.width(); ++w) {
+      Stream stream({source_.seed, Purpose::selection, static_cast<std::uint64_t>(w), 0});
+      Eigen::VectorXd normal(k);
+      for (Eigen::Index j = 0; j < k; ++j) normal(j) = stream.normal();
+      Eigen::VectorXd const move = root * normal;
+      Eigen::VectorXd const start = fit.point.starts.col(static_cast<Eigen::Index>(segment)) + fit.follows[segment] * move;
+      for (int p = 0; p < parameters; ++p) out(p, w) = model.others[static_cast<std::size_t>(p)];
+      for (Eigen::Index j = 0; j < k; ++j)
+        out(model.coefficients[static_cast<std::size_t>(j)].parameter, w) = fit.point.coefficients(j) + move(j);
+      for (Eigen::Index x = 0; x < start.size(); ++x) out(parameters + static_cast<int>(x), w) = start(x);
+    }
+    return out;
+  }
+
+  void check_stability() {
+    std::vector<Segment> const parts = fits_->segments();
+    for (std::size_t m = 0; m < models_.size(); ++m) {
+      if (!judged(m) || interrupted_()) continue;
+      std::vector<LaneArray> points;
+      for (std::size_t s = 0; s < parts.size(); ++s)
+        if (parts[s].first == 0) points.push_back(drawn(m, s));
+      scored_[m].bounded = bounded_runs(models_[m], views(m, rows_.records), points, forecast(m));
+    }
+  }
+
+  // --- the answer
+  double scale(std::size_t equation, std::size_t term) const {
+    auto const& unit = dictionary_.equations[equation].terms[term].unit;
+    return unit ? unit->scale : 1;
+  }
+
+  JudgedStructure described(std::size_t m) const {
+    JudgedStructure out;
+    out.terms = structure_text(dictionary_, structures_[m]);
+    out.of_regression = static_cast<int>(m) + 1;
+    out.failure = fits_ ? fits_->failure(m) : models_[m].failure;
+    out.given_up = fits_ && fits_->given_up(m);
+    if (!out.failure.empty()) return out;
+    ShootingFit const& fit = fits_->fit(m);
+    Scored const& scored = scored_[m];
+    out.log_evidence = fit.log_evidence;
+    out.log_prior = log_prior(m);
+    out.probability = scored.probability;
+    out.draws = draws_of(m);
+    out.bounded = scored.bounded;
+    out.follows = scored.errors.follows;
+    std::vector<std::vector<PrintedTerm>> printed(dictionary_.equations.size());
+    for (std::size_t j = 0; j < models_[m].coefficients.size(); ++j) {
+      JudgedModel::Coefficient const& of = models_[m].coefficients[j];
+      auto const row = static_cast<Eigen::Index>(j);
+      DictionaryEquation const& equation = dictionary_.equations[of.equation];
+      DictionaryTerm const& term = equation.terms[of.term];
+      double const unit = scale(of.equation, of.term);
+      double const value = fit.point.coefficients(row) / unit, sd = std::sqrt(fit.covariance(row, row)) / unit;
+      out.coefficients.push_back({equation.text, term.text, coefficient_names(dictionary_, static_cast<int>(of.equation))[of.term],
+                                  term.unit ? term.unit->text : "", of.value / unit, of.sd / unit, value, sd, term.in_target});
+      printed[of.equation].push_back({of.term, value, sd});
+    }
+    for (std::size_t e = 0; e < printed.size(); ++e) out.equations.push_back(equation_text(dictionary_.equations[e], printed[e]));
+    for (std::size_t c = 0; c < models_[m].channels.size(); ++c) {
+      Channel const& channel = dictionary_.measured.channels[models_[m].channels[c]];
+      double const noise = source_.discovery.noise_sd[models_[m].channels[c]];
+      JudgedChannel of{channel.name, channel.unit_text(), 0, channel.from_si(fit.noise_sd[c]), channel.from_si(noise), {}, {}, {}};
+      if (noise > 0) out.residual_over_noise = std::max(out.residual_over_noise, fit.noise_sd[c] / noise);
+      if (c < scored.errors.sd.size()) {
+        auto const declared = [&](std::optional<double> value) { return value ? std::optional(channel.from_si(*value)) : value; };
+        of.sd = channel.from_si(scored.errors.sd[c]);
+        of.one_step = declared(scored.errors.one_step[c]);
+        of.horizon = declared(scored.errors.horizon[c]);
+        of.free_run = declared(scored.errors.free_run[c]);
+      }
+      out.channels.push_back(std::move(of));
+    }
+    return out;
+  }
+
+  void report(Judgement& out) const {
+    for (std::size_t const m : order_) {
+      out.order.push_back(structures_[m]);
+      out.report.structures.push_back(described(m));
+    }
+    if (!fits_) return;
+    JudgedReport& judged = out.report;
+    std::vector<Segment> const parts = fits_->segments();
+    judged.segments = static_cast<int>(parts.size());
+    judged.shortest = std::numeric_limits<double>::infinity();
+    for (Segment const& each : parts) {
+      std::vector<double> const& time = rows_.records[static_cast<std::size_t>(each.experiment)].time;
+      double const length =
+          time[static_cast<std::size_t>(each.first + each.count - 1)] - time[static_cast<std::size_t>(each.first)];
+      judged.shortest = std::min(judged.shortest, length);
+      judged.longest = std::max(judged.longest, length);
+    }
+    judged.whole = fits_->whole();
+    judged.step = rows_.step;
+    judged.horizon_rows = rows_.horizon;
+    judged.horizon = rows_.horizon * rows_.step;
+    judged.window_rows = rows_.window;
+    judged.aside = rows_.aside_name;
+    judged.aside_seen = rows_.cut;
+    if (models_[order_.front()].failure.empty()) judged.solver = fits_->solver(order_.front()).text();
+  }
+
+  FoundSource const& source_;
+  std::vector<FoundStructure> structures_;
+  std::function<bool()> const& interrupted_;
+  CheckedDictionary const& dictionary_;
+  ExecutionOptions execution_;
+  std::shared_ptr<ThreadPool> pool_;
+  std::vector<JudgedModel> models_;
+  JudgedRows rows_;
+  std::optional<StructureFits> fits_;  // none where there is no model
+  std::vector<Scored> scored_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace
+
+Judgement judge_structures(FoundSource const& source, std::vector<FoundStructure> structures,
+                           std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted) {
+  return Judge(source, std::move(structures), unused, interrupted).run();
+}
+
+}  // namespace sysid

@@ -1,0 +1,28 @@
+// Discovered structures judged by the motion itself: refitted by simulation, ranked by evidence, checked for stability, scored on
+// rows kept aside.
+#pragma once
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "discovery/found_source.hpp"
+#include "result/finding.hpp"
+#include "result/simulation_validation.hpp"
+
+namespace sysid {
+
+struct Judgement {
+  JudgedReport report;
+  std::vector<FoundStructure> order;  // best first, parallel to report.structures
+  Findings findings;
+  bool interrupted = false;  // nothing else is set
+};
+
+/// structures: as best_structures gives them, the regression's choice first; at least one. unused: experiments that the task did
+/// not use, with the dictionary's columns; where there are none the last fifth of each of the task's is kept aside for the scores.
+/// Every structure is fitted over the same segments: as long as the best one follows the record. The same bytes for any number of
+/// threads and lanes.
+Judgement judge_structures(FoundSource const& source, std::vector<FoundStructure> structures,
+                           std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted);
+
+}  // namespace sysid

@@ -1,0 +1,240 @@
+// Climbs from short segments to long ones with the structure that leads, takes the others along.
+#include "discovery/structure_fits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "diagnostics/tolerance.hpp"
+#include "likelihood/segments/segment_starts.hpp"
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+/// Segments are not joined further when the residual sd of a channel grows by more than this.
+constexpr double tolerable_growth = 1.5;
+/// Segments on the way up need not be fitted closer than this, in log likelihood.
+constexpr double enough_on_the_way = 1e-2;
+constexpr int most_refinements = 4;
+/// What solvers that take one simulation after the other may simulate, all structures together: 15 to 60 µs a row.
+constexpr double most_rows_one_by_one = 400'000;
+/// Steps of such a solver between two samples: a trial that needs more is lost, near values that do not solve the equation.
+constexpr int most_steps_one_by_one = 200;
+/// No refit takes fewer rounds.
+constexpr double least_rounds = 15;
+
+bool follows(ShootingFit const& before, ShootingFit const& after) {
+  if (!after.finite || !after.converged) return false;
+  for (std::size_t c = 0; c < after.noise_sd.size(); ++c)
+    if (!(after.noise_sd[c] <= tolerable_growth * before.noise_sd[c])) return false;
+  return true;
+}
+
+}  // namespace
+
+StructureFits::StructureFits(std::vector<JudgedModel> const& models, StartGuess& guess, StructureFitSettings settings)
+    : models_(models), guess_(guess), settings_(std::move(settings)), fits_(models.size()) {
+  for (Experiment const& each : settings_.records)
+    most_halvings_ = std::max(most_halvings_, halvings(static_cast<int>(each.time.size()), settings_.least));
+  halved_ = most_halvings_;
+  spent_.assign(models_.size(), 0);
+  int sharing = 0;
+  for (std::size_t m = 0; m < models_.size(); ++m) sharing += one_by_one(m) ? 1 : 0;
+  allowance_ = most_rows_one_by_one / std::max(1, sharing);
+}
+
+void StructureFits::run() {
+  climb();
+  refine();
+}
+
+std::string const& StructureFits::failure(std::size_t m) const {
+  static std::string const costs = "given up: an implicit equation, whose refit takes more simulations than are spent on such";
+  if (given_up(m)) return costs;
+  return models_[m].failure.empty() ? fits_[m].failure : models_[m].failure;
+}
+
+double StructureFits::log_posterior(std::size_t m) const {
+  return judged(m) ? fits_[m].fit.log_evidence + settings_.log_prior[m] : -std::numeric_limits<double>::infinity();
+}
+
+SolverSettings StructureFits::solver(std::size_t m) const {
+  SolverSettings out = models_[m].solver;
+  if (out.fixed_step()) out.substeps = std::max(out.substeps, substeps_);
+  if (one_by_one(m)) out.steps = std::min(out.steps, most_steps_one_by_one);
+  return out;
+}
+
+// starts_alone: coefficients are held at the regression's.
+SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> const& segments, bool starts_alone) const {
+  JudgedModel const& model = models_[m];
+  std::vector<Experiment> own;
+  for (Experiment const& each : settings_.records) own.push_back(model.view(each));
+  SegmentSimulation::Settings settings{{}, model.others, 0, solver(m), settings_.execution, settings_.pool, model.centres};
+  if (starts_alone)
+    for (JudgedModel::Coefficient const& each : model.coefficients)
+      settings.others[static_cast<std::size_t>(each.parameter)] = each.value;
+  else
+    settings.fitted = model.fitted();
+  return SegmentSimulation(model.compiled, own, segments, std::move(settings));
+}
+
+bool StructureFits::one_by_one(std::size_t m) const {
+  if (!models_[m].failure.empty()) return false;
+  Stepping const stepping = models_[m].solver.row().stepping;
+  return stepping == Stepping::cvode || stepping == Stepping::ida;
+}
+
+// The point and each perturbation simulate all rows.
+double StructureFits::rows_of_round(std::size_t m) const {
+  double rows = 0;
+  for (Experiment const& each : settings_.records) rows += static_cast<double>(each.time.size());
+  return rows * static_cast<double>(1 + models_[m].coefficients.size() + models_[m].states.size());
+}
+
+// Asked once a round.
+std::function<bool()> StructureFits::stop(std::size_t m) {
+  if (!one_by_one(m)) return settings_.interrupted;
+  return [this, m, rows = rows_of_round(m)] {
+    spent_[m] += rows;
+    return settings_.interrupted() || given_up(m);
+  };
+}
+
+ShootingOptions StructureFits::options(std::size_t m, bool last) {
+  ShootingOptions out;
+  if (!last) out.gain = enough_on_the_way;
+  out.interrupted = stop(m);
+  return out;
+}
+
+ShootingFit StructureFits::fit_before(std::size_t m, std::vector<int> const& ends) const {
+  std::vector<Segment> const all = segments();
+  std::vector<Segment> parts;
+  ShootingPoint point = fits_[m].fit.point;
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    Segment part = all[s];
+    part.count = std::min(part.count, ends[static_cast<std::size_t>(part.experiment)] - part.first);
+    if (part.count < std::min(settings_.least, all[s].count)) continue;  // too little for its start
+    point.starts.col(static_cast<Eigen::Index>(parts.size())) = fits_[m].fit.point.starts.col(static_cast<Eigen::Index>(s));
+    parts.push_back(part);
+  }
+  point.starts.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(parts.size()));
+  return fit_by_shooting(simulation(m, parts), std::move(point), {.interrupted = settings_.interrupted});
+}
+
+// The shortest segments, from the regression's coefficients.
+void StructureFits::begin(std::size_t m) {
+  if (one_by_one(m) && least_rounds * rows_of_round(m) > allowance_) spent_[m] = 2 * allowance_;
+  if (given_up(m)) return;
+  std::vector<Segment> const parts = segments(most_halvings_);
+  ShootingPoint point{Eigen::VectorXd(), models_[m].starts(parts, guess_)};
+  std::vector<double> noise;
+  for (std::size_t const c : models_[m].channels) noise.push_back(settings_.noise_sd[c]);
+  fit_starts(simulation(m, parts, true), point, noise, stop(m));
+  point.coefficients = models_[m].of_regression();
+  fits_[m] = {most_halvings_, fit_by_shooting(simulation(m, parts), std::move(point), options(m, most_halvings_ == 0)), {}};
+  if (!fits_[m].fit.finite) fits_[m].failure = "does not stay finite";
+}
+
+// Where each segment begins, the shorter ones have an estimate.
+ShootingPoint StructureFits::longer(Fitted const& from, std::vector<Segment> const& parts) const {
+  std::map<std::pair<int, int>, Eigen::Index> known;
+  std::vector<Segment> const before = segments(from.halved);
+  for (std::size_t s = 0; s < before.size(); ++s) known[{before[s].experiment, before[s].first}] = static_cast<Eigen::Index>(s);
+  ShootingPoint point{from.fit.point.coefficients,
+                      Eigen::MatrixXd(from.fit.point.starts.rows(), static_cast<Eigen::Index>(parts.size()))};
+  for (std::size_t s = 0; s < parts.size(); ++s)
+    point.starts.col(static_cast<Eigen::Index>(s)) = from.fit.point.starts.col(known.at({parts[s].experiment, parts[s].first}));
+  return point;
+}
+
+StructureFits::Fitted StructureFits::at(std::size_t m, Fitted const& from, int halved, bool last) {
+  std::vector<Segment> const parts = segments(halved);
+  Fitted out = from;
+  out.halved = halved;
+  out.fit = fit_by_shooting(simulation(m, parts), longer(from, parts), options(m, last));
+  return out;
+}
+
+/// As far as it follows the record.
+void StructureFits::climb_alone(std::size_t m) {
+  while (fits_[m].halved > 0 && !settings_.interrupted()) {
+    Fitted next = at(m, fits_[m], fits_[m].halved - 1, false);
+    if (!follows(fits_[m].fit, next.fit)) return;
+    fits_[m] = std::move(next);
+  }
+}
+
+/// To segments of that length, whether it follows or not.
+void StructureFits::climb_to(std::size_t m, int halved) {
+  while (judged(m) && fits_[m].halved > halved && !settings_.interrupted()) {
+    Fitted next = at(m, fits_[m], fits_[m].halved - 1, false);
+    if (!next.fit.finite)
+      fits_[m].failure = "does not stay finite over segments of this length";
+    else
+      fits_[m] = std::move(next);
+  }
+}
+
+// Who leads sets the length; who leads at that length may lead further.
+void StructureFits::climb() {
+  for (std::size_t m = 0; m < models_.size(); ++m)
+    if (models_[m].failure.empty() && !settings_.interrupted()) begin(m);
+  std::vector<bool> has_led(models_.size(), false);
+  halved_ = most_halvings_;
+  std::optional<std::size_t> lead;  // the regression's choice before anything is compared
+  for (std::size_t m = models_.size(); m-- > 0;)
+    if (judged(m)) lead = m;
+  for (; lead && !has_led[*lead] && !settings_.interrupted(); lead = best()) {
+    has_led[*lead] = true;
+    climb_alone(*lead);
+    halved_ = std::min(halved_, fits_[*lead].halved);
+    for (std::size_t m = 0; m < models_.size(); ++m)
+      if (judged(m)) climb_to(m, halved_);
+  }
+}
+
+std::optional<std::size_t> StructureFits::best() const {
+  std::optional<std::size_t> best;
+  for (std::size_t m = 0; m < models_.size(); ++m)
+    if (judged(m) && (!best || log_posterior(m) > log_posterior(*best))) best = m;
+  return best;
+}
+
+/// To the last digits, with a solver that no longer shapes the best one's coefficients.
+void StructureFits::refine() {
+  std::optional<std::size_t> const first = best();
+  if (!first) return;
+  fits_[*first] = at(*first, fits_[*first], halved_, true);
+  for (int round = 0; round < most_refinements && solver(*first).fixed_step() && !settings_.interrupted(); ++round) {
+    int const before = substeps_;
+    substeps_ = solver(*first).finer().substeps;
+    Fitted const finer = at(*first, fits_[*first], halved_, true);
+    bool const usable = finer.fit.finite && finer.fit.determined;
+    double most = 0;
+    for (Eigen::Index j = 0; usable && j < finer.fit.point.coefficients.size(); ++j)
+      most = std::max(most, std::abs(finer.fit.point.coefficients(j) - fits_[*first].fit.point.coefficients(j)) /
+                                std::sqrt(finer.fit.covariance(j, j)));
+    if (!usable || most <= tolerable_move) {
+      substeps_ = before;
+      break;
+    }
+    fits_[*first] = finer;
+  }
+  for (std::size_t m = 0; m < models_.size(); ++m)
+    if (judged(m) && m != *first && !settings_.interrupted()) fits_[m] = at(m, fits_[m], halved_, true);
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    if (!judged(m)) continue;
+    if (!fits_[m].fit.finite)
+      fits_[m].failure = "does not stay finite";
+    else if (!fits_[m].fit.determined)
+      fits_[m].failure = "the motion does not tell its coefficients apart";
+    else if (!fits_[m].fit.converged)
+      fits_[m].failure = "its fit does not converge";
+  }
+}
+
+}  // namespace sysid

@@ -1,0 +1,147 @@
+// Thresholds and words.
+#include "discovery/validation_findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/text/number.hpp"
+#include "result/discovery.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double tolerable_residual = 1.5;  // of the noise
+constexpr double idle_sds = 2;              // a coefficient of the model may be zero
+constexpr double lost_percent = 70;         // of the sd: half of the variance
+constexpr double foretold_percent = 50;     // of the sd, one dominant period ahead
+constexpr double telling_percent = 10;      // noise that has a part in that
+constexpr double small_residual = 0.7;      // of the noise that the regression took
+
+std::string quoted(std::vector<std::string> const& names) { return fmt::format("`{}`", fmt::join(names, "`, `")); }
+
+bool explains_motion(JudgedReport const& judged) {
+  JudgedStructure const& best = judged.structures.front();
+  return best.failure.empty() && judged.whole && best.residual_over_noise > 0 && best.residual_over_noise <= tolerable_residual;
+}
+
+std::optional<Finding> given_up(JudgedReport const& judged) {
+  std::vector<std::string> names;
+  for (JudgedStructure const& each : judged.structures)
+    if (each.given_up) names.push_back(each.terms);
+  if (names.empty()) return std::nullopt;
+  return Finding{Severity::warning, "not_refitted",
+                 fmt::format("{} given up: implicit equations are simulated one after the other, and {} more of that than is spent "
+                             "on a judgement",
+                             quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
+                 "take fewer rows, or a smaller `top`, or leave the implicit terms out of the dictionary"};
+}
+
+std::optional<Finding> idle_terms(JudgedStructure const& best) {
+  std::vector<std::string> idle;
+  for (JudgedCoefficient const& each : best.coefficients)
+    if (!each.of_target && std::abs(each.value) < idle_sds * each.sd)
+      idle.push_back(fmt::format("`{}`{}", each.term, best.equations.size() > 1 ? " of " + each.target : ""));
+  if (idle.empty()) return std::nullopt;
+  bool const one = idle.size() == 1;
+  return Finding{Severity::warning, "term_idle",
+                 fmt::format("by the motion the {} of {} {} less than two sds from zero", one ? "coefficient" : "coefficients",
+                             fmt::join(idle, ", "), one ? "is" : "are"),
+                 fmt::format("leave {0} out of the dictionary, or take a record in which {1} more", one ? "it" : "them",
+                             one ? "it moves" : "they move")};
+}
+
+std::optional<Finding> lost_free_run(JudgedReport const& judged) {
+  JudgedStructure const& best = judged.structures.front();
+  std::optional<double> const far = best.percent(&JudgedChannel::horizon), free = best.percent(&JudgedChannel::free_run);
+  if (!free || *free < lost_percent) return std::nullopt;
+  std::string const size = std::isfinite(*free) && *free <= 1e4 ? significant(*free, 3) : "more than 1e4";
+  std::string message = fmt::format("a free run on {} is off by {} % of the sd; it follows for {} s", judged.aside, size,
+                                    significant(best.follows, 3));
+  double noise = 0;
+  for (JudgedChannel const& each : best.channels)
+    if (each.sd > 0)
+      noise = std::max(noise, 100 * (each.noise > 0 ? std::min(each.noise, each.residual) : each.residual) / each.sd);
+  if (noise > telling_percent)
+    message += fmt::format("; the noise of what it is compared with is {} % of that sd", significant(noise, 3));
+  if (far && *far < foretold_percent)
+    return Finding{Severity::note, "free_run_lost", std::move(message),
+                   "expected of a chaotic motion, which is foretold for a while only"};
+  return Finding{
+      Severity::warning, "free_run_lost", std::move(message),
+      "not even one dominant period is foretold to half the sd: do not extrapolate, and look for what the equation lacks"};
+}
+
+void add_overestimated_noise(JudgedStructure const& best, Findings& findings) {
+  for (JudgedChannel const& each : best.channels)
+    if (each.residual < small_residual * each.noise)
+      findings.push_back(
+          {Severity::note, "noise_overestimated",
+           fmt::format(
+               "what the simulated motion leaves of `{}` is {} times the noise that the regression took: its sds are too large",
+               each.channel, significant(each.residual / each.noise, 3)),
+           fmt::format("say what it is: `noise({} = {}{})`", each.channel, significant(each.residual, 3),
+                       each.unit.empty() ? "" : fmt::format(" [{}]", each.unit))});
+}
+
+}  // namespace
+
+void temper_by_simulation(JudgedReport const& judged, Findings& of_regression) {
+  if (!explains_motion(judged)) return;
+  for (Finding& each : of_regression) {
+    if (each.code != "unexplained_residual") continue;
+    each.severity = Severity::note;
+    each.message += fmt::format("; but simulated, the motion is explained to {} times the noise",
+                                significant(judged.structures.front().residual_over_noise, 3));
+    each.help = "the regression misses what simulation has: take the equation, the coefficients and the sds of simulation";
+  }
+}
+
+Findings judged_findings(JudgedReport const& judged) {
+  Findings findings;
+  JudgedStructure const& best = judged.structures.front();
+  auto const add = [&](Severity severity, char const* code, std::string message, char const* help) {
+    findings.push_back({severity, code, std::move(message), help});
+  };
+  auto const regression = std::find_if(judged.structures.begin(), judged.structures.end(),
+                                       [](JudgedStructure const& each) { return each.of_regression == 1; });
+  if (regression != judged.structures.begin())
+    add(Severity::warning, "simulation_prefers",
+        fmt::format("simulation ranks `{}` first, the regression `{}`, which {}", best.terms, regression->terms,
+                    regression->failure.empty()
+                        ? fmt::format("has a probability of {} by the motion", probability_text(regression->probability))
+                        : "was not judged: " + regression->failure),
+        "the model that is written is the one that simulation ranks first; a record of other amplitude may decide");
+  auto const costly = given_up(judged);
+  if (costly) findings.push_back(*costly);
+  if (!best.failure.empty()) {
+    if (costly) return findings;
+    add(Severity::warning, "not_refitted", fmt::format("no structure could be judged by simulation: {}", best.failure),
+        "the coefficients are those of the regression: look at the record's length and step, and at terms that diverge");
+    return findings;
+  }
+  if (auto idle = idle_terms(best)) findings.push_back(std::move(*idle));
+  if (!judged.whole)
+    add(Severity::note, "followed_in_parts",
+        fmt::format("the record is followed for {} at a time, each from a start of its own", significant(judged.longest, 3) + " s"),
+        "expected of a chaotic motion; else a term or an input is missing");
+  if (best.residual_over_noise > tolerable_residual)
+    add(Severity::warning, "motion_unexplained",
+        fmt::format("the residual of the simulated motion is {} times the measurement noise",
+                    significant(best.residual_over_noise, 3)),
+        "look for an input that was not recorded, a state that is missing, or add terms");
+  if (best.bounded < best.draws)
+    add(Severity::warning, "draws_not_bounded",
+        fmt::format("{} of {} draws of the coefficients do not stay within ten times the range of the record in a free run",
+                    best.draws - best.bounded, best.draws),
+        "a term may destabilise where the record hardly goes: leave it out, or take a record of larger amplitude");
+  if (auto lost = lost_free_run(judged)) findings.push_back(std::move(*lost));
+  if (explains_motion(judged)) add_overestimated_noise(best, findings);
+  return findings;
+}
+
+}  // namespace sysid

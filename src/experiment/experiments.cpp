@@ -1,0 +1,221 @@
+// Columns are matched to the model's inputs and channels by name, in the model's order.
+#include "experiment/experiments.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/system/files.hpp"
+#include "core/text/number.hpp"
+#include "data/digest.hpp"
+#include "experiment/true_parameters.hpp"
+#include "model/past.hpp"
+
+namespace sysid {
+namespace {
+
+// Says which files of the folder have names like the one wanted.
+Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path, std::string message) {
+  std::vector<std::string> near;
+  for (std::filesystem::path const file : files_beside(path))
+    near.push_back((std::filesystem::path(block.path).parent_path() / file.filename()).string());
+  std::string const guess = did_you_mean(block.path, near);
+  return {Severity::error,
+          "E4018",
+          std::move(message),
+          Label{block.path_span, {}},
+          {},
+          guess.empty() ? "paths are relative to the folder of the .sysid file" : guess};
+}
+
+// A model in discrete time goes from row to row: these must be as far apart as it says, and equally far.
+void check_steps(Record const& record, DataBlock const& block, Model const& model) {
+  double const mean = (record.time.back() - record.time.front()) / static_cast<double>(record.rows() - 1);
+  double const wanted = model.step.value_or(mean);
+  for (std::size_t i = 1; i < record.time.size(); ++i) {
+    double const step = record.time[i] - record.time[i - 1];
+    if (same_step(step, wanted)) continue;
+    throw UserError(
+        {Severity::error,
+         "E4203",
+         model.step ? fmt::format("row {} of `{}` comes {:.9g} s after the one before, but model `{}` steps by {:.9g} s", i + 1,
+                                  block.path, step, model.name, wanted)
+                    : fmt::format("row {} of `{}` comes {:.9g} s after the one before, on average it is {:.9g} s: model "
+                                  "`{}` needs equal steps",
+                                  i + 1, block.path, step, wanted, model.name),
+         Label{block.time ? block.time->span : block.span, {}},
+         {},
+         "correct `time discrete`, or bring the record to equal steps; a tolerance of 1 % is allowed for rounded times"});
+  }
+}
+
+// Samples that the density of a channel reads and that are missing: the row cannot be scored. One that the map from row to row
+// reads would spoil all that follows: an error.
+void mark_past(Experiment& experiment, Model const& model, Span place) {
+  int const rows = static_cast<int>(experiment.time.size());
+  auto const missing = [&](PastSample const& sample, int row) {
+    return std::isnan(measured_sample(experiment, sample.channel, row - sample.lag));
+  };
+  auto const refuse = [&](PastSample const& sample, int row) {
+    throw UserError({Severity::error,
+                     "E4204",
+                     fmt::format("`{}` is missing in row {}, and model `{}` goes on from it",
+                                 model.channels[static_cast<std::size_t>(sample.channel)].name,
+                                 experiment.first_row + row - sample.lag, model.name),
+                     Label{place, {}},
+                     {},
+                     "fill the gap, choose other rows, or write `with prediction = free_run`: then the model goes on from its own "
+                     "prediction"});
+  };
+  for (PastSample const& sample : past_samples(model, -2))
+    if (missing(sample, 0)) refuse(sample, 0);
+  for (PastSample const& sample : past_samples(model, -1))
+    for (int row = 0; row + 1 < rows; ++row)
+      if (missing(sample, row)) refuse(sample, row);
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    std::vector<PastSample> const samples = past_samples(model, static_cast<int>(c));
+    if (samples.empty()) continue;
+    if (experiment.has_past.empty()) experiment.has_past.resize(model.channels.size());
+    experiment.has_past[c].assign(static_cast<std::size_t>(rows), 1);
+    for (int row = 0; row < rows; ++row)
+      for (PastSample const& sample : samples)
+        if (missing(sample, row)) experiment.has_past[c][static_cast<std::size_t>(row)] = 0;
+  }
+}
+
+}  // namespace
+
+std::string_view rule_name(InputRule rule) {
+  switch (rule) {
+    case InputRule::zero_order:
+      return "zero_order";
+    case InputRule::linear:
+      return "linear";
+    case InputRule::cubic:
+      return "cubic";
+    case InputRule::band_limited:
+      return "band_limited";
+  }
+  return "?";
+}
+
+std::string prediction_text(Model const& model, PredictionRule rule) {
+  bool from_data = false;
+  for (int c = -1; c < static_cast<int>(model.channels.size()); ++c) from_data = from_data || !past_samples(model, c).empty();
+  bool const from_model = !model.states.empty();
+  return fmt::format("{}: from {}", prediction_name(rule),
+                     from_data && from_model ? "measured samples and the model's own past"
+                     : from_data             ? "measured samples, one step ahead"
+                                             : "the model's own past, a free run");
+}
+
+std::string data_name(DataBlock const& block, int part) {
+  return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
+}
+
+Record load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
+  RecordRequest request;
+  request.path = (folder / block.path).string();
+  request.mention = block.path_span;
+  request.step = block.step > 0 ? block.step : model.step.value_or(0);
+  request.independent_rows = model.dynamics == Dynamics::none;
+  if (block.time) request.time = ColumnRequest{block.time->column, block.time->unit, std::nullopt, block.time->span};
+  for (Quantity const& input : model.inputs) {
+    auto const bound =
+        std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == input.name; });
+    InputRequest column;
+    static_cast<ColumnRequest&>(column) = {bound->column, bound->unit, input.unit, bound->span};
+    column.rule = bound->rule.value_or(InputRule::zero_order);
+    request.inputs.push_back(std::move(column));
+  }
+  for (Channel const& channel : model.channels) {
+    auto const bound =
+        std::find_if(block.measured.begin(), block.measured.end(), [&](auto const& each) { return each.channel == channel.name; });
+    if (bound == block.measured.end())
+      request.measured.emplace_back();
+    else
+      request.measured.push_back(ColumnRequest{bound->column, bound->unit, channel.unit, bound->span, channel.noise.row->discrete});
+  }
+  try {
+    Diagnostics diagnostics;
+    auto record = load(request, diagnostics);
+    if (!record) throw UnusableData(std::move(diagnostics));
+    if (model.dynamics == Dynamics::discrete) check_steps(*record, block, model);
+    return std::move(*record);
+  } catch (IoError const& error) {
+    Diagnostics diagnostics;
+    diagnostics.add(unreadable(block, request.path, error.what()));
+    throw UnreadableData(std::move(diagnostics));
+  }
+}
+
+Experiment cut(Record const& record, DataBlock const& block, Model const& model, int part, StartRule start) {
+  std::string const name = data_name(block, part);
+  DataPart whole;
+  whole.span = block.span;
+  DataPart const& rows = part < 0 ? whole : block.parts[static_cast<std::size_t>(part)];
+  RowRange range{rows.first, rows.last == 0 ? record.rows() : rows.last};
+  std::string const what = part < 0 ? "data `" + block.name + "`" : "part `" + rows.name + "`";
+  if (auto const wrong = check_rows(record, what, range, rows.span)) throw UserError(*wrong);
+  // The first rows that a model only looks back to are neither simulated nor scored.
+  int const history = data_lag(model);
+  if (range.last <= history)
+    throw UserError({Severity::error,
+                     "E4201",
+                     fmt::format("{} ends at row {}, and model `{}` looks back {} rows", what, range.last, model.name, history),
+                     Label{rows.span, {}},
+                     {},
+                     "take more rows, or fewer lags"});
+  range.first = std::max(range.first, history + 1);
+  int from = history + 1;
+  if (start.kind != StartRule::Kind::record) from = range.first;
+  if (start.kind == StartRule::Kind::estimated) {
+    if (range.first + start.rows > range.last)
+      throw UserError(
+          {Severity::error,
+           "E4201",
+           fmt::format("{} has {} rows, its start needs {} and more to score", what, range.last - range.first + 1, start.rows),
+           Label{rows.span, {}},
+           {},
+           "take more rows, or estimate the start from fewer"});
+    range.first += start.rows;
+  }
+  Experiment experiment = make_experiment(record, name, from, range, rows.span);
+  mark_past(experiment, model, rows.span);
+  return experiment;
+}
+
+std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data) {
+  std::vector<Experiment> all;
+  for (ExperimentData const& each : data) all.push_back(each.experiment);
+  return all;
+}
+
+std::shared_ptr<ParameterSpace const> parameter_space(Model const& model, std::vector<ExperimentUse> const& uses) {
+  std::vector<ExperimentMember> members;
+  for (ExperimentUse const& use : uses) members.push_back({use.name, use.constants});
+  return std::make_shared<ParameterSpace const>(model, std::move(members));
+}
+
+std::string data_names(CheckedFile const& file, std::vector<ExperimentUse> const& uses) {
+  std::string text;
+  for (ExperimentUse const& use : uses)
+    text += (text.empty() ? "" : ", ") + data_name(file.data[static_cast<std::size_t>(use.data)], use.part);
+  return text;
+}
+
+std::vector<PriorInfo> priors_of(ParameterSpace const& space, std::vector<PriorInfo> const& of_model) {
+  std::vector<PriorInfo> all;
+  for (int const r : space.sampled()) {
+    FittedParameter const& row = space.rows()[static_cast<std::size_t>(r)];
+    std::string const& name = space.model().parameters[static_cast<std::size_t>(row.parameter)].name;
+    auto const prior = std::find_if(of_model.begin(), of_model.end(), [&](PriorInfo const& each) { return each.name == name; });
+    if (prior == of_model.end()) continue;
+    all.push_back(*prior);
+    all.back().name = row.name;
+  }
+  return all;
+}
+
+}  // namespace sysid

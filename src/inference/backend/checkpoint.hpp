@@ -1,0 +1,44 @@
+// The state of a run as JSON that comes back bit for bit: doubles travel as the base64 of their bytes, so infinities and last
+// digits survive.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
+
+#include "core/numeric/lanes.hpp"
+#include "core/setting/settings.hpp"
+#include "core/system/ledger.hpp"
+#include "inference/backend/backend.hpp"
+
+namespace sysid::checkpoint {
+
+/// A stored state that is not what it should be: damaged, or of another run.
+class Mismatch : public std::exception {
+ public:
+  explicit Mismatch(std::string what) : what_(std::move(what)) {}
+  char const* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
+};
+
+nlohmann::json encode(std::span<double const> values);
+std::vector<double> decode(nlohmann::json const& stored);
+nlohmann::json encode(LaneArray const& values);
+/// Throws Mismatch unless the stored block is rows x width.
+LaneArray decode(nlohmann::json const& stored, int rows, int width);
+nlohmann::json encode(Ledger const& ledger);
+Ledger decode_ledger(nlohmann::json const& stored);
+nlohmann::json encode(Mode const& mode);
+Mode decode_mode(nlohmann::json const& stored);
+nlohmann::json encode(Findings const& findings);
+Findings decode_findings(nlohmann::json const& stored);
+
+/// Who made a checkpoint: back end, its settings, seed, and the target's parameters.
+nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, Target const& target);
+
+/// The finding that ends a run whose checkpoint does not fit; empty when `stored` carries `expected` as its "identity".
+std::optional<Finding> refuse(nlohmann::json const& stored, nlohmann::json const& expected);
+Finding unusable(std::string const& why);
+
+}  // namespace sysid::checkpoint

@@ -1,0 +1,64 @@
+// Random-walk Metropolis with a Gaussian proposal: W chains in lanes, one batch of likelihoods per iteration.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/numeric/lanes.hpp"
+#include "core/numeric/random.hpp"
+#include "core/system/ledger.hpp"
+#include "likelihood/target.hpp"
+
+namespace sysid::metropolis {
+
+/// x' = x + s L z with z ~ N(0, I). With probability `small_share` s is `small_scale` times `scale`: such moves get a chain out of
+/// narrow places that the full scale never leaves. Symmetric in x and x' either way, so its density cancels from the acceptance
+/// ratio.
+struct Proposal {
+  int dimension = 0;
+  std::vector<double> factor;  // L, lower triangle of [P x P] by rows
+  double scale = 1;
+  double small_share = 0;
+  double small_scale = 0.2;
+};
+
+/// (8.17): N(x, variance I).
+Proposal spherical(int dimension, double variance);
+
+/// What the next step needs, and a checkpoint holds.
+struct State {
+  LaneArray theta;                     // [P x W]
+  std::vector<double> log_prior;       // [W], density on R^P
+  std::vector<double> log_likelihood;  // [W]
+};
+
+/// What one chain did in one iteration: what only adaptation and diagnostics need.
+struct Move {
+  double acceptance_probability = 0;  // 0 where the proposal failed
+  bool accepted = false;
+  bool failed = false;  // the proposal's density was not finite; such a move must not steer adaptation
+  bool small = false;   // it was a small one
+};
+using Info = std::vector<Move>;  // [W]
+
+/// Evaluates theta [P x W].
+State init(Target const& target, LaneArray theta, Ledger& ledger);
+
+/// One iteration of every chain. Chain w of the block is chain key.index + w of the run, key.step is the iteration: its numbers,
+/// and so its path, do not depend on the other lanes. proposals: [W].
+///
+///   accept with probability min(1, p(x') / p(x))          the tutorial's Sec. 8.3 prints the ratio upside down; Hastings 1970
+///
+/// A state whose own density is not finite accepts any proposal whose density is.
+Info step(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, State& state, Ledger& ledger);
+
+/// Several iterations of each chain from one batch, for proposals that do not change: chain w tries its moves of iterations
+/// next[w], next[w] + 1, ... (`ahead` of them, none at `end` or later) all from where it stands, and takes them in turn up to the
+/// first accepted one; the others started from a place it has left and are dropped. `next` moves on by the iterations taken;
+/// `visit(chain, move)` is called after each, in order, with the state as it is then. Path and draws are those of `step` after
+/// `step`: most moves are rejected, so idle lanes that guess "rejected" are right most of the time (Brockwell 2006, pre-fetching).
+void advance(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, int ahead, std::uint64_t end,
+             std::span<std::uint64_t> next, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit);
+
+}  // namespace sysid::metropolis

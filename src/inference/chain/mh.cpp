@@ -1,0 +1,298 @@
+// The run of Metropolis-Hastings chains.
+#include "inference/chain/mh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/numeric/not_finite.hpp"
+#include "diagnostics/chain_checks.hpp"
+#include "inference/backend/checkpoint.hpp"
+#include "inference/chain/adaptation.hpp"
+#include "inference/chain/chain_record.hpp"
+#include "inference/chain/metropolis.hpp"
+#include "search/laplace.hpp"
+#include "search/search.hpp"
+
+namespace sysid::mh {
+namespace {
+
+constexpr SettingRow rows[] = {
+    {"samples", SettingKind::integer, "25000", 1, 1e9, "", "iterations of each chain, burn-in included"},
+    {"burn_in", SettingKind::integer, "5000", 0, 1e9, "", "first iterations, dropped; the proposal adapts in them"},
+    {"thin", SettingKind::integer, "10", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
+    {"chains", SettingKind::integer, "4", 1, 65536, "", "independent chains, run side by side"},
+    {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive spherical",
+     "learn the proposal's covariance in burn-in, or keep variance times identity"},
+    {"variance", SettingKind::real, "0.1", 1e-300, infinity, "", "of the spherical proposal, in the sampler's coordinates"},
+    {"start", SettingKind::word, "global", 0, 0, "global prior", "around the modes of a global search, or at draws from the prior"},
+};
+
+/// Unthinned draws are kept for the diagnostics while they fit into this many numbers (160 MB).
+constexpr double most_recorded = 2e7;
+
+/// Draws of all chains: more than any figure shows and any other program likes to read.
+constexpr std::int64_t most_kept = 10'000'000;
+
+/// A batch of 16 lanes takes half as long again as one of 4 on the machines we know, and a chain rejects three moves in four.
+constexpr int lanes_worth_filling = 16, most_ahead = 8;
+
+/// All that a run is between two iterations.
+struct State {
+  std::vector<std::uint64_t> next;  // [W] iterations each chain has finished: all the same in burn-in
+  metropolis::State chains;
+  std::vector<metropolis::Adaptation> groups;  // empty for a spherical proposal
+  std::vector<Mode> modes;
+  Findings findings;  // of the search
+  ChainRecord record;
+};
+
+struct Plan {
+  std::uint64_t samples, burn_in, thin;
+  int chains;
+  bool adaptive, global;
+  double variance;
+  std::uint64_t stride;  // between recorded iterations
+};
+
+Plan plan_of(Target const& target, Settings const& s) {
+  Plan plan{static_cast<std::uint64_t>(s.integer("samples")),
+            static_cast<std::uint64_t>(s.integer("burn_in")),
+            static_cast<std::uint64_t>(s.integer("thin")),
+            static_cast<int>(s.integer("chains")),
+            s.word("proposal") == "adaptive",
+            s.word("start") == "global",
+            s.real("variance"),
+            1};
+  double const numbers = static_cast<double>(plan.samples - plan.burn_in) * plan.chains * (target.dimension() + 3);
+  if (numbers > most_recorded) plan.stride = plan.thin;
+  return plan;
+}
+
+nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json const& identity) {
+  auto const block = [](std::vector<double> const& v) { return checkpoint::encode(std::span<double const>(v)); };
+  nlohmann::json groups = nlohmann::json::array(), modes = nlohmann::json::array();
+  for (auto const& group : state.groups) groups.push_back(group.store());
+  for (Mode const& mode : state.modes) modes.push_back(checkpoint::encode(mode));
+  return {{"identity", identity},
+          {"next", state.next},
+          {"theta", checkpoint::encode(state.chains.theta)},
+          {"log_prior", block(state.chains.log_prior)},
+          {"log_likelihood", block(state.chains.log_likelihood)},
+          {"groups", groups},
+          {"modes", modes},
+          {"findings", checkpoint::encode(state.findings)},
+          {"record", state.record.store()},
+          {"ledger", checkpoint::encode(ledger)}};
+}
+
+State restore(nlohmann::json const& stored, Target const& target, Plan const& plan, Ledger& ledger) {
+  State state;
+  state.next = stored.at("next").get<std::vector<std::uint64_t>>();
+  state.chains = {checkpoint::decode(stored.at("theta"), target.dimension(), plan.chains),
+                  checkpoint::decode(stored.at("log_prior")), checkpoint::decode(stored.at("log_likelihood"))};
+  auto const chains = static_cast<std::size_t>(plan.chains);
+  if (state.next.size() != chains || state.chains.log_prior.size() != chains || state.chains.log_likelihood.size() != chains)
+    throw checkpoint::Mismatch("its chains have another number or dimension");
+  for (auto const& group : stored.at("groups")) state.groups.push_back(metropolis::Adaptation::restore(group));
+  for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
+  state.findings = checkpoint::decode_findings(stored.at("findings"));
+  state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
+  ledger = checkpoint::decode_ledger(stored.at("ledger"));
+  return state;
+}
+
+/// Chains of one mode learn together.
+std::vector<metropolis::Adaptation> make_groups(std::vector<Mode> const& modes, std::vector<int> const& mode_of_chain) {
+  std::vector<metropolis::Adaptation> groups;
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    std::vector<int> members;
+    for (std::size_t c = 0; c < mode_of_chain.size(); ++c)
+      if (mode_of_chain[c] == static_cast<int>(m)) members.push_back(static_cast<int>(c));
+    if (!members.empty()) groups.emplace_back(std::move(members), covariance_of(modes[m]));
+  }
+  return groups;
+}
+
+/// A group for each chain, with the prior's widths: chains that start all over the prior have nothing in common yet.
+std::vector<metropolis::Adaptation> make_prior_groups(Target const& target, int chains, std::uint64_t seed) {
+  LaneArray draws(target.dimension(), 1000);
+  target.sample_prior({seed, Purpose::start, 0, 0}, draws);
+  Objective const objective = make_objective(target, Aim::posterior, draws);
+  Eigen::MatrixXd const covariance = objective.scale.cwiseAbs2().asDiagonal();
+  std::vector<metropolis::Adaptation> groups;
+  for (int c = 0; c < chains; ++c) groups.emplace_back(std::vector<int>{c}, covariance);
+  return groups;
+}
+
+/// The state before the first iteration, or why there is none.
+std::optional<State> begin(Target const& target, Plan const& plan, RunContext& context, FitResult& result) {
+  State state;
+  LaneArray starts;
+  if (plan.global) {
+    SearchResult found = context.modes.empty() ? search(target, Aim::posterior, context)
+                                               : SearchResult{context.modes, context.mode_findings, {}, false};
+    result.interrupted = found.interrupted;
+    result.failure = found.failure;
+    if (found.interrupted || found.failure) return std::nullopt;
+    std::vector<int> const mode_of_chain = spread_over_modes(found.modes, plan.chains);
+    starts = overdispersed_starts(target, found.modes, mode_of_chain, context);
+    if (plan.adaptive) state.groups = make_groups(found.modes, mode_of_chain);
+    state.modes = std::move(found.modes);
+    state.findings = std::move(found.findings);
+  } else {
+    std::optional<LaneArray> drawn = prior_starts(target, plan.chains, context);
+    if (!drawn) {
+      result.failure = no_finite_start(context.ledger, 1000);
+      return std::nullopt;
+    }
+    starts = std::move(*drawn);
+    if (plan.adaptive) state.groups = make_prior_groups(target, plan.chains, context.seed);
+  }
+  state.chains = metropolis::init(target, std::move(starts), context.ledger);
+  state.record = ChainRecord(target.dimension(), plan.chains);
+  state.next.assign(static_cast<std::size_t>(plan.chains), 0);
+  return state;
+}
+
+/// Tells how far the run is and stores it, each no more often than is useful, whatever an iteration takes.
+class Watch {
+ public:
+  Watch(RunContext& context, std::function<nlohmann::json()> store) : context_(context), store_(std::move(store)) {}
+
+  void look(State const& state) {
+    Clock::time_point const now = Clock::now();
+    if (now - shown_ > std::chrono::milliseconds(50)) {
+      std::uint64_t const done = *std::min_element(state.next.begin(), state.next.end());
+      context_.progress.advance(done, fmt::format("acceptance {:.2f}", state.record.mean_acceptance()));
+      shown_ = now;
+    }
+    if (context_.checkpoint && std::chrono::duration<double>(now - saved_).count() >= context_.checkpoint_interval) {
+      context_.checkpoint(store_());
+      saved_ = Clock::now();
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  RunContext& context_;
+  std::function<nlohmann::json()> store_;
+  Clock::time_point shown_ = Clock::now(), saved_ = shown_;
+};
+
+/// Iterates to the end, or until asked to stop; returns whether it was.
+bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
+  metropolis::Proposal const fixed = metropolis::spherical(target.dimension(), plan.variance);
+  std::vector<metropolis::Proposal const*> proposals(static_cast<std::size_t>(plan.chains), &fixed);
+  for (auto const& group : state.groups)
+    for (int const chain : group.chains()) proposals[static_cast<std::size_t>(chain)] = &group.proposal();
+  StreamKey const key{context.seed, Purpose::proposal, 0, 0};
+  Watch watch(context, [&] { return store(state, context.ledger, identity); });
+  auto const record = [&](int chain, metropolis::Move const& move) {
+    std::uint64_t const after = state.next[static_cast<std::size_t>(chain)] - plan.burn_in;
+    state.record.add(chain, state.chains, move, after % plan.stride == 0);
+  };
+  auto const all_past = [&](std::uint64_t iterations) {
+    return std::all_of(state.next.begin(), state.next.end(), [&](std::uint64_t n) { return n >= iterations; });
+  };
+
+  context.progress.begin("sampling", plan.samples);
+  bool stopped = false;
+  while (!all_past(plan.burn_in) && !(stopped = context.stop_requested())) {
+    metropolis::Info const info =
+        metropolis::step(target, proposals, key.with_step(state.next.front()), state.chains, context.ledger);
+    for (std::uint64_t& n : state.next) ++n;
+    for (auto& group : state.groups) group.learn(state.chains, info);
+    state.record.count_burn_in(info);
+    watch.look(state);
+  }
+  // The proposals are frozen: idle lanes may run ahead. How far must not depend on the machine, or the counts of solves would.
+  int const ahead = std::clamp(lanes_worth_filling / plan.chains, 1, most_ahead);
+  while (!stopped && !all_past(plan.samples) && !(stopped = context.stop_requested())) {
+    metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
+    watch.look(state);
+  }
+  context.progress.end(!stopped);
+  if (stopped && context.checkpoint) context.checkpoint(store(state, context.ledger, identity));
+  return stopped;
+}
+
+void add_proposals(Target const& target, Plan const& plan, State const& state, FitResult& result) {
+  for (auto const& group : state.groups) {
+    metropolis::Proposal const& p = group.proposal();
+    result.proposals.push_back({group.chains(), p.factor, p.scale});
+  }
+  if (!state.groups.empty()) return;
+  metropolis::Proposal const fixed = metropolis::spherical(target.dimension(), plan.variance);
+  std::vector<int> all;
+  for (int c = 0; c < plan.chains; ++c) all.push_back(c);
+  result.proposals.push_back({all, fixed.factor, fixed.scale});
+}
+
+}  // namespace
+
+std::span<SettingRow const> settings() { return rows; }
+
+std::string refuse(Settings const& settings) {
+  std::int64_t const samples = settings.integer("samples"), burn_in = settings.integer("burn_in"), thin = settings.integer("thin");
+  if (burn_in >= samples)
+    return fmt::format("burn_in ({}) must be smaller than samples ({}), which counts all iterations", burn_in, samples);
+  if (thin > samples - burn_in)
+    return fmt::format("thin ({}) is more than the {} iterations left after burn-in, so no draw would be kept", thin,
+                       samples - burn_in);
+  // All of them are held in memory and written out.
+  if (std::int64_t const kept = (samples - burn_in) / thin * settings.integer("chains"); kept > most_kept)
+    return fmt::format("{} draws would be kept, more than {}: raise `thin`, or take fewer samples", kept, most_kept);
+  return {};
+}
+
+FitResult run(Target const& target, Settings const& settings, RunContext& context) {
+  FitResult result;
+  result.settings = settings;
+  Plan const plan = plan_of(target, settings);
+  nlohmann::json const identity = checkpoint::identity("mh", settings, context.seed, target);
+  std::optional<State> state;
+  if (context.resume) {
+    result.failure = checkpoint::refuse(*context.resume, identity);
+    if (result.failure) return result;
+    // A run stopped during its search has nothing but its identity to resume from.
+    if (context.resume->contains("next")) {
+      try {
+        state = restore(*context.resume, target, plan, context.ledger);
+      } catch (checkpoint::Mismatch const& mismatch) {
+        result.failure = checkpoint::unusable(mismatch.what());
+      } catch (nlohmann::json::exception const&) {
+        result.failure = checkpoint::unusable("it is damaged");
+      }
+      if (result.failure) return result;
+    }
+  }
+  if (!state) state = begin(target, plan, context, result);
+  if (!state) {
+    if (result.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
+    return result;
+  }
+
+  result.interrupted = sample(target, plan, context, identity, *state);
+  state->record.write(target, plan.thin / plan.stride, plan.stride == 1, result);
+  result.acceptance_rate = state->record.acceptance_rate();
+  result.distinct_states = state->record.distinct_states();
+  add_proposals(target, plan, *state, result);
+  result.modes = state->modes;
+  result.findings = state->findings;
+  result.search_told = plan.global;
+  if (plan.stride != 1)
+    result.findings.push_back({Severity::note, "diagnostics_on_thinned",
+                               "the run is too long to keep every iteration: diagnostics are of the thinned draws", ""});
+  if (result.draws.total() > 0) {
+    result.summaries = summarise(result);
+    for (Finding& finding : check_chains({result.summaries, result.acceptance_rate, result.distinct_states, plan.adaptive}))
+      result.findings.push_back(std::move(finding));
+  }
+  return result;
+}
+
+}  // namespace sysid::mh

@@ -1,0 +1,22 @@
+// The selecting back ends, one line each, in the order `sysid list` prints them.
+#include "inference/table.hpp"
+
+#include "core/setting/table.hpp"
+#include "inference/abc/abc_smc.hpp"
+#include "inference/abc/settings.hpp"
+
+namespace sysid {
+namespace {
+
+SelectorRow const selector_rows[] = {
+    {"abc_smc", "approximate Bayesian computation by populations of particles, over models and parameters", abc::settings(),
+     &abc::refuse, &abc::run},
+};
+
+}  // namespace
+
+std::span<SelectorRow const> selectors() { return selector_rows; }
+
+SelectorRow const* find_selector(std::string_view name) { return row_named(selector_rows, name); }
+
+}  // namespace sysid

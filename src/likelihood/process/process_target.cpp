@@ -1,0 +1,234 @@
+// Batches of parameter vectors through the white part, then one regression per vector and channel.
+#include "likelihood/process/process_target.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "core/text/diagnostic.hpp"
+#include "gaussian_process/regression.hpp"
+#include "likelihood/failures.hpp"
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+using gaussian_process::Marginal;
+
+/// Coordinates are of order one: the white part of a step this long loses a third of its digits, no more. Of a solver that chooses
+/// its steps a value is known to some parts of `roughness`, and the step is as much longer.
+double step_of(double roughness) { return std::clamp(0.1 * std::sqrt(roughness), 1e-5, 1e-3); }
+/// Where a sum of squares begins: only that it is fixed matters.
+double offset(int count) { return 100.0 * count + 1000.0; }
+
+}  // namespace
+
+/// The white part at a batch of vectors.
+struct ProcessTarget::Batch {
+  LaneArray covariance;                         // hyper-parameters and noise, SI
+  std::vector<ProcessRecord::Records> records;  // by experiment
+  bool good(int lane) const {
+    return std::all_of(records.begin(), records.end(),
+                       [&](ProcessRecord::Records const& each) { return each.outcome[static_cast<std::size_t>(lane)].ok; });
+  }
+};
+
+ProcessTarget::~ProcessTarget() = default;
+
+ProcessTarget::ProcessTarget(std::shared_ptr<ProcessModel const> model, std::shared_ptr<ParameterSpace const> space,
+                             std::vector<Experiment> experiments, TargetOptions options)
+    : model_(std::move(model)), space_(std::move(space)), options_(std::move(options)), pool_(make_pool(options_.execution)) {
+  for (Experiment const& experiment : experiments)
+    records_.emplace_back(model_, experiment, options_.solver, options_.start_rows, options_.execution, pool_);
+  for (int c = 0; c < static_cast<int>(model_->channels().size()); ++c) {
+    Eigen::VectorXd all(count(c));
+    Eigen::Index next = 0;
+    for (ProcessRecord const& record : records_) {
+      Eigen::VectorXd const own = record.measured(c);
+      all.segment(next, own.size()) = own;
+      next += own.size();
+    }
+    measured_.push_back(std::move(all));
+  }
+}
+
+int ProcessTarget::count(int channel) const {
+  int total = 0;
+  for (ProcessRecord const& record : records_) total += static_cast<int>(record.fitted(channel).size());
+  return total;
+}
+
+ProcessTarget::Batch ProcessTarget::evaluate(ConstLanes theta) const {
+  LaneArray const values = space_->values(theta);
+  Batch batch;
+  for (int e = 0; e < static_cast<int>(records_.size()); ++e) {
+    LaneArray parameters(static_cast<int>(model_->model().parameters.size()), theta.width());
+    space_->select(values, e, parameters);
+    if (e == 0) batch.covariance = model_->parameters_of_covariance(parameters);
+    batch.records.push_back(records_[static_cast<std::size_t>(e)].run(parameters));
+  }
+  return batch;
+}
+
+std::optional<ProcessTarget::Regression> ProcessTarget::regression(Batch const& batch, int channel, int lane,
+                                                                   bool coefficients) const {
+  ProcessChannel const& layout = model_->channels()[static_cast<std::size_t>(channel)];
+  if (!batch.good(lane)) return std::nullopt;
+  Regression result;
+  for (int const output : layout.hyper_parameters) result.parameters.push_back(batch.covariance(output, lane));
+  result.parameters.push_back(batch.covariance(layout.noise_sd, lane));
+  for (double const value : result.parameters)
+    if (!(value > 0) || !std::isfinite(value)) return std::nullopt;
+  auto const rows = measured_[static_cast<std::size_t>(channel)].size();
+  auto const p = static_cast<Eigen::Index>(coefficients ? layout.slopes.size() : 0);
+  auto& observations = result.observations;
+  observations.inputs.resize(rows, static_cast<Eigen::Index>(layout.arguments.size()));
+  observations.values = measured_[static_cast<std::size_t>(channel)];
+  observations.columns.resize(rows, p);
+  observations.prior_mean.resize(p);
+  observations.prior_sd.resize(p);
+  for (Eigen::Index k = 0; k < p; ++k) {
+    observations.prior_mean[k] = layout.coefficients[static_cast<std::size_t>(k)].mean;
+    observations.prior_sd[k] = layout.coefficients[static_cast<std::size_t>(k)].sd;
+  }
+  Eigen::Index next = 0;
+  for (std::size_t e = 0; e < records_.size(); ++e) {
+    ProcessRows const own = records_[e].rows(batch.records[e], channel, lane, records_[e].fitted(channel));
+    Eigen::Index const size = own.white.size();
+    observations.inputs.middleRows(next, size) = own.inputs;
+    observations.values.segment(next, size) -= own.white;
+    if (p > 0) {  // F was computed with the coefficients at the mean of their prior
+      observations.columns.middleRows(next, size) = own.slopes;
+      observations.values.segment(next, size) += own.slopes * observations.prior_mean;
+    }
+    next += size;
+  }
+  if (!observations.inputs.allFinite() || !observations.values.allFinite() || !observations.columns.allFinite())
+    return std::nullopt;
+  return result;
+}
+
+std::optional<ProcessTarget::Regression> ProcessTarget::regression(ConstLanes parameters, int channel, bool coefficients) const {
+  Batch batch;
+  for (int e = 0; e < static_cast<int>(records_.size()); ++e) {
+    ConstLanes const own = parameters.columns(e, 1);
+    if (e == 0) batch.covariance = model_->parameters_of_covariance(own);
+    batch.records.push_back(records_[static_cast<std::size_t>(e)].run(own));
+  }
+  return regression(batch, channel, 0, coefficients);
+}
+
+Marginal ProcessTarget::marginal(Regression const& regression, int channel, bool with_gradient) const {
+  auto const& covariance = model_->channels()[static_cast<std::size_t>(channel)].covariance;
+  Marginal result = gaussian_process::marginal(covariance, regression.observations, regression.parameters, with_gradient);
+  // A density is that of the declared unit.
+  Channel const& declared = model_->model().channels[static_cast<std::size_t>(channel)];
+  if (declared.unit)
+    result.log_likelihood += static_cast<double>(regression.observations.values.size()) * elementary::log(declared.unit->scale);
+  return result;
+}
+
+void ProcessTarget::record(Batch const& batch, ConstLanes theta, std::span<double const> values, Ledger& ledger) const {
+  LaneArray declared(theta.rows(), theta.width());
+  bool const any = std::any_of(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+  if (any) constrain(theta, declared);
+  auto const example = [&](int lane) {
+    std::vector<double> out;
+    for (int p = 0; p < declared.rows(); ++p) out.push_back(declared(p, lane));
+    return out;
+  };
+  for (std::size_t e = 0; e < records_.size(); ++e)
+    record_failures({records_[e].simulator(), batch.records[e].parameters, options_.start_rows > 0, {}}, batch.records[e].outcome,
+                    options_.describe, example, ledger);
+  for (int w = 0; w < theta.width(); ++w)
+    if (!std::isfinite(values[static_cast<std::size_t>(w)]) && batch.good(w))
+      ledger.add_failure(FailureClass::non_finite, "the covariance of the Gaussian process", std::nan(""), example(w));
+}
+
+void ProcessTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const {
+  Batch const batch = evaluate(theta);
+  auto const one = [&](int w) {
+    double total = 0;
+    for (int c = 0; c < static_cast<int>(measured_.size()); ++c) {
+      auto const given = regression(batch, c, w, true);
+      if (!given) return -infinity;
+      Marginal const result = marginal(*given, c, false);
+      if (result.outcome != gaussian_process::Outcome::fine || !std::isfinite(result.log_likelihood)) return -infinity;
+      total += result.log_likelihood;
+    }
+    return total;
+  };
+  auto const task = [&](int w) { out[static_cast<std::size_t>(w)] = one(w); };
+  if (pool_)
+    pool_->run(theta.width(), task);
+  else
+    for (int w = 0; w < theta.width(); ++w) task(w);
+  record(batch, theta, out, ledger);
+}
+
+double ProcessTarget::log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const {
+  int const dimension = this->dimension(), width = 2 * dimension + 1;
+  double const step = step_of(roughness());
+  std::fill(gradient.begin(), gradient.end(), 0.0);
+  LaneArray points(dimension, width);  // theta, then a step ahead and one behind along each coordinate
+  for (int p = 0; p < dimension; ++p)
+    for (int w = 0; w < width; ++w)
+      points(p, w) = theta[static_cast<std::size_t>(p)] + (w == 2 * p + 1 ? step : w == 2 * p + 2 ? -step : 0);
+  Batch const batch = evaluate(points);
+  double total = 0;
+  for (int c = 0; c < static_cast<int>(measured_.size()); ++c) {
+    auto const centre = regression(batch, c, 0, true);
+    Marginal result;
+    if (centre) result = marginal(*centre, c, true);
+    if (!centre || result.outcome != gaussian_process::Outcome::fine || !std::isfinite(result.log_likelihood)) {
+      double const failed[] = {-infinity};
+      record(evaluate(points.view().columns(0, 1)), points.view().columns(0, 1), failed, ledger);
+      std::fill(gradient.begin(), gradient.end(), 0.0);
+      return -infinity;
+    }
+    total += result.log_likelihood;
+    for (int p = 0; p < dimension; ++p) {
+      auto const ahead = regression(batch, c, 2 * p + 1, true), behind = regression(batch, c, 2 * p + 2, true);
+      if (!ahead || !behind) continue;  // at the edge of what can be computed: the coordinate is left alone
+      bool const inputs_move =
+          ahead->observations.inputs != behind->observations.inputs || ahead->observations.columns != behind->observations.columns;
+      double slope = 0;
+      if (inputs_move) {
+        slope = (marginal(*ahead, c, false).log_likelihood - marginal(*behind, c, false).log_likelihood) / (2 * step);
+      } else {
+        for (std::size_t k = 0; k < centre->parameters.size(); ++k)
+          slope += result.gradient[static_cast<Eigen::Index>(k)] *
+                   (elementary::log(ahead->parameters[k]) - elementary::log(behind->parameters[k])) / (2 * step);
+        slope += result.values_gradient.dot(ahead->observations.values - behind->observations.values) / (2 * step);
+      }
+      if (std::isfinite(slope)) gradient[static_cast<std::size_t>(p)] += slope;
+    }
+  }
+  ledger.add_solves(1);
+  return total;
+}
+
+double ProcessTarget::measured_variance(int channel) const {
+  Eigen::VectorXd const& y = measured_[static_cast<std::size_t>(channel)];
+  return (y.array() - y.mean()).square().mean();
+}
+
+int ProcessTarget::residual_count() const { return 1; }
+
+void ProcessTarget::residuals(ConstLanes theta, Lanes out, Ledger& ledger) const {
+  std::vector<double> density(static_cast<std::size_t>(theta.width()));
+  log_likelihood(theta, density, ledger);
+  int rows = 0;
+  for (Eigen::VectorXd const& each : measured_) rows += static_cast<int>(each.size());
+  for (int w = 0; w < theta.width(); ++w) {
+    double const value = density[static_cast<std::size_t>(w)];
+    out(0, w) = std::isfinite(value) ? std::sqrt(2 * std::max(offset(rows) - value, 0.0)) : infinity;
+  }
+}
+
+double ProcessTarget::roughness() const {
+  return model_->model().integrated() && !options_.solver.fixed_step() ? options_.solver.relative : 0;
+}
+
+}  // namespace sysid

@@ -1,0 +1,64 @@
+#include "likelihood/segments/segment_starts.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "likelihood/segments/arrowhead.hpp"
+#include "likelihood/segments/damping.hpp"
+#include "likelihood/segments/segment_differences.hpp"
+#include "likelihood/segments/segment_noise.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double enough = 1e-4;  // gain of log likelihood
+constexpr int most_rounds = 40;
+
+}  // namespace
+
+void fit_starts(SegmentSimulation const& simulation, ShootingPoint& point, std::span<double const> noise_sd,
+                std::function<bool()> const& interrupted) {
+  if (simulation.states() == 0) return;
+  SegmentDifferences differences(simulation, point);
+  std::vector<SegmentSlopes> slopes = differences.at(point, most_probes);
+  std::size_t const count = slopes.size();
+  std::vector<Damping> damping(count);
+  std::vector<bool> done(count, false);
+  auto const cost = [&](SegmentSlopes const& each, std::size_t s) {
+    double const squares = weighted(simulation, each, static_cast<int>(s), noise_sd).residual.squaredNorm();
+    return std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity();
+  };
+  for (std::size_t s = 0; s < count; ++s) done[s] = !slopes[s].finite();
+  for (int round = 0; round < most_rounds; ++round) {
+    if (interrupted && interrupted()) return;
+    ShootingPoint trial = point;
+    bool open = false;
+    for (std::size_t s = 0; s < count; ++s) {
+      if (done[s]) continue;
+      SegmentSlopes const here = weighted(simulation, slopes[s], static_cast<int>(s), noise_sd);
+      Eigen::VectorXd const move = eliminate(here, damping[s].value()).start(Eigen::VectorXd::Zero(simulation.coefficients()));
+      double const gain = (here.residual.squaredNorm() - (here.residual + here.by_start * move).squaredNorm()) / 2;
+      done[s] = !(gain >= enough);
+      if (done[s]) continue;
+      trial.starts.col(static_cast<Eigen::Index>(s)) += move;
+      open = true;
+    }
+    if (!open) return;
+    std::vector<SegmentSlopes> const there = differences.at(trial, 0);
+    for (std::size_t s = 0; s < count; ++s) {
+      if (done[s]) continue;
+      auto const i = static_cast<Eigen::Index>(s);
+      if (cost(there[s], s) <= cost(slopes[s], s)) {
+        point.starts.col(i) = trial.starts.col(i);
+        slopes[s] = there[s];
+        damping[s].less();
+      } else {
+        damping[s].more();
+        done[s] = damping[s].exhausted();
+      }
+    }
+  }
+}
+
+}  // namespace sysid

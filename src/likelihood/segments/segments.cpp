@@ -1,0 +1,160 @@
+// One simulator per segment; a batch holds the point and its perturbations in lanes.
+#include "likelihood/segments/segments.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+/// Signals of a channel over all experiments: their sd about the mean.
+double size_of(std::span<Experiment const> experiments, std::size_t channel) {
+  double sum = 0, squares = 0, count = 0;
+  auto const each = [&](auto const& add) {
+    for (Experiment const& experiment : experiments)
+      for (double const y : experiment.measured[channel])
+        if (std::isfinite(y)) add(y);
+  };
+  each([&](double y) { sum += y, ++count; });
+  if (count == 0) return 1;
+  each([&](double y) { squares += (y - sum / count) * (y - sum / count); });
+  return squares > 0 ? std::sqrt(squares / count) : 1;
+}
+
+}  // namespace
+
+std::shared_ptr<SimulationProgram const> compile_centres(CompiledModel const& compiled) {
+  SimulationSource source = compiled.trajectory->source;
+  std::vector<NodeId> centres;
+  for (std::size_t r = 0; r < compiled.records.size(); ++r)
+    if (compiled.records[r].kind == CompiledModel::Record::Kind::centre) centres.push_back(source.records[r]);
+  source.records = std::move(centres);
+  return std::make_shared<SimulationProgram const>(compile(std::move(source)));
+}
+
+int halvings(int rows, int least) {
+  int count = 0;
+  while ((rows >> (count + 1)) >= std::max(least, 2)) ++count;
+  return count;
+}
+
+std::vector<Segment> cut_into_segments(std::span<Experiment const> experiments, int least, int most) {
+  std::vector<Segment> segments;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    auto const rows = static_cast<std::int64_t>(experiments[e].time.size());
+    int const halved = std::min(most, halvings(static_cast<int>(rows), least));
+    auto const begin = [&](std::int64_t part) { return static_cast<int>(part * rows >> halved); };
+    for (int part = 0; part < (1 << halved); ++part)
+      segments.push_back({static_cast<int>(e), begin(part), begin(part + 1) - begin(part)});
+  }
+  return segments;
+}
+
+Experiment rows_of(Experiment const& experiment, int first, int count) {
+  Experiment part = experiment;
+  auto const cut = [&](auto& values) {
+    if (!values.empty()) values = std::decay_t<decltype(values)>(values.begin() + first, values.begin() + first + count);
+  };
+  cut(part.time);
+  cut(part.scored);
+  for (auto& channel : part.measured) cut(channel);
+  for (auto& past : part.has_past) cut(past);
+  for (InputSignal& input : part.inputs) input = input.view(first, count);
+  part.first_row += first;
+  return part;
+}
+
+SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compiled, std::span<Experiment const> experiments,
+                                     std::vector<Segment> segments, Settings settings)
+    : compiled_(std::move(compiled)), segments_(std::move(segments)), settings_(std::move(settings)) {
+  if (!settings_.centres) settings_.centres = compile_centres(*compiled_);
+  for (int c = 0; c < channels(); ++c) size_.push_back(size_of(experiments, static_cast<std::size_t>(c)));
+  per_channel_.assign(static_cast<std::size_t>(channels()), 0);
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
+    Segment const& segment = segments_[s];
+    Experiment const part = rows_of(experiments[static_cast<std::size_t>(segment.experiment)], segment.first, segment.count);
+    simulators_.emplace_back(settings_.centres, Schedule(*settings_.centres, part, settings_.solver), settings_.execution,
+                             settings_.pool);
+    std::vector<double> samples;
+    int counted = 0;
+    for (std::size_t c = 0; c < part.measured.size() && c < per_channel_.size(); ++c)
+      for (int i = 0; i < counted_rows(static_cast<int>(s)); ++i) {
+        auto const row = static_cast<std::size_t>(i);
+        bool const counts = !part.measured[c].empty() && part.scored[row] != 0 && std::isfinite(part.measured[c][row]);
+        samples.push_back(counts ? part.measured[c][row] : std::numeric_limits<double>::quiet_NaN());
+        if (counts) ++counted, ++per_channel_[c];
+      }
+    samples_.push_back(std::move(samples));
+    per_segment_.push_back(counted);
+  }
+}
+
+bool SegmentSimulation::measured(int segment, int row) const {
+  return !std::isnan(samples_[static_cast<std::size_t>(segment)][static_cast<std::size_t>(row)]);
+}
+
+int SegmentSimulation::counted_rows(int segment) const {
+  int const rows = segments_[static_cast<std::size_t>(segment)].count;
+  return settings_.counted > 0 ? std::min(rows, settings_.counted) : rows;
+}
+
+std::vector<SegmentSlopes> SegmentSimulation::slopes(ShootingPoint const& at, Eigen::VectorXd const& step,
+                                                     Eigen::MatrixXd const& start_step) const {
+  return run(at, &step, &start_step);
+}
+
+std::vector<SegmentSlopes> SegmentSimulation::residuals(ShootingPoint const& at) const { return run(at, nullptr, nullptr); }
+
+std::vector<SegmentSlopes> SegmentSimulation::run(ShootingPoint const& at, Eigen::VectorXd const* step,
+                                                  Eigen::MatrixXd const* start_step) const {
+  int const k = step == nullptr ? 0 : coefficients(), d = start_step == nullptr ? 0 : states(), lanes = 1 + k + d;
+  int const records = channels();
+  int const parameters = static_cast<int>(compiled_->model.parameters.size());
+  std::size_t const count = segments_.size();
+  std::vector<LaneArray> points, out;
+  std::vector<std::vector<Outcome>> outcome(count, std::vector<Outcome>(static_cast<std::size_t>(lanes)));
+  for (std::size_t s = 0; s < count; ++s) {
+    LaneArray point(compiled_->parameter_rows(), lanes);
+    for (int w = 0; w < lanes; ++w) {
+      for (int p = 0; p < parameters; ++p) point(p, w) = settings_.others[static_cast<std::size_t>(p)];
+      for (int j = 0; j < coefficients(); ++j)
+        point(settings_.fitted[static_cast<std::size_t>(j)], w) = at.coefficients(j) + (w == 1 + j && j < k ? (*step)(j) : 0.0);
+      for (int x = 0; x < states(); ++x)
+        point(parameters + x, w) = at.starts(x, static_cast<Eigen::Index>(s)) +
+                                   (d > 0 && w == 1 + k + x ? (*start_step)(x, static_cast<Eigen::Index>(s)) : 0.0);
+    }
+    points.push_back(std::move(point));
+    out.emplace_back(counted_rows(static_cast<int>(s)) * records, lanes);
+  }
+  std::vector<Work> work;
+  for (std::size_t s = 0; s < count; ++s)
+    work.push_back(simulators_[s].records_work(points[s], 0, counted_rows(static_cast<int>(s)), out[s], outcome[s]));
+  do_work(work, settings_.pool.get());
+
+  std::vector<SegmentSlopes> all;
+  for (std::size_t s = 0; s < count; ++s) {
+    int const rows = counted_rows(static_cast<int>(s));
+    auto const size = static_cast<Eigen::Index>(samples_[s].size());
+    SegmentSlopes slopes{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, k), Eigen::MatrixXd::Zero(size, d)};
+    Eigen::Index row = 0;
+    for (int record = 0; record < records; ++record)
+      for (int i = 0; i < rows; ++i, ++row) {
+        double const sample = samples_[s][static_cast<std::size_t>(row)];
+        if (std::isnan(sample)) continue;
+        int const place = i * records + record;
+        double const here = out[s](place, 0);
+        slopes.residual(row) = here - sample;
+        for (int j = 0; j < k; ++j) slopes.by_coefficient(row, j) = out[s](place, 1 + j) - here;
+        for (int x = 0; x < d; ++x) slopes.by_start(row, x) = out[s](place, 1 + k + x) - here;
+      }
+    // A lane that failed is not a number in every row, measured or not.
+    if (!outcome[s].front().ok) slopes.residual.setConstant(std::numeric_limits<double>::quiet_NaN());
+    all.push_back(std::move(slopes));
+  }
+  return all;
+}
+
+}  // namespace sysid

@@ -1,0 +1,38 @@
+// parse, modules, elaborate, check: one line each.
+#include "load/load.hpp"
+
+#include "check/independent.hpp"
+#include "inference/table.hpp"
+#include "regression/choice/selector.hpp"
+#include "regression/column/columns.hpp"
+#include "syntax/parse.hpp"
+
+namespace sysid {
+namespace {
+
+template <class Rows>
+std::vector<BackendSettings> settings_of(Rows const& all) {
+  std::vector<BackendSettings> rows;
+  for (auto const& row : all) rows.push_back({row.name, row.settings});
+  return rows;
+}
+
+}  // namespace
+
+std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved) {
+  ReadableFile const read = parse_readable(source, diagnostics);
+  if (!read.tree) return std::nullopt;
+  bool const complete = !diagnostics.has_errors();
+  Diagnostics found;  // behind the syntax
+  auto const modules = load_modules(*read.tree, source, found, unsaved);
+  auto const fitting = settings_of(backends()), selecting = settings_of(selectors());
+  auto const discovering = settings_of(regression::selectors()), derivatives = settings_of(regression::forms());
+  std::optional<CheckedFile> file;
+  if (!found.has_errors())
+    file = check(elaborate(*read.tree, modules, found), {fitting, selecting, discovering, derivatives}, found);
+  if (!complete) keep_independent(*read.tree, read.left_out, source, found);
+  for (Diagnostic const& each : found.all()) diagnostics.add(each);
+  return complete ? std::move(file) : std::nullopt;
+}
+
+}  // namespace sysid

@@ -1,0 +1,287 @@
+// Every support weighed by depth-first orthogonalisation, or Gibbs chains over supports; then the same summary of what was weighed.
+#include "regression/choice/spike_slab.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
+#include "regression/choice/triangle.hpp"
+
+namespace sysid::regression::spike_slab {
+namespace {
+
+constexpr SettingRow rows[] = {
+    {"prior", SettingKind::word, "beta_prime", 0, 0, "beta_prime unit_information zellner",
+     "of coefficients: of unknown width, of width g about their estimate, or of width g about zero"},
+    {"g", SettingKind::real, "0", 0, 1e300, "",
+     "of unit_information and zellner: prior variance over that of the estimate; 0: the number of rows"},
+    {"sizes", SettingKind::word, "beta_binomial", 0, 0, "beta_binomial uniform",
+     "equal probability of every number of terms, or of every support"},
+    {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
+    {"enumerate", SettingKind::integer, "16", 0, 24, "", "selectable terms up to which every support is weighed"},
+    {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "of each Gibbs chain over all terms"},
+    {"chains", SettingKind::integer, "4", 1, 1000, "", "Gibbs chains"},
+    {"supports", SettingKind::integer, "10", 1, 10000, "", "best supports that are reported"},
+};
+
+/// Supports beyond this many, by falling probability, no longer enter averages of coefficients.
+constexpr std::size_t averaged = 2000;
+
+using Bits = std::vector<bool>;  // over the selectable terms
+
+struct Weighed {
+  Bits support;
+  double log_evidence;  // against the always terms
+  double log_weight;    // with the prior
+};
+
+class Scale {
+ public:
+  Scale(LinearProblem const& problem, Triangle const& triangle, Settings const& settings) : triangle_(triangle) {
+    for (int j = 0; j < static_cast<int>(problem.always.size()); ++j)
+      (problem.always[static_cast<std::size_t>(j)] != 0 ? always : selectable).push_back(j);
+    n_ = triangle.rows - static_cast<double>(always.size());
+    g_ = settings.real("g") > 0 ? settings.real("g") : n_;
+    std::string const& prior = settings.word("prior");
+    prior_ = prior == "beta_prime"         ? CoefficientPrior::beta_prime
+             : prior == "unit_information" ? CoefficientPrior::unit_information
+                                           : CoefficientPrior::zellner;
+    beta_binomial_ = settings.word("sizes") == "beta_binomial";
+    base_ = residual_squares(triangle, always);
+  }
+
+  std::vector<int> always, selectable;
+
+  std::vector<int> terms(Bits const& support) const {
+    std::vector<int> terms = always;
+    for (std::size_t i = 0; i < support.size(); ++i)
+      if (support[i]) terms.push_back(selectable[i]);
+    std::sort(terms.begin(), terms.end());
+    return terms;
+  }
+  Weighed weigh(Bits support, double squares) const {
+    auto const size = static_cast<double>(std::count(support.begin(), support.end(), true));
+    double const evidence = log_bayes_factor(prior_, n_, size, squares, base_, g_);
+    return {std::move(support), evidence, evidence + log_prior(size)};
+  }
+  Weighed weigh(Bits support) const {
+    double const squares = residual_squares(triangle_, terms(support));
+    return weigh(std::move(support), squares);
+  }
+
+ private:
+  double log_prior(double size) const {
+    if (!beta_binomial_) return 0;
+    auto const all = static_cast<double>(selectable.size());
+    // 1 / (number of sizes) / (number of supports of this size), the first factor left out
+    return elementary::lgamma(size + 1) + elementary::lgamma(all - size + 1) - elementary::lgamma(all + 1);
+  }
+
+  Triangle const& triangle_;
+  double n_, g_, base_;
+  CoefficientPrior prior_;
+  bool beta_binomial_;
+};
+
+/// Depth first: each selectable term is either left out or made orthogonal to what follows, so a support costs J operations.
+class Enumeration {
+ public:
+  Enumeration(Triangle const& triangle, Scale const& scale) : scale_(scale), support_(scale.selectable.size(), false) {
+    std::vector<int> order = scale.always;
+    order.insert(order.end(), scale.selectable.begin(), scale.selectable.end());
+    Eigen::MatrixXd columns(triangle.r.rows(), static_cast<Eigen::Index>(order.size()) + 1);
+    for (std::size_t k = 0; k < order.size(); ++k) columns.col(static_cast<Eigen::Index>(k)) = triangle.r.col(order[k]);
+    columns.rightCols(1) = triangle.known;
+    for (std::size_t k = 0; k < scale.always.size(); ++k) columns = without_first(columns);
+    rest_ = triangle.rest;
+    visit(columns, 0);
+  }
+  std::vector<Weighed> weighed;
+
+ private:
+  /// Columns after the first, made orthogonal to it (twice: once leaves what rounding made of it).
+  static Eigen::MatrixXd without_first(Eigen::MatrixXd const& columns) {
+    Eigen::VectorXd const direction = columns.col(0).normalized();
+    Eigen::MatrixXd left = columns.rightCols(columns.cols() - 1);
+    for (int pass = 0; pass < 2; ++pass) left -= direction * (direction.transpose() * left).eval();
+    return left;
+  }
+  void visit(Eigen::MatrixXd const& columns, std::size_t term) {
+    if (term == support_.size()) {
+      weighed.push_back(scale_.weigh(support_, rest_ + columns.rightCols(1).squaredNorm()));
+      return;
+    }
+    visit(columns.rightCols(columns.cols() - 1), term + 1);
+    support_[term] = true;
+    visit(without_first(columns), term + 1);
+    support_[term] = false;
+  }
+
+  Scale const& scale_;
+  Bits support_;
+  double rest_ = 0;
+};
+
+/// Chains that remember what they have weighed.
+class Gibbs {
+ public:
+  explicit Gibbs(Scale const& scale) : scale_(scale) {}
+
+  void chain(Bits state, int sweeps, StreamKey key, std::function<bool()> const& interrupted) {
+    auto const count = state.size();
+    double weight = log_weight(state);
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      if (interrupted && interrupted()) return;
+      Stream stream(key.with_step(static_cast<std::uint64_t>(sweep)));
+      for (std::size_t i = 0; i < count; ++i) {
+        Bits other = state;
+        other[i] = !other[i];
+        double const change = log_weight(other) - weight;
+        if (stream.uniform() < 1 / (1 + elementary::exp(-change))) {
+          weight += change;
+          state = std::move(other);
+        }
+      }
+      // Terms that stand for each other change places in one move; one by one each would have to be bad first.
+      for (std::size_t i = 0; i < count; ++i) {
+        std::uint64_t const a = stream.below(count), b = stream.below(count);
+        double const level = stream.uniform();
+        if (state[a] == state[b]) continue;
+        Bits other = state;
+        other[a] = state[b];
+        other[b] = state[a];
+        double const change = log_weight(other) - weight;
+        if (change >= 0 || elementary::log(level) < change) {
+          weight += change;
+          state = std::move(other);
+        }
+      }
+    }
+  }
+
+  std::vector<Weighed> weighed() const {
+    std::vector<Weighed> all;
+    for (auto const& [support, entry] : known_) all.push_back(entry);
+    return all;
+  }
+  Bits best() const {
+    auto const by_weight = [](auto const& a, auto const& b) { return a.second.log_weight < b.second.log_weight; };
+    return std::max_element(known_.begin(), known_.end(), by_weight)->first;
+  }
+  double log_weight(Bits const& support) {
+    auto place = known_.find(support);
+    if (place == known_.end()) place = known_.emplace(support, scale_.weigh(support)).first;
+    return place->second.log_weight;
+  }
+
+ private:
+  Scale const& scale_;
+  std::map<Bits, Weighed> known_;  // ordered, so that sums over it have one order
+};
+
+std::vector<Weighed> sample(LinearProblem const& problem, Triangle const& triangle, Scale const& scale, Settings const& settings,
+                            SelectorContext const& context) {
+  Gibbs gibbs(scale);
+  auto const count = scale.selectable.size();
+  // Starts: every support of backward elimination is weighed, the first chain begins at the best of them; the second begins without
+  // any term, the others with one in five at random.
+  for (Elimination const& step : eliminate(triangle, problem.always)) {
+    Bits support(count, false);
+    for (std::size_t i = 0; i < count; ++i)
+      support[i] = std::binary_search(step.terms.begin(), step.terms.end(), scale.selectable[i]);
+    gibbs.log_weight(support);
+  }
+  Bits const best = gibbs.best();
+  for (int chain = 0; chain < static_cast<int>(settings.integer("chains")); ++chain) {
+    StreamKey const key{context.seed, Purpose::supports, (context.equation << 32) + static_cast<std::uint64_t>(chain), 0};
+    Bits start(count, false);
+    if (chain == 0) start = best;
+    if (chain >= 2) {
+      Stream stream(key.with_step(~std::uint64_t{0}));
+      for (std::size_t i = 0; i < count; ++i) start[i] = stream.uniform() < 0.2;
+    }
+    gibbs.chain(std::move(start), static_cast<int>(settings.integer("sweeps")), key, context.interrupted);
+  }
+  return gibbs.weighed();
+}
+
+}  // namespace
+
+std::span<SettingRow const> settings() { return rows; }
+
+Choice choose(LinearProblem const& problem, Settings const& settings, SelectorContext const& context) {
+  Triangle const triangle = reduce(problem);
+  Scale const scale(problem, triangle, settings);
+  Choice choice;
+  choice.exact = static_cast<std::int64_t>(scale.selectable.size()) <= settings.integer("enumerate");
+  std::vector<Weighed> weighed =
+      choice.exact ? Enumeration(triangle, scale).weighed : sample(problem, triangle, scale, settings, context);
+  choice.iterations = static_cast<int>(weighed.size());
+  std::stable_sort(weighed.begin(), weighed.end(), [](Weighed const& a, Weighed const& b) { return a.log_weight > b.log_weight; });
+  std::vector<double> probability;
+  double sum = 0;
+  for (Weighed const& entry : weighed) {
+    probability.push_back(elementary::exp(entry.log_weight - weighed.front().log_weight));
+    sum += probability.back();
+  }
+  for (double& value : probability) value /= sum;
+
+  auto const count = static_cast<int>(problem.terms.cols());
+  choice.joint = Eigen::MatrixXd::Zero(count, count);
+  choice.terms.resize(static_cast<std::size_t>(count));
+  Eigen::VectorXd first = Eigen::VectorXd::Zero(count), second = first;  // moments of the coefficients
+  double averaged_mass = 0;
+  auto const offer = [&](std::size_t index) {
+    Support support = support_of(triangle, scale.terms(weighed[index].support));
+    support.log_evidence = weighed[index].log_evidence;
+    support.probability = probability[index];
+    return support;
+  };
+  for (std::size_t s = 0; s < weighed.size() && probability[s] > 0; ++s) {
+    std::vector<int> const terms = scale.terms(weighed[s].support);
+    for (int const a : terms)
+      for (int const b : terms) choice.joint(a, b) += probability[s];
+    if (s >= averaged) continue;
+    Support const support = offer(s);
+    averaged_mass += probability[s];
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      auto const i = static_cast<Eigen::Index>(k);
+      first(terms[k]) += probability[s] * support.coefficient(i);
+      second(terms[k]) += probability[s] * (support.covariance(i, i) + support.coefficient(i) * support.coefficient(i));
+    }
+    if (static_cast<std::int64_t>(s) < settings.integer("supports")) choice.supports.push_back(support);
+  }
+  std::vector<int> kept;
+  for (int j = 0; j < count; ++j) {
+    TermChoice& term = choice.terms[static_cast<std::size_t>(j)];
+    term.measure = choice.joint(j, j);
+    term.kept = problem.always[static_cast<std::size_t>(j)] != 0 || term.measure > settings.real("keep");
+    if (term.kept) kept.push_back(j);
+    term.mean = first(j) / averaged_mass;
+    term.sd = std::sqrt(std::max(0.0, second(j) / averaged_mass - term.mean * term.mean));
+  }
+  auto const same = [&](Support const& support) { return support.terms == kept; };
+  auto const place = std::find_if(choice.supports.begin(), choice.supports.end(), same);
+  if (place != choice.supports.end()) {
+    choice.chosen = *place;
+  } else {
+    std::size_t index = 0;
+    while (index < weighed.size() && scale.terms(weighed[index].support) != kept) ++index;
+    if (index == weighed.size()) {  // the median model is no support that a chain has met
+      Bits support(scale.selectable.size());
+      for (std::size_t i = 0; i < support.size(); ++i)
+        support[i] = std::binary_search(kept.begin(), kept.end(), scale.selectable[i]);
+      weighed.push_back(scale.weigh(std::move(support)));
+      probability.push_back(elementary::exp(weighed.back().log_weight - weighed.front().log_weight) / sum);
+    }
+    choice.chosen = offer(index);
+    choice.supports.push_back(choice.chosen);
+  }
+  choice.noise_sd = choice.chosen.noise_sd;
+  return choice;
+}
+
+}  // namespace sysid::regression::spike_slab

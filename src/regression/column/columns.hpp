@@ -1,0 +1,63 @@
+// From sampled records to the columns of a linear regression: one row of a table per way to treat derivatives.
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/setting/settings.hpp"
+#include "data/experiment.hpp"
+#include "regression/column/concern.hpp"
+#include "regression/column/dictionary.hpp"
+
+namespace sysid::regression {
+
+/// known [K] against terms [K x J]; row k is a window or a sample.
+struct Columns {
+  Eigen::VectorXd known;
+  Eigen::MatrixXd terms;
+};
+
+/// The columns of every equation on all experiments, stacked.
+class Projection {
+ public:
+  virtual ~Projection() = default;
+  /// As projected, in units of known side and terms; rows that the equation cannot use are left out.
+  virtual Columns const& columns(int equation) const = 0;
+  /// Rows multiplied so that their errors, at these coefficients [J], are independent and of sd 1 if the noise of the channels is
+  /// what it is taken to be and the equation itself is off by white noise of sd `own` at a sample (in units of the known side);
+  /// where a form knows no covariance, the columns themselves.
+  virtual Columns whitened(int equation, Eigen::VectorXd const& coefficients, double own) const = 0;
+  /// By how much the equation itself is off beside the noise of the channels, as `own` above, by what is left at these
+  /// coefficients; 0 where the data do not ask for it or the form cannot say.
+  virtual double own_noise(int equation, Eigen::VectorXd const& coefficients) const = 0;
+  /// How often whitening depends on coefficients and is worth repeating; 0: never.
+  virtual int reweightings() const = 0;
+  /// Whether the residual of `whitened` has sd 1 when the equation is right.
+  virtual bool calibrated() const = 0;
+  /// Noise sd taken per channel, as given or estimated.
+  virtual std::vector<double> const& noise_sd() const = 0;
+  /// Half-width of windows in samples; 0 for forms on samples.
+  virtual int half_width() const = 0;
+  /// Of the equation; term indices are those of Equation::terms.
+  virtual Concerns const& concerns(int equation) const = 0;
+};
+
+struct Form {
+  std::string_view name;
+  std::string_view summary;
+  std::span<SettingRow const> settings;
+  /// Why values that are each allowed do not go together; empty when they do.
+  std::string (*refuse)(Settings const&);
+  /// Experiments have at least two rows each; their inputs and channels are those of the dictionary. A fatal concern of any
+  /// equation means that its columns are empty.
+  std::unique_ptr<Projection> (*project)(Dictionary const&, std::span<Experiment const>, Settings const&);
+};
+
+/// The ways to have derivatives, in the order in which they are listed; `weak` first, the default.
+std::span<Form const> forms();
+Form const* find_form(std::string_view name);
+
+}  // namespace sysid::regression

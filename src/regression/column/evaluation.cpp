@@ -1,0 +1,48 @@
+// Node by node over short blocks of points, so that a long record needs no memory per node.
+#include "regression/column/evaluation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+#include <vector>
+
+namespace sysid::regression {
+
+Eigen::MatrixXd evaluate_columns(Graph const& graph, std::span<NodeId const> roots, LeafColumn const& leaf, int count) {
+  constexpr int block = 256;
+  std::vector<NodeId> const order = graph.reachable(roots);
+  std::unordered_map<NodeId, int> place;
+  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
+  std::vector<std::array<int, 3>> operands(order.size());
+  std::vector<std::span<double const>> columns(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    Node const& node = graph[order[i]];
+    NodeId const ids[] = {node.a, node.b, node.c};
+    for (int k = 0; k < graph.operand_count(order[i]); ++k) operands[i][static_cast<std::size_t>(k)] = place.at(ids[k]);
+    if (node.operation == Operation::leaf) columns[i] = leaf(order[i]);
+  }
+  Eigen::MatrixXd out(count, static_cast<Eigen::Index>(roots.size()));
+  Eigen::MatrixXd values(block, static_cast<Eigen::Index>(order.size()));
+  for (int first = 0; first < count; first += block) {
+    int const width = std::min(block, count - first);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      Node const& node = graph[order[i]];
+      double* const result = values.col(static_cast<Eigen::Index>(i)).data();
+      if (node.operation == Operation::constant) {
+        std::fill_n(result, width, node.value);
+      } else if (node.operation == Operation::leaf) {
+        std::copy_n(columns[i].data() + first, width, result);
+      } else {
+        double const* const a = values.col(operands[i][0]).data();
+        double const* const b = values.col(operands[i][1]).data();
+        double const* const c = values.col(operands[i][2]).data();
+        for (int k = 0; k < width; ++k) result[k] = apply(node, a[k], b[k], c[k]);
+      }
+    }
+    for (std::size_t r = 0; r < roots.size(); ++r)
+      out.col(static_cast<Eigen::Index>(r)).segment(first, width) = values.col(place.at(roots[r])).head(width);
+  }
+  return out;
+}
+
+}  // namespace sysid::regression

@@ -1,0 +1,219 @@
+// Facts about channels and inputs, computed from their samples alone.
+#include "regression/column/signals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "regression/column/spectrum.hpp"
+
+namespace sysid::regression {
+
+int channel_of(Dictionary const& dictionary, int state, int order) {
+  for (std::size_t c = 0; c < dictionary.channels.size(); ++c)
+    if (dictionary.channels[c].state == state && dictionary.channels[c].order == order) return static_cast<int>(c);
+  return -1;
+}
+
+int base_channel(Dictionary const& dictionary, int state, int order) {
+  for (int base = order; base >= 0; --base)
+    if (int const channel = channel_of(dictionary, state, base); channel >= 0) return channel;
+  return -1;
+}
+
+Symbol const* symbol_of(Dictionary const& dictionary, NodeId leaf) {
+  for (Symbol const& symbol : dictionary.symbols)
+    if (symbol.leaf == leaf) return &symbol;
+  return nullptr;
+}
+
+std::vector<Symbol> symbols_below(Dictionary const& dictionary, std::span<NodeId const> roots) {
+  std::vector<NodeId> const below = dictionary.graph.reachable(roots);
+  std::vector<Symbol> symbols;
+  for (Symbol const& symbol : dictionary.symbols)
+    if (std::find(below.begin(), below.end(), symbol.leaf) != below.end()) symbols.push_back(symbol);
+  return symbols;
+}
+
+std::string symbol_text(Dictionary const& dictionary, int state, int order) {
+  return dictionary.states[static_cast<std::size_t>(state)] + std::string(static_cast<std::size_t>(order), '\'');
+}
+
+std::optional<double> uniform_step(Experiment const& experiment) {
+  std::vector<double> const& time = experiment.time;
+  double const step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  for (std::size_t i = 1; i < time.size(); ++i)
+    if (!(std::abs(time[i] - time[i - 1] - step) <= 1e-6 * step)) return std::nullopt;
+  return step;
+}
+
+namespace {
+
+struct DifferenceSum {
+  double squares = 0;
+  std::size_t count = 0;
+
+  void add(std::span<double const> samples) {
+    constexpr double weights[] = {1, -6, 15, -20, 15, -6, 1};
+    for (std::size_t i = 0; i + 7 <= samples.size(); ++i) {
+      double difference = 0;
+      for (std::size_t k = 0; k < 7; ++k) difference += weights[k] * samples[i + k];
+      if (!std::isfinite(difference)) continue;
+      squares += difference * difference;
+      ++count;
+    }
+  }
+  double sd() const { return count == 0 ? 0 : std::sqrt(squares / (924 * static_cast<double>(count))); }
+};
+
+}  // namespace
+
+double estimated_noise(std::span<double const> samples) {
+  DifferenceSum sum;
+  sum.add(samples);
+  return sum.sd();
+}
+
+double fastest_period(std::span<double const> samples, double step) {
+  Spectrum const spectrum = spectrum_of(samples, step);
+  double total = 0, sum = 0;
+  for (double const power : spectrum.power) total += power;
+  if (!(total > 0)) return std::numeric_limits<double>::infinity();
+  std::size_t k = 0;
+  while (k + 1 < spectrum.power.size() && (sum += spectrum.power[k]) < 0.95 * total) ++k;
+  return spectrum.length / static_cast<double>(std::max<std::size_t>(k, 1));
+}
+
+namespace {
+
+/// sd of white noise as the quietest band of the spectrum has it; infinite where there are too few samples for bands.
+double noise_of_quietest_band(std::span<double const> samples) {
+  constexpr std::size_t most_bands = 16, least_bands = 4, least_of_band = 64;  // a band's power is known to a sixth
+  Spectrum const of = spectrum_of(samples, 1);
+  std::size_t const bins = of.power.empty() ? 0 : of.power.size() - 1, bands = std::min(most_bands, bins / least_of_band);
+  double least = std::numeric_limits<double>::infinity();
+  if (bands < least_bands) return least;
+  std::size_t const width = bins / bands;
+  for (std::size_t b = 0; b < bands; ++b) {
+    double mean = 0;
+    for (std::size_t k = 0; k < width; ++k) mean += of.power[1 + b * width + k] / static_cast<double>(width);
+    least = std::min(least, mean);
+  }
+  return std::sqrt(least * static_cast<double>(of.size) / 2);
+}
+
+}  // namespace
+
+std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Experiment const> experiments) {
+  std::vector<double> sds;
+  for (std::size_t c = 0; c < dictionary.channels.size(); ++c) {
+    DifferenceSum differences;
+    double squares = 0;
+    std::size_t count = 0;
+    for (Experiment const& experiment : experiments) {
+      std::vector<double> const& samples = experiment.measured[c];
+      differences.add(samples);
+      for (double const value : samples)
+        if (std::isfinite(value)) squares += value * value, ++count;
+    }
+    double const rms = count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
+    double estimated = differences.sd();
+    double quietest = std::numeric_limits<double>::infinity();
+    for (Experiment const& experiment : experiments) quietest = std::min(quietest, noise_of_quietest_band(experiment.measured[c]));
+    // Differences take fast motion for noise. The least of noisy estimates is low itself, so it must be far below to count.
+    if (quietest < estimated / 2) estimated = quietest;
+    double const sd = dictionary.channels[c].noise_sd.value_or(estimated);
+    double const least = std::max(1e-9 * rms, std::numeric_limits<double>::min());
+    sds.push_back(std::max(sd, least));
+  }
+  return sds;
+}
+
+namespace {
+
+/// sd of the white noise that a channel consists of, where it is nothing else: neighbours differ as independent samples do, and no
+/// band of the spectrum is quiet. Nothing where something moves.
+std::optional<double> nothing_but_noise(std::span<Experiment const> experiments, std::size_t channel) {
+  constexpr double of_sd = 0.8, of_band = 0.5;
+  DifferenceSum differences;
+  double squares = 0, quietest = std::numeric_limits<double>::infinity();
+  std::size_t count = 0;
+  for (Experiment const& experiment : experiments) {
+    std::vector<double> const& samples = experiment.measured[channel];
+    differences.add(samples);
+    quietest = std::min(quietest, noise_of_quietest_band(samples));
+    double sum = 0, squared = 0;
+    std::size_t finite = 0;
+    for (double const value : samples)
+      if (std::isfinite(value)) sum += value, ++finite;
+    double const mean = finite == 0 ? 0 : sum / static_cast<double>(finite);
+    for (double const value : samples)
+      if (std::isfinite(value)) squared += (value - mean) * (value - mean);
+    squares += squared;
+    count += finite;
+  }
+  double const sd = count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
+  if (!(sd > 0) || std::isinf(quietest) || differences.sd() < of_sd * sd || quietest < of_band * sd) return std::nullopt;
+  return differences.sd();
+}
+
+}  // namespace
+
+Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used) {
+  Concerns concerns;
+  for (Experiment const& experiment : experiments)
+    if (!uniform_step(experiment)) {
+      Concern concern{.kind = Concern::Kind::unequal_steps};
+      concern.clause = fmt::format("the time steps of `{}` are not equal to one in a million", experiment.name);
+      concerns.push_back(std::move(concern));
+    }
+  for (int const channel : used) {
+    auto const c = static_cast<std::size_t>(channel);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Experiment const& experiment : experiments)
+      for (std::size_t i = 0; i < experiment.measured[c].size(); ++i)
+        if (std::isfinite(experiment.measured[c][i])) {
+          low = std::min(low, experiment.measured[c][i]);
+          high = std::max(high, experiment.measured[c][i]);
+        }
+    std::string const& name = dictionary.channels[c].name;
+    if (low > high) {
+      Concern concern{.kind = Concern::Kind::not_measured, .channel = channel};
+      concern.clause = fmt::format("`{}` holds no sample", name);
+      concerns.push_back(std::move(concern));
+    } else if (low == high) {
+      Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
+      concern.clause =
+          fmt::format("`{}` is {:.4g} on the whole record: a system at rest says nothing about its equation", name, low);
+      concerns.push_back(std::move(concern));
+    } else if (dictionary.channels[c].order == 0 && !dictionary.channels[c].noise_sd && nothing_but_noise(experiments, c)) {
+      Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
+      concern.clause =
+          fmt::format("`{}` is noise on the whole record: its samples are as far from their neighbours as from any other", name);
+      concerns.push_back(std::move(concern));
+    }
+  }
+  return concerns;
+}
+
+bool usable(Experiment const& experiment, std::span<int const> used, int row) {
+  auto const i = static_cast<std::size_t>(row);
+  if (!experiment.scored.empty() && experiment.scored[i] == 0) return false;
+  return std::all_of(used.begin(), used.end(),
+                     [&](int channel) { return std::isfinite(experiment.measured[static_cast<std::size_t>(channel)][i]); });
+}
+
+InputSides input_sides(InputSignal const& signal, int order) {
+  InputSides sides;
+  int const rows = signal.rows();
+  auto const read = [&](int interval, double s) { return order == 0 ? signal.value(interval, s) : signal.rate(interval, s); };
+  for (int i = 0; i < rows; ++i) {
+    sides.before.push_back(i > 0 ? read(i - 1, 1) : read(0, 0));
+    sides.after.push_back(i + 1 < rows ? read(i, 0) : read(rows - 2, 1));
+  }
+  return sides;
+}
+
+}  // namespace sysid::regression

@@ -1,0 +1,78 @@
+// A tapered periodogram.
+#include "regression/column/spectrum.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/fourier.hpp"
+
+namespace sysid::regression {
+
+Spectrum spectrum_of(std::span<double const> samples, double step) {
+  std::size_t const n = samples.size();
+  std::vector<double> filled(samples.begin(), samples.end());
+  std::size_t last = n;  // the finite sample before, n: none
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!std::isfinite(filled[i])) continue;
+    std::size_t const first = last == n ? 0 : last + 1;
+    for (std::size_t k = first; k < i; ++k)
+      filled[k] = last == n
+                      ? filled[i]
+                      : filled[last] + (filled[i] - filled[last]) * static_cast<double>(k - last) / static_cast<double>(i - last);
+    last = i;
+  }
+  if (last == n) return {};
+  for (std::size_t k = last + 1; k < n; ++k) filled[k] = filled[last];
+  auto const [low, high] = std::minmax_element(filled.begin(), filled.end());
+  if (*low == *high) return {};
+
+  double mean = 0;
+  for (double const value : filled) mean += value / static_cast<double>(n);
+  std::size_t const size = std::bit_ceil(std::max<std::size_t>(n, 4));
+  Fourier::Parts re(size, 0.0), im(size, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    double const angle = 2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    re[i] = (filled[i] - mean) * (1 - elementary::cos(angle));
+  }
+  Fourier(size).to_reversed(re, im);
+  int const bits = std::countr_zero(size);
+  Spectrum out{std::vector<double>(size / 2 + 1), size, static_cast<double>(size) * step};
+  double const share = 2 / (1.5 * static_cast<double>(size) * static_cast<double>(n));  // 1.5: the mean square of the taper
+  for (std::size_t k = 0; k < out.power.size(); ++k) {
+    std::size_t reversed = 0;
+    for (int b = 0; b < bits; ++b) reversed |= ((k >> b) & 1) << (bits - 1 - b);
+    out.power[k] = share * (re[reversed] * re[reversed] + im[reversed] * im[reversed]);
+  }
+  return out;
+}
+
+double dominant_period(std::span<std::vector<double> const> signals, double step) {
+  // On the frequencies of the longest spectrum; a shorter one is read at the nearest of its own.
+  std::vector<Spectrum> spectra;
+  double length = 0, longest = 0;
+  for (std::vector<double> const& signal : signals) {
+    spectra.push_back(spectrum_of(signal, step));
+    double total = 0;
+    for (double const power : spectra.back().power) total += power;
+    for (double& power : spectra.back().power) power /= total;
+    length = std::max(length, spectra.back().length);
+    longest = std::max(longest, static_cast<double>(signal.size()) * step);
+  }
+  double best = 0, period = 0;
+  for (int k = 1; k * step < length / 2; ++k) {
+    double const frequency = k / length;
+    if (frequency * longest < 3) continue;
+    double sum = 0;
+    for (Spectrum const& each : spectra) {
+      auto const place = static_cast<std::size_t>(std::lround(frequency * each.length));
+      if (place < each.power.size()) sum += each.power[place] * each.length / length;
+    }
+    if (sum > best) best = sum, period = 1 / frequency;
+  }
+  return period;
+}
+
+}  // namespace sysid::regression

@@ -1,0 +1,93 @@
+// Which figures a report has, in reading order.
+#include "report/figure/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace sysid {
+
+using namespace plot;
+
+namespace {
+
+/// A state that a channel shows as it is (observe y) needs no figure of its own.
+bool repeats_a_channel(Prediction const& prediction, PredictedQuantity const& quantity) {
+  if (!quantity.measured.empty()) return false;
+  return std::any_of(prediction.quantities.begin(), prediction.quantities.end(), [&](PredictedQuantity const& other) {
+    return !other.measured.empty() && other.unit == quantity.unit && other.response.mean == quantity.response.mean;
+  });
+}
+
+/// How many records forces are known along.
+std::size_t records_of(std::vector<RestoringForce> const& forces) {
+  std::set<std::string> records;
+  for (RestoringForce const& force : forces) records.insert(force.experiment);
+  return records.size();
+}
+
+/// Coefficients of unknown functions have a figure of their function.
+Draws without_coefficients(Report const& report) {
+  Draws draws = report.draws;
+  for (std::size_t c = std::min(report.summary.size(), draws.names.size()); c-- > 0;) {
+    if (!report.summary[c].coefficient) continue;
+    auto const at = static_cast<std::ptrdiff_t>(c);
+    draws.names.erase(draws.names.begin() + at);
+    draws.units.erase(draws.units.begin() + at);
+    if (at < draws.parameter_count) --draws.parameter_count;
+    for (Chain& chain : draws.chains)
+      for (std::vector<double>& row : chain.values) row.erase(row.begin() + at);
+  }
+  return draws;
+}
+
+/// What nothing measures and what stays where it is has nothing to show.
+bool shows_something(PredictedQuantity const& quantity) {
+  std::vector<double> const& mean = quantity.response.mean;
+  return !mean.empty() &&
+         (!quantity.measured.empty() || std::any_of(mean.begin(), mean.end(), [&](double each) { return each != mean.front(); }));
+}
+
+}  // namespace
+
+std::vector<Figure> figures(Report const& report) {
+  std::vector<Figure> out;
+  if (report.selection) out.push_back(population_figure(*report.selection));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
+        out.push_back(fit_figure(prediction, quantity));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (over_inputs(prediction, quantity)) out.push_back(input_figure(prediction, quantity));
+  for (FunctionReport const& function : report.functions) out.push_back(function_figure(function));
+  for (RestoringForce const& force : report.forces) {
+    out.push_back(loop_figure(force));
+    if (!force.surface.empty()) out.push_back(surface_figure(force));
+  }
+  if (std::size_t const records = records_of(report.forces); records > 0 && records < report.predictions.size())
+    out.back().caption += fmt::format(" Restoring forces are shown along {} of {} records.", records, report.predictions.size());
+  if (report.discovery)
+    for (std::size_t e = 0; e < report.discovery->equations.size(); ++e) {
+      if (!report.discovery->equations[e].terms.empty()) out.push_back(inclusion_figure(*report.discovery, e));
+      if (has_coefficients(report.discovery->equations[e])) out.push_back(coefficient_figure(*report.discovery, e));
+    }
+  if (report.selection) {
+    Report const leading = leading_model(report);
+    if (leading.draws.total() > 1 && !leading.draws.names.empty()) out.push_back(posterior_figure(leading));
+    if (leading.draws.total() > 1 && leading.draws.names.size() > 1) out.push_back(pair_figure(leading.draws));
+  }
+  bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
+  if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
+  if (has_draws)
+    if (Draws const draws = without_coefficients(report); draws.names.size() > 1) out.push_back(pair_figure(draws));
+  if (has_draws) out.push_back(trace_figure(report.draws));
+  if (has_draws && report.draws.chains.size() > 1) out.push_back(rank_figure(report.draws));
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (has_residuals(prediction, quantity)) out.push_back(residual_figure(prediction, quantity));
+  return out;
+}
+
+}  // namespace sysid

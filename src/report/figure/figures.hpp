@@ -1,0 +1,48 @@
+// The figures of a report, as scripts; report/gnuplot draws them.
+#pragma once
+#include <vector>
+
+#include "report/figure/plot.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+
+/// All that the report's data can fill, in the order in which the page shows them.
+std::vector<plot::Figure> figures(Report const& report);
+
+// One each; `figures` calls them.
+
+/// Mean, bands and data of a quantity along the record, with its residuals below when it was measured.
+plot::Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Whether a measured quantity has residuals, and so many that their correlations mean something.
+bool has_residuals(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Autocorrelation of the residuals of a measured quantity, and their correlation with each input before them.
+plot::Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Whether rows are independent and inputs vary, so that a measured quantity can be seen over them.
+bool over_inputs(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Mean, bands and data of a measured quantity over each input: a curve where there is one input.
+plot::Figure input_figure(Prediction const& prediction, PredictedQuantity const& quantity);
+/// Restoring force against displacement and against velocity: loops of a hysteresis, a curve of a spring.
+plot::Figure loop_figure(RestoringForce const& force);
+/// Restoring force over displacement and velocity, with where the data lie. The surface is not empty.
+plot::Figure surface_figure(RestoringForce const& force);
+/// How sure the terms of an equation of a discovery are.
+plot::Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation);
+/// Whether any term that was chosen has a coefficient with a spread.
+bool has_coefficients(DiscoveredEquation const& equation);
+/// One panel for each cut: mean and 90 % band, and along the bottom how often the record reads the function there.
+plot::Figure function_figure(FunctionReport const& function);
+/// Posterior densities of the coefficients of the terms that were chosen.
+plot::Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation);
+/// Marginal posteriors as histograms and densities, the prior dashed, the truth of made data as a line.
+plot::Figure posterior_figure(Report const& report);
+/// Draws of each chain in order.
+plot::Figure trace_figure(Draws const& draws);
+/// How the ranks of each chain's draws spread over those of all (Vehtari et al. 2021).
+plot::Figure rank_figure(Draws const& draws);
+/// Model probabilities and thresholds over the populations of a selection.
+plot::Figure population_figure(SelectionReport const& selection);
+/// Draws of each two parameters against each other.
+plot::Figure pair_figure(Draws const& draws);
+
+}  // namespace sysid

@@ -1,0 +1,21 @@
+// Draws figures by gnuplot, when it is installed.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "report/figure/figure_format.hpp"
+#include "report/figure/plot.hpp"
+
+namespace sysid {
+
+bool gnuplot_installed();
+
+/// The figure as a file's content; nothing when gnuplot is missing or refuses. SVG and text are the same bytes for the same script.
+/// columns: characters that text is wide, of any number from 20 on.
+std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format = FigureFormat::svg, int columns = 80);
+
+/// A standalone SVG as a part of a page: no prologue, no background, colours by the page's variables (`--fig-ink`, ...), so that it
+/// follows light and dark, no wider than lets its text be as large as the page's, and no narrower than lets it be read.
+std::string embedded(std::string const& svg, plot::Figure const& figure);
+
+}  // namespace sysid

@@ -1,0 +1,142 @@
+// Equations, terms and supports in columns.
+#include "report/file/discovery.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/text/number.hpp"
+#include "report/file/csv.hpp"
+#include "report/file/simulation_validation.hpp"
+#include "report/text/summary_text.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation const& equation) {
+  std::string title = fmt::format("terms of {}: {} {}", equation.target, equation.rows, discovery.windows ? "windows" : "samples");
+  if (equation.noise_ratio > 0) title += fmt::format(", residual {} times the noise", significant(equation.noise_ratio, 3));
+  if (equation.own_noise > 0)
+    title += fmt::format(", off by {}{} at a sample by itself", significant(equation.own_noise, 3),
+                         equation.unit.empty() ? "" : " " + equation.unit);
+  ReportTable table{std::move(title),
+                    "Contribution: root mean square of the term with its coefficient over that of what is explained, as projected.",
+                    {"term", "", "coefficient", "sd", "unit", discovery.measure, "contribution"},
+                    {}};
+  if (discovery.measure == "contribution") table.header.pop_back();
+  for (DiscoveredTerm const& term : equation.terms) {
+    auto const [value, sd] = coefficient_text(term.coefficient, term.sd);
+    bool const offered = term.fate != "left out";
+    // Of the target it is known that it is there, not how large its coefficient is.
+    table.rows.push_back({term.text, term.fate == "known" ? "always kept" : term.fate, term.kept ? value : "", term.kept ? sd : "",
+                          term.unit, offered ? probability_text(term.measure) : ""});
+    if (discovery.measure != "contribution") table.rows.back().push_back(term.kept ? significant(term.contribution, 3) : "");
+  }
+  return table;
+}
+
+ReportTable support_table(DiscoveredEquation const& equation) {
+  bool const probable = std::any_of(equation.supports.begin(), equation.supports.end(),
+                                    [](DiscoveredSupport const& each) { return each.probability > 0 && each.probability < 1; });
+  ReportTable table{"best supports of " + equation.target,
+                    "Log evidence: against the terms that are always kept alone, by the same prior for all.",
+                    {"terms", "log evidence"},
+                    {}};
+  if (probable) table.header.insert(table.header.begin() + 1, "probability");
+  for (DiscoveredSupport const& support : equation.supports) {
+    table.rows.push_back(
+        {support.terms.empty() ? "none" : fmt::format("{}", fmt::join(support.terms, ", ")), significant(support.log_evidence, 5)});
+    if (probable) table.rows.back().insert(table.rows.back().begin() + 1, probability_text(support.probability));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
+  std::vector<ReportTable> tables;
+  if (!discovery.noise.empty()) {
+    ReportTable noise{"measurement noise", "As the regression took it.", {"channel", "unit", "sd", ""}, {}};
+    for (DiscoveryReport::Noise const& each : discovery.noise)
+      noise.rows.push_back(
+          {each.channel, each.unit, each.sd > 0 ? significant(each.sd, 3) : "none", each.given ? "given" : "estimated"});
+    tables.push_back(std::move(noise));
+  }
+  for (DiscoveredEquation const& equation : discovery.equations) {
+    if (equation.equation.empty()) continue;
+    tables.push_back(term_table(discovery, equation));
+    if (equation.supports.size() > 1) tables.push_back(support_table(equation));
+  }
+  if (!discovery.left_out.empty()) {
+    ReportTable left_out{"not offered", "Left out of the dictionary before the record was looked at.", {"term", ""}, {}};
+    for (DiscoveryReport::LeftOut const& each : discovery.left_out) left_out.rows.push_back({each.term, each.reason});
+    tables.push_back(std::move(left_out));
+  }
+  if (discovery.judged)
+    for (ReportTable& table : judged_tables(*discovery.judged)) tables.push_back(std::move(table));
+  return tables;
+}
+
+nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
+  Json out = {{"selector", discovery.selector}, {"derivatives", discovery.derivatives},
+              {"measure", discovery.measure},   {"half_width", discovery.half_width},
+              {"noise", Json::object()},        {"equations", Json::array()},
+              {"left_out", Json::array()}};
+  for (DiscoveryReport::Noise const& noise : discovery.noise)
+    out["noise"][noise.channel] = {{"unit", noise.unit}, {"sd", noise.sd}, {"given", noise.given}};
+  for (DiscoveryReport::LeftOut const& each : discovery.left_out)
+    out["left_out"].push_back({{"term", each.term}, {"reason", each.reason}});
+  for (DiscoveredEquation const& equation : discovery.equations) {
+    Json terms = Json::array(), supports = Json::array();
+    for (DiscoveredTerm const& term : equation.terms)
+      terms.push_back({{"term", term.text},
+                       {"name", term.name},
+                       {"unit", term.unit},
+                       {"kept", term.kept},
+                       {"fate", term.fate},
+                       {"coefficient", term.coefficient},
+                       {"sd", term.sd},
+                       {"measure", term.measure},
+                       {"mean", term.mean},
+                       {"mean_sd", term.mean_sd},
+                       {"contribution", term.contribution},
+                       {"inflation", term.inflation}});
+    for (DiscoveredSupport const& support : equation.supports)
+      supports.push_back({{"terms", support.terms}, {"probability", support.probability}, {"log_evidence", support.log_evidence}});
+    out["equations"].push_back({{"target", equation.target},
+                                {"equation", equation.equation},
+                                {"rows", equation.rows},
+                                {"explained_of_projections", equation.explained},
+                                {"noise_ratio", equation.noise_ratio},
+                                {"own_noise", equation.own_noise},
+                                {"exact", equation.exact},
+                                {"converged", equation.converged},
+                                {"terms", std::move(terms)},
+                                {"supports", std::move(supports)}});
+  }
+  if (discovery.judged) out["judged"] = judged_json(*discovery.judged);
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> discovery_files(Report const& report) {
+  DiscoveryReport const& discovery = *report.discovery;
+  std::string terms =
+      csv_head(report) + "equation,term,name,unit,fate,kept,coefficient,sd,measure,mean,mean_sd,contribution,inflation\n";
+  for (DiscoveredEquation const& equation : discovery.equations)
+    for (DiscoveredTerm const& term : equation.terms)
+      terms += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(equation.target), csv_field(term.text),
+                           csv_field(term.name), csv_field(term.unit), term.fate, term.kept ? 1 : 0, shortest(term.coefficient),
+                           shortest(term.sd), shortest(term.measure), shortest(term.mean), shortest(term.mean_sd),
+                           shortest(term.contribution), shortest(term.inflation));
+  std::vector<std::pair<std::string, std::string>> files = {{"terms.csv", std::move(terms)}};
+  if (discovery.judged)
+    for (auto& file : judged_files(report, *discovery.judged)) files.push_back(std::move(file));
+  if (!discovery.source.empty()) files.emplace_back("found.sysid", discovery.source);
+  return files;
+}
+
+}  // namespace sysid

@@ -1,0 +1,163 @@
+// JSON by nlohmann's ordered objects: order of insertion, round-trip decimals.
+#include "report/file/json.hpp"
+#include "diagnostics/convergence.hpp"
+#include "diagnostics/scores.hpp"
+#include "diagnostics/verdict.hpp"
+#include "report/file/discovery.hpp"
+#include "report/file/selection.hpp"
+#include "report/text/report_text.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace sysid {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json facts(Facts const& facts) {
+  Json out = Json::object();
+  for (auto const& [name, value] : facts) std::visit([&, &key = name](auto const& v) { out[key] = v; }, value);
+  return out;
+}
+
+Json score_object(std::vector<Score> const& scores) {
+  Json out = Json::object();
+  for (Score const& score : scores) out[score.name] = score.value;
+  return out;
+}
+
+Json parameters(std::vector<Summary> const& summaries) {
+  Json out = Json::object();
+  for (Summary const& s : summaries)
+    out[s.name] = {{"unit", s.unit},
+                   {"mean", s.mean},
+                   {"median", s.median},
+                   {"sd", s.sd},
+                   {"mad", s.mad},
+                   {"q5", s.q5},
+                   {"q95", s.q95},
+                   {"rhat", s.rhat},
+                   {"ess_bulk", s.ess_bulk},
+                   {"ess_tail", s.ess_tail},
+                   {"mcse_mean", s.mcse_mean}};
+  return out;
+}
+
+/// Where draws were thinned, `parameters` are of all iterations: those of the kept ones, which other programs take from the files.
+Json kept_draws(Report const& report) {
+  std::vector<Summary> summaries;
+  for (std::size_t c = 0; c < report.draws.names.size(); ++c) {
+    ChainValues values;
+    for (Chain const& chain : report.draws.chains) {
+      values.emplace_back();
+      for (auto const& draw : chain.values) values.back().push_back(draw[c]);
+    }
+    summaries.push_back(summarise(report.draws.names[c], report.draws.units[c], values));
+  }
+  return parameters(summaries);
+}
+
+bool thinned(Report const& report) {
+  for (auto const& [name, value] : report.settings)
+    if (auto const* thin = std::get_if<std::int64_t>(&value); name == "thin" && thin != nullptr) return *thin > 1;
+  return false;
+}
+
+Json named_values(std::vector<double> const& values, std::vector<std::string> const& names) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < values.size() && i < names.size(); ++i) out[names[i]] = values[i];
+  return out;
+}
+
+/// What a fit says of its model as a whole.
+Json evidence(Evidence const& evidence) {
+  if (!evidence.log_evidence) return {{"log_evidence", nullptr}, {"reason", evidence.reason}};
+  return {{"log_evidence", *evidence.log_evidence},
+          {"method", "laplace"},
+          {"along_axes", std::round(1e3 * evidence.along_axes) / 1e3 + 0.0},  // how rough the other is, no more; never -0
+          {"modes", evidence.modes}};
+}
+
+Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
+  Json failures = Json::array();
+  for (Failure const& failure : ledger.failures())
+    failures.push_back({{"class", name(failure.kind)},
+                        {"where", failure.where},
+                        {"count", failure.count},
+                        {"time", std::isnan(failure.time) ? Json(nullptr) : Json(failure.time)},
+                        {"example", named_values(failure.example, failure.names.empty() ? names : failure.names)}});
+  return {{"solves", ledger.solves()}, {"failed", ledger.failed()}, {"failures", failures}};
+}
+
+/// Per channel of each experiment; of a single one at the top as well.
+Json fit(Report const& report) {
+  std::vector<FitLine> const lines = fit_lines(report);
+  Json out = Json::object(), channels = Json::object();
+  for (FitLine const& line : lines) {
+    if (lines.size() == 1 || line.channel.empty()) out = score_object(line.scores);
+    if (!line.channel.empty()) channels[line.experiment][line.channel] = score_object(line.scores);
+  }
+  if (!channels.empty()) out["channels"] = channels;
+  return out;
+}
+
+/// The user's text may hold any bytes: what is not UTF-8 is replaced, never thrown.
+std::string dump(Json const& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+}  // namespace
+
+std::string summary_json(Report const& report) {
+  Json out;
+  out["task"] = report.task;
+  out["what"] = report.what;
+  out["model"] = report.model_name;
+  out["parameters"] = parameters(report.summary);
+  if (thinned(report) && report.draws.total() > 1) out["kept_draws"] = kept_draws(report);
+  if (report.selection) {
+    out["models"] = models_json(*report.selection);
+    out["populations"] = populations_json(*report.selection);
+  }
+  if (report.discovery) out["discovery"] = discovery_json(*report.discovery);
+  if (has_verdict(report)) out["verdict"] = {{"pass", grade(report) != Severity::error}, {"text", verdict_headline(report)}};
+  out["findings"] = Json::array();
+  for (Finding const& finding : report.findings)
+    out["findings"].push_back({{"severity", severity_word(finding.severity)},
+                               {"code", finding.code},
+                               {"message", finding.message},
+                               {"help", finding.help}});
+  out["fit"] = fit(report);
+  out["modes"] = Json::array();
+  for (Mode const& mode : report.modes)
+    out["modes"].push_back({{"log_density", mode.log_density},
+                            {"log_mass", mode.log_mass},
+                            {"share", mode.share},
+                            {"values", named_values(mode.declared, report.draws.names)},
+                            {"sd", named_values(mode.sd, report.draws.names)}});
+  if (report.evidence) {
+    out["evidence"] = evidence(*report.evidence);
+    out["parameter_count"] = report.draws.parameter_count;
+    out["noise"] = report.noise;
+  }
+  for (ReportTable const& table : report.tables) out["tables"][table.title] = {{"header", table.header}, {"rows", table.rows}};
+  out["ledger"] = ledger(report.ledger, report.draws.names);
+  out["seed"] = report.seed;
+  out["versions"] = facts(report.versions);
+  out["data"] = Json::array();
+  for (DataInfo const& data : report.data)
+    out["data"].push_back({{"name", data.name},
+                           {"file", data.file},
+                           {"sha256", data.sha256},
+                           {"rows", data.rows},
+                           {"scored", data.scored},
+                           {"scored_rows", data.scored_rows},
+                           {"samples_sha256", data.samples_sha256},
+                           {"notes", data.notes}});
+  out["settings"] = facts(report.settings);
+  return dump(out);
+}
+
+std::string timing_json(Report const& report) { return dump(facts(report.timing)); }
+
+}  // namespace sysid

@@ -1,0 +1,15 @@
+// summary.json and timing.json: strict JSON (what is not finite is null), keys in a fixed order.
+#pragma once
+#include <string>
+
+#include "result/report.hpp"
+
+namespace sysid {
+
+/// Parameters, verdict, fit, modes, ledger, seed, versions, data and settings: the same bytes for the same seed.
+std::string summary_json(Report const& report);
+
+/// Times and facts of the host, kept apart.
+std::string timing_json(Report const& report);
+
+}  // namespace sysid

@@ -1,0 +1,269 @@
+// One list of members for each type serves writing and reading: what is written is what is read.
+#include "report/file/record.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/crc.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/text/diagnostic.hpp"
+
+namespace nlohmann {
+
+// None, or a list of one: a null would read as a number that is none.
+template <class T>
+struct adl_serializer<std::optional<T>> {
+  static void to_json(json& out, std::optional<T> const& value) {
+    out = json::array();
+    if (value) out.push_back(*value);
+  }
+  static void from_json(json const& stored, std::optional<T>& value) {
+    value.reset();
+    if (!stored.empty()) value = stored.at(0).template get<T>();
+  }
+};
+
+template <>
+struct adl_serializer<sysid::SettingValue> {
+  static void to_json(json& out, sysid::SettingValue const& value) {
+    std::visit([&](auto const& each) { out = each; }, value);
+  }
+  static void from_json(json const& stored, sysid::SettingValue& value) {
+    if (stored.is_boolean())
+      value = stored.get<bool>();
+    else if (stored.is_number_integer())
+      value = stored.get<std::int64_t>();
+    else if (stored.is_number())
+      value = stored.get<double>();
+    else if (stored.is_array())
+      value = stored.get<std::vector<double>>();
+    else
+      value = stored.get<std::string>();
+  }
+};
+
+}  // namespace nlohmann
+
+namespace sysid {
+
+using json = nlohmann::json;
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorNumbers, distribution, arguments, lower, upper, scale)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorInfo, name, unit, text, numbers, q5, q95)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, notes, truth)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, severity, code, message, help)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, name, unit, mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail, mcse_mean,
+                                   coefficient)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Mode, declared, sd, log_density, log_mass, share, hits)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evidence, log_evidence, reason, along_axes, modes, of_likelihood)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, kind, where, count, time, example, names)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FunctionPoint, inputs, mean, sd, q5, q95)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PredictedInput, name, unit, values)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RestoringForce::Path, displacement, velocity, force)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RestoringForce, experiment, name, displacement, displacement_unit, velocity, velocity_unit,
+                                   force_unit, per_mass, model, data, half_width, accelerometer, why_no_data, grid_displacement,
+                                   grid_velocity, surface)
+
+void to_json(json& out, Ledger const& ledger) { out = {{"solves", ledger.solves()}, {"failures", ledger.failures()}}; }
+void from_json(json const& stored, Ledger& ledger) {
+  ledger.add_solves(stored.at("solves").get<std::uint64_t>());
+  for (Failure const& each : stored.at("failures").get<std::vector<Failure>>())
+    ledger.add_failure(each.kind, each.where, each.time, each.example, each.count, each.names);
+}
+
+// --- What has columns in a CSV file: here stands how long each is, 0 where there is none.
+
+namespace {
+
+std::vector<double> column_of(json const& length) { return std::vector<double>(length.get<std::size_t>(), std::nan("")); }
+
+/// Writes members one after the other; of a column its length.
+class Writer {
+ public:
+  explicit Writer(json& out) : out_(out) {}
+  template <class T>
+  Writer& operator()(char const* name, T const& value) {
+    out_[name] = value;
+    return *this;
+  }
+  Writer& length(char const* name, std::vector<double> const& column) { return (*this)(name, column.size()); }
+
+ private:
+  json& out_;
+};
+
+/// Reads what a Writer wrote; columns are filled later.
+class Reader {
+ public:
+  explicit Reader(json const& stored) : stored_(stored) {}
+  template <class T>
+  Reader& operator()(char const* name, T& value) {
+    stored_.at(name).get_to(value);
+    return *this;
+  }
+  Reader& length(char const* name, std::vector<double>& column) {
+    column = column_of(stored_.at(name));
+    return *this;
+  }
+
+ private:
+  json const& stored_;
+};
+
+}  // namespace
+
+void to_json(json& out, Chain const& chain) {
+  out = {chain.values.size(), chain.log_prior.size(), chain.log_likelihood.size(), chain.log_density.size(),
+         chain.acceptance.size()};
+}
+void from_json(json const& stored, Chain& chain) {
+  chain.values.resize(stored.at(0).get<std::size_t>());
+  chain.log_prior = column_of(stored.at(1));
+  chain.log_likelihood = column_of(stored.at(2));
+  chain.log_density = column_of(stored.at(3));
+  chain.acceptance = column_of(stored.at(4));
+}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Draws, names, units, chains, parameter_count)
+
+void to_json(json& out, Band const& band) {
+  out = {{"draws", band.draws}, {"left_out", band.left_out}, {"length", band.mean.size()}};
+}
+void from_json(json const& stored, Band& band) {
+  stored.at("draws").get_to(band.draws);
+  stored.at("left_out").get_to(band.left_out);
+  for (auto* column : {&band.mean, &band.sd, &band.lower, &band.upper}) *column = column_of(stored.at("length"));
+}
+
+template <class Way, class Quantity>
+void quantity_members(Way way, Quantity& quantity) {
+  way("name", quantity.name)("unit", quantity.unit)("response", quantity.response)("noisy", quantity.noisy);
+  way.length("measured", quantity.measured);
+}
+void to_json(json& out, PredictedQuantity const& quantity) { quantity_members(Writer(out), quantity); }
+void from_json(json const& stored, PredictedQuantity& quantity) { quantity_members(Reader(stored), quantity); }
+
+template <class Way, class Along>
+void prediction_members(Way way, Along& prediction) {
+  way("experiment", prediction.experiment)("time_unit", prediction.time_unit)("time_scale", prediction.time_scale);
+  way("rows", prediction.rows)("quantities", prediction.quantities)("inputs", prediction.inputs);
+  way.length("length", prediction.time);
+}
+void to_json(json& out, Prediction const& prediction) { prediction_members(Writer(out), prediction); }
+void from_json(json const& stored, Prediction& prediction) {
+  prediction_members(Reader(stored), prediction);
+  prediction.scored.assign(prediction.time.size(), 0);
+}
+
+template <class Way, class Function>
+void function_members(Way way, Function& function) {
+  way("name", function.name)("unit", function.unit)("inputs", function.inputs)("cuts", function.cuts)("visits", function.visits);
+}
+void to_json(json& out, FunctionReport const& function) {
+  function_members(Writer(out), function);
+  out["grid"] = function.grid.size();
+}
+void from_json(json const& stored, FunctionReport& function) {
+  function_members(Reader(stored), function);
+  double const none = std::nan("");
+  function.grid.assign(stored.at("grid").get<std::size_t>(),
+                       {std::vector<double>(function.inputs.size(), none), none, none, none, none});
+}
+
+// --- selections
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ParameterInfo, name, unit, lower, upper)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WeightedSummary, name, unit, mean, sd, median, q5, q95)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PopulationRecord::OfModel, proposed, failed, particles, probability, nearest)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PopulationRecord, threshold, proposed, simulated, failed, accepted, ess, models)
+
+template <class Way, class Candidate>
+void candidate_members(Way way, Candidate& model) {
+  way("name", model.name)("prior", model.prior)("probability", model.probability)("share", model.share);
+  way("died_in", model.died_in)("by_chance", model.by_chance)("parameters", model.parameters)("summaries", model.summaries);
+  way.length("particles", model.weight);
+}
+void to_json(json& out, SelectedModel const& model) { candidate_members(Writer(out), model); }
+void from_json(json const& stored, SelectedModel& model) {
+  candidate_members(Reader(stored), model);
+  model.distance = model.weight;
+  model.declared = LaneArray(static_cast<int>(model.parameters.size()), static_cast<int>(model.weight.size()));
+}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionResult, models, populations, threshold, next_threshold, stopped_by, ran_out)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LikelihoodCheck, log_evidence, probability, solver, given_up)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport::Unmoved, name, unit, prior, why)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport, result, distance, likelihoods, polished, polished_draws, floor, floor_words,
+                                   shared, shared_unmoved, resampling_seed)
+
+// --- discoveries
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedChannel, channel, unit, sd, residual, noise, one_step, horizon, free_run)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedCoefficient, target, term, name, unit, regression, regression_sd, value, sd, of_target)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedStructure, terms, equations, of_regression, failure, given_up, log_evidence, log_prior,
+                                   probability, residual_over_noise, draws, bounded, follows, coefficients, channels)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedReport, structures, segments, shortest, longest, whole, step, horizon, horizon_rows,
+                                   window_rows, aside, aside_seen, solver)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredTerm, text, unit, name, fate, kept, coefficient, sd, measure, mean, mean_sd,
+                                   contribution, inflation)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredSupport, terms, probability, log_evidence)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredEquation, target, equation, terms, supports, explained, noise_ratio, own_noise, unit,
+                                   rows, exact, converged)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Noise, channel, unit, sd, given)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::LeftOut, term, reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, equations, left_out,
+                                   judged, source)
+
+// --- the whole
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, model_name, model_title, equations, model_text, resolved_text,
+                                   priors, data, draws, summary, verdict, findings, fit, predictions, modes, evidence, noise,
+                                   functions, forces, tables, selection, discovery, ledger, seed, place, command, unseeded,
+                                   settings, versions)
+
+namespace {
+
+/// Raised when members keep their names and change their meaning. Other members tell themselves: the bytes are whole and do not
+/// fit.
+constexpr int form = 2;
+
+/// Any change of a byte shows: what is read needs no further doubt.
+std::uint32_t checksum(std::vector<std::uint8_t> const& bytes) {
+  boost::crc_32_type sum;
+  sum.process_bytes(bytes.data(), bytes.size());
+  return sum.checksum();
+}
+
+UserError unusable(std::filesystem::path const& path, std::string const& why) {
+  return UserError(
+      {Severity::error, "", fmt::format("`{}` {}", path.string(), why), std::nullopt, {}, "run the task again with --force"});
+}
+
+}  // namespace
+
+std::string record_bytes(Report const& report) {
+  std::vector<std::uint8_t> const inner = json::to_cbor(report);
+  std::vector<std::uint8_t> const bytes =
+      json::to_cbor({{"form", form}, {"crc32", checksum(inner)}, {"report", json::binary(inner)}});
+  return {bytes.begin(), bytes.end()};
+}
+
+Report read_record(std::string const& bytes, std::filesystem::path const& path) {
+  json const stored = json::from_cbor(bytes, true, false);
+  std::string const other = "was written by another version of sysid";
+  if (!stored.is_object()) throw unusable(path, "is damaged");
+  if (stored.value("form", 0) != form) throw unusable(path, other);
+  if (!stored.contains("report") || !stored["report"].is_binary() ||
+      stored.value("crc32", std::uint32_t{0}) != checksum(stored["report"].get_binary()))
+    throw unusable(path, "is damaged");
+  try {
+    return json::from_cbor(stored["report"].get_binary()).get<Report>();
+  } catch (json::exception const&) {
+    throw unusable(path, other);
+  }
+}
+
+}  // namespace sysid

@@ -1,0 +1,163 @@
+// Result folders.
+#include "report/file/result_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <vector>
+
+#include "core/system/files.hpp"
+#include "report/figure/figures.hpp"
+#include "report/figure/gnuplot.hpp"
+#include "report/file/csv.hpp"
+#include "report/file/discovery.hpp"
+#include "report/file/function.hpp"
+#include "report/file/json.hpp"
+#include "report/file/record.hpp"
+#include "report/file/selection.hpp"
+#include "report/page/html.hpp"
+
+namespace sysid {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of exports, which belong to the result that they were made of: TASK.nc, TASK_MODEL.nc, TASK.stan, TASK.data.json.
+bool is_exported_file(std::string const& name, std::string const& task) {
+  return name == task + ".nc" || (name.starts_with(task + "_") && name.ends_with(".nc")) || name == task + ".stan" ||
+         name == task + ".data.json";
+}
+
+/// Names that `write_result` gives, and those of exports.
+bool is_result_file(std::string const& name, std::string const& task) {
+  if (is_exported_file(name, task)) return true;
+  auto const between = [&](std::string_view begin, std::string_view end) {
+    return name.size() >= begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
+  };
+  return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "report.cbor" ||
+         name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
+         name == "structures.csv" || name == "refit.csv" || name == "populations.csv" || between("draws_", ".csv") ||
+         between("function_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") ||
+         between("polished_", ".csv");
+}
+
+bool is_figure_file(std::string const& name) {
+  for (char const* ending : {".svg", ".png", ".pdf", ".txt", ".gnuplot"})
+    if (name.ends_with(ending)) return true;
+  return false;
+}
+
+std::vector<fs::path> files_of_result(fs::path const& folder) {
+  std::vector<fs::path> out;
+  std::error_code ignored;
+  for (fs::directory_entry const& entry : fs::directory_iterator(folder, ignored))
+    if (is_result_file(entry.path().filename(), (folder / "").lexically_normal().parent_path().filename()))
+      out.push_back(entry.path());
+  for (fs::directory_entry const& entry : fs::directory_iterator(folder / "figures", ignored))
+    if (is_figure_file(entry.path().filename())) out.push_back(entry.path());
+  return out;
+}
+
+/// The summary first: where it stands, the result is whole.
+void remove_files(fs::path const& folder) {
+  if (std::error_code ignored; fs::exists(folder / "summary.json", ignored)) remove_file(folder / "summary.json");
+  for (fs::path const& file : files_of_result(folder)) remove_file(file);
+}
+
+}  // namespace
+
+bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty(); }
+
+void prepare_result(fs::path const& folder, bool force) {
+  if (!force && holds_result(folder))
+    throw UserError({Severity::error,
+                     "",
+                     fmt::format("`{}` holds results already", folder.string()),
+                     std::nullopt,
+                     {},
+                     "add --force to replace them, or -o DIR to write elsewhere"});
+  remove_files(folder);
+  make_folder(folder);
+}
+
+std::vector<std::string> write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
+  make_folder(folder);
+  // What an interrupted run left may have more files than its end: chains of models that died later.
+  remove_files(folder);
+  for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
+    write_file(folder / draws_file(c), draws_csv(report, static_cast<int>(c)));
+  if (report.selection)
+    for (auto const& [name, content] : selection_files(report)) write_file(folder / name, content);
+  if (report.discovery)
+    for (auto const& [name, content] : discovery_files(report)) write_file(folder / name, content);
+  for (FunctionReport const& function : report.functions) write_file(folder / function_file(function), function_csv(function));
+  std::vector<std::string> const prediction_names = prediction_files(report);
+  for (std::size_t p = 0; p < report.predictions.size(); ++p)
+    write_file(folder / prediction_names[p], predict_csv(report, report.predictions[p]));
+  std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
+  std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
+  write_file(folder / "report.html", report_html(report, drawn));
+  write_file(folder / "report.cbor", record_bytes(report));
+  if (!report.resolved_text.empty()) write_file(folder / "resolved.sysid", report.resolved_text);
+  write_file(folder / "timing.json", timing_json(report));
+  write_file(folder / "summary.json", summary_json(report));
+  return undrawn;
+}
+
+std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
+  std::vector<DrawnFigure> drawn;
+  bool const can_draw = pictures && gnuplot_installed();
+  for (plot::Figure const& figure : figures(report)) drawn.push_back({figure, can_draw ? draw(figure) : std::nullopt});
+  return drawn;
+}
+
+std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, fs::path const& folder,
+                                       std::vector<FigureFormat> const& pictures) {
+  bool const can_draw = gnuplot_installed();
+  std::vector<std::string> undrawn;
+  if (!figures.empty()) make_folder(folder / "figures");
+  for (DrawnFigure const& each : figures) {
+    write_file(folder / "figures" / (each.figure.name + ".gnuplot"), each.figure.script);
+    for (FigureFormat const format : pictures) {
+      std::string const name = fmt::format("{}.{}", each.figure.name, extension(format));
+      auto const picture = format == FigureFormat::svg && each.svg ? each.svg : can_draw ? draw(each.figure, format) : std::nullopt;
+      if (picture)
+        write_file(folder / "figures" / name, *picture);
+      else
+        undrawn.push_back(name);
+    }
+  }
+  return undrawn;
+}
+
+std::string undrawn_words(std::vector<std::string> const& undrawn) {
+  return fmt::format("{} {}{}; the scripts are in figures/",
+                     gnuplot_installed() ? "gnuplot did not draw" : "gnuplot is not installed and did not draw", undrawn.front(),
+                     undrawn.size() > 1 ? fmt::format(" and {} more", undrawn.size() - 1) : "");
+}
+
+std::string draws_file(std::size_t chain) { return fmt::format("draws_{}.csv", chain + 1); }
+
+std::vector<std::string> prediction_files(Report const& report) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (Prediction const& prediction : report.predictions) {
+    std::string suffix = report.predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);
+    while (!taken.insert(suffix).second) suffix += "_";  // two names may differ only in letters that file names do not have
+    names.push_back(fmt::format("predict{}.csv", suffix));
+  }
+  return names;
+}
+
+std::string function_file(FunctionReport const& function) {
+  return fmt::format("function_{}.csv", plot::identifier(function.name));
+}
+
+std::string particles_file(std::string const& model) { return fmt::format("particles_{}.csv", model_file_name(model)); }
+
+std::string polished_file(std::string const& model, std::size_t chain) {
+  return fmt::format("polished_{}_{}.csv", model_file_name(model), chain + 1);
+}
+
+}  // namespace sysid

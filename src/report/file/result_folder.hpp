@@ -1,0 +1,50 @@
+// A task's folder of results: what its files are called, that nothing is overwritten unasked, and the writing of all of them.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/figure/figure_format.hpp"
+#include "report/page/html.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+
+/// True when the folder holds a result of before. A checkpoint is none.
+bool holds_result(std::filesystem::path const& folder);
+
+/// Makes the folder ready before the work begins. Throws UserError when it holds a result and `force` is not given; with `force`
+/// the files of that result are removed (draws of more chains than the new run has would otherwise stay), with the pictures, texts
+/// and scripts that lie in its figures/.
+void prepare_result(std::filesystem::path const& folder, bool force);
+
+/// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, report.cbor, resolved.sysid,
+/// timing.json and, last of all, summary.json: where it stands, the result is whole. `pictures`: what figures are drawn as, beside
+/// their scripts; with none the page has none either. Returns what `write_figures` does; IoError names the file that could not be
+/// written.
+std::vector<std::string> write_result(Report const& report, std::filesystem::path const& folder,
+                                      std::vector<FigureFormat> const& pictures = {FigureFormat::svg});
+
+/// All figures of a report, drawn where `pictures` are wanted and gnuplot is there.
+std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures);
+
+/// Their scripts, and each as `pictures` say, into figures/ of the folder. Returns the pictures that gnuplot did not draw:
+/// "pairs.pdf".
+std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, std::filesystem::path const& folder,
+                                       std::vector<FigureFormat> const& pictures);
+
+/// "gnuplot did not draw pairs.pdf and 2 more; the scripts are in figures/". undrawn: as `write_figures` returns it, not empty.
+std::string undrawn_words(std::vector<std::string> const& undrawn);
+
+// Names of its files, as the writer gives them and the reader looks for them.
+
+/// Of the chain with this index, from 0.
+std::string draws_file(std::size_t chain);
+/// Of each prediction, in order.
+std::vector<std::string> prediction_files(Report const& report);
+std::string function_file(FunctionReport const& function);
+/// Of a candidate model.
+std::string particles_file(std::string const& model);
+std::string polished_file(std::string const& model, std::size_t chain);
+
+}  // namespace sysid

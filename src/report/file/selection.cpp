@@ -1,0 +1,233 @@
+// Models, populations and parameters in columns.
+#include "report/file/selection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/numeric/random.hpp"
+#include "core/text/number.hpp"
+#include "report/file/csv.hpp"
+#include "report/file/result_folder.hpp"
+#include "report/text/summary_text.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Three decimals; more where they would read as certain.
+std::string probability_text(double p) {
+  if (p == 0 || p == 1) return fmt::format("{}", p);
+  if (p < 1e-6) return "< 1e-6";
+  if (p < 0.0005) return fmt::format("{:.1g}", p);
+  return p > 0.9995 ? "> 0.999" : fmt::format("{:.3f}", p);
+}
+
+ReportTable model_table(SelectionReport const& selection) {
+  bool const checked =
+      std::any_of(selection.likelihoods.begin(), selection.likelihoods.end(), [](auto const& l) { return l.has_value(); });
+  ReportTable table{"models",
+                    "Probability: sum of the particles' weights. Share: part of the particles, Worden et al. (8.21), which is no "
+                    "probability after the second population.",
+                    {"model", "prior", "probability", "share", "died in population"},
+                    {}};
+  if (checked) table.header.push_back("by likelihood");
+  for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
+    SelectedModel const& model = selection.result.models[m];
+    table.rows.push_back({model.name, probability_text(model.prior), probability_text(model.probability),
+                          probability_text(model.share), model.died_in > 0 ? fmt::format("{}", model.died_in) : "-"});
+    if (checked)
+      table.rows.back().push_back(selection.likelihoods[m] ? probability_text(selection.likelihoods[m]->probability) : "-");
+  }
+  return table;
+}
+
+ReportTable population_table(SelectionReport const& selection) {
+  ReportTable table{
+      "populations", "Under each model: its probability by weights.", {"", "threshold", "simulations", "acceptance", "ess"}, {}};
+  for (SelectedModel const& model : selection.result.models) table.header.push_back(model.name);
+  for (std::size_t t = 0; t < selection.result.populations.size(); ++t) {
+    PopulationRecord const& record = selection.result.populations[t];
+    table.rows.push_back({fmt::format("{}", t + 1), std::isfinite(record.threshold) ? significant(record.threshold, 4) : "none",
+                          fmt::format("{}", record.simulated), significant(record.acceptance(), 2), significant(record.ess, 3)});
+    for (auto const& model : record.models)
+      table.rows.back().push_back(model.particles == 0 ? "-" : probability_text(model.probability));
+  }
+  return table;
+}
+
+void add_row(ReportTable& table, Summary const& s, std::string const& from) {
+  SummaryText const t = format_summary(s);
+  table.rows.push_back({s.name, s.unit, t.mean, t.sd, t.q5, t.median, t.q95});
+  if (!from.empty()) table.rows.back().push_back(from);
+}
+
+bool is_polished(SelectionReport const& selection, std::size_t m) {
+  return m < selection.polished.size() && !selection.polished[m].empty();
+}
+
+ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
+  SelectedModel const& model = selection.result.models[m];
+  bool const polished = is_polished(selection, m);
+  ReportTable table{"parameters of " + model.name,
+                    "The sd of particles is the width that the threshold leaves, not that of the posterior.",
+                    {"", "unit", "mean", "sd", "q5", "median", "q95"},
+                    {}};
+  if (polished) table.header.push_back("from");
+  for (WeightedSummary const& s : model.summaries)
+    add_row(table, as_summary(s, effective_particles(model.weight)), polished ? "particles" : "");
+  if (polished)
+    for (Summary const& s : selection.polished[m]) add_row(table, s, "likelihood");
+  return table;
+}
+
+ReportTable shared_table(SelectionReport const& selection) {
+  ReportTable table{"shared parameters",
+                    "Averaged over the models that have them, by their probabilities.",
+                    {"", "unit", "mean", "sd", "q5", "median", "q95"},
+                    {}};
+  for (WeightedSummary const& s : selection.shared) add_row(table, as_summary(s, selection.result.populations.back().ess), "");
+  return table;
+}
+
+Json weighted_json(WeightedSummary const& s) {
+  return {{"unit", s.unit}, {"mean", s.mean}, {"median", s.median}, {"sd", s.sd}, {"q5", s.q5}, {"q95", s.q95}};
+}
+
+std::string populations_csv(Report const& report) {
+  SelectionReport const& selection = *report.selection;
+  std::string out = csv_head(report) + "population,threshold,proposals,simulations,failed,accepted,ess";
+  for (SelectedModel const& model : selection.result.models)
+    for (char const* what : {"probability", "share", "proposals", "nearest"})
+      out += "," + csv_field(fmt::format("{} {}", model.name, what));
+  out += '\n';
+  for (std::size_t t = 0; t < selection.result.populations.size(); ++t) {
+    PopulationRecord const& r = selection.result.populations[t];
+    out += fmt::format("{},{},{},{},{},{},{}", t + 1, shortest(r.threshold), r.proposed, r.simulated, r.failed, r.accepted,
+                       shortest(r.ess));
+    for (std::size_t m = 0; m < r.models.size(); ++m)
+      out += fmt::format(",{},{},{},{}", shortest(r.models[m].probability), shortest(r.share(static_cast<int>(m))),
+                         r.models[m].proposed, shortest(r.models[m].nearest));
+    out += '\n';
+  }
+  return out;
+}
+
+std::string particles_csv(Report const& report, SelectedModel const& model) {
+  auto const population =
+      model.died_in > 0 ? static_cast<std::size_t>(model.died_in - 1) : report.selection->result.populations.size();
+  std::string out = csv_head(report, model.name) + fmt::format("# candidate = {}\nweight__,distance__,population__", model.name);
+  for (ParameterInfo const& parameter : model.parameters) out += "," + csv_field(stan_name(parameter.name));
+  out += '\n';
+  for (std::size_t j = 0; j < model.weight.size(); ++j) {
+    out += fmt::format("{},{},{}", shortest(model.weight[j]), shortest(model.distance[j]), population);
+    for (int d = 0; d < model.declared.rows(); ++d) out += "," + shortest(model.declared(d, static_cast<int>(j)));
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string model_file_name(std::string const& model) {
+  std::string name;
+  for (char const c : model)
+    if (c == '.' || c == '(' || c == ')' || c == '=' || c == ',' || c == '_' || c == '-' ||
+        std::isalnum(static_cast<unsigned char>(c)))
+      name += c;
+  return name;
+}
+
+std::vector<ReportTable> selection_tables(SelectionReport const& selection) {
+  std::vector<ReportTable> tables = {model_table(selection), population_table(selection)};
+  for (std::size_t m = 0; m < selection.result.models.size(); ++m)
+    if (selection.result.models[m].died_in == 0 && (!selection.result.models[m].summaries.empty() || is_polished(selection, m)))
+      tables.push_back(parameter_table(selection, m));
+  if (!selection.shared.empty()) tables.push_back(shared_table(selection));
+  if (!selection.shared_unmoved.empty()) {
+    ReportTable table{"shared parameters that stay at their priors", "", {"", "unit", "prior", "because"}, {}};
+    for (auto const& each : selection.shared_unmoved) table.rows.push_back({each.name, each.unit, each.prior, each.why});
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+nlohmann::ordered_json models_json(SelectionReport const& selection) {
+  Json out = Json::object();
+  for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
+    SelectedModel const& model = selection.result.models[m];
+    Json& entry = out[model.name];
+    entry = {{"prior", model.prior},
+             {"probability", model.probability},
+             {"share", model.share},
+             {"died_in_population", model.died_in > 0 ? Json(model.died_in) : Json(nullptr)}};
+    if (model.died_in > 0) entry["died_by_chance"] = model.by_chance;
+    if (m < selection.likelihoods.size() && selection.likelihoods[m]) {
+      LikelihoodCheck const& check = *selection.likelihoods[m];
+      entry["laplace"] = {{"log_evidence", check.log_evidence}, {"probability", check.probability}};
+      if (!check.solver.empty()) entry["laplace"]["solver"] = check.solver;
+      if (check.given_up) entry["laplace"]["given_up"] = true;
+    }
+    entry["parameters"] = Json::object();
+    if (model.died_in > 0) continue;
+    for (WeightedSummary const& s : model.summaries) entry["parameters"][s.name] = weighted_json(s);
+    if (!is_polished(selection, m)) continue;
+    for (Summary const& s : selection.polished[m])
+      entry["polished"][s.name] = {
+          {"unit", s.unit}, {"mean", s.mean},         {"median", s.median},    {"sd", s.sd}, {"q5", s.q5}, {"q95", s.q95},
+          {"rhat", s.rhat}, {"ess_bulk", s.ess_bulk}, {"ess_tail", s.ess_tail}};
+  }
+  return out;
+}
+
+nlohmann::ordered_json populations_json(SelectionReport const& selection) {
+  Json out = Json::object();
+  out["count"] = selection.result.populations.size();
+  std::uint64_t simulated = 0;
+  for (PopulationRecord const& each : selection.result.populations) simulated += each.simulated;
+  out["simulations"] = simulated;
+  out["distance"] = selection.distance;
+  out["threshold"] = selection.result.threshold;
+  out["next_threshold"] = selection.result.next_threshold;
+  out["noise_floor"] = selection.floor ? Json(*selection.floor) : Json(nullptr);
+  out["ess"] = selection.result.populations.back().ess;
+  out["stopped_by"] = selection.result.stopped_by;
+  if (!selection.shared.empty())
+    for (WeightedSummary const& s : selection.shared) out["shared"][s.name] = weighted_json(s);
+  for (auto const& each : selection.shared_unmoved)
+    out["shared"][each.name] = {{"unit", each.unit}, {"prior", each.prior}, {"because", each.why}};
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> selection_files(Report const& report) {
+  SelectionReport const& selection = *report.selection;
+  std::vector<std::pair<std::string, std::string>> files = {{"populations.csv", populations_csv(report)}};
+  for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
+    SelectedModel const& model = selection.result.models[m];
+    if (model.weight.empty()) continue;
+    std::string const name = model_file_name(model.name);
+    files.emplace_back(particles_file(model.name), particles_csv(report, model));
+    if (model.died_in > 0) continue;
+    Report of_model;
+    of_model.version = report.version;
+    of_model.task = report.task;
+    of_model.what = report.what;
+    of_model.model_name = model.name;
+    of_model.seed = report.seed;
+    of_model.settings = report.settings;
+    of_model.data = report.data;
+    of_model.draws = resampled_draws(model, selection.resampling_seed);
+    files.emplace_back(fmt::format("draws_{}.csv", name), draws_csv(of_model, 0));
+    if (m >= selection.polished_draws.size()) continue;
+    of_model.draws = selection.polished_draws[m];
+    for (std::size_t c = 0; c < of_model.draws.chains.size(); ++c)
+      files.emplace_back(polished_file(model.name, c), draws_csv(of_model, static_cast<int>(c)));
+  }
+  return files;
+}
+
+}  // namespace sysid

@@ -1,0 +1,207 @@
+// Structures and coefficients in columns.
+#include "report/file/simulation_validation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/text/number.hpp"
+#include "report/file/csv.hpp"
+#include "report/file/discovery.hpp"
+#include "report/text/summary_text.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Errors of more sds than this are not worth their digits.
+constexpr int lost_sds = 100;
+
+std::string percent_text(std::optional<double> percent) {
+  if (!percent) return "";
+  return *percent > 1e4 ? "> 1e4" : significant(*percent, 3);
+}
+
+std::string seconds(double value) { return significant(value, 3) + " s"; }
+
+ReportTable structure_table(JudgedReport const& judged) {
+  std::string const segments = judged.segments == 1
+                                   ? fmt::format("one run of {}", seconds(judged.longest))
+                                   : fmt::format("{} runs of {}, each from a start of its own", judged.segments,
+                                                 judged.longest - judged.shortest > judged.step
+                                                     ? fmt::format("{} to {}", seconds(judged.shortest), seconds(judged.longest))
+                                                     : seconds(judged.longest));
+  ReportTable table{fmt::format("structures by simulation: {}", segments),
+                    "Log odds: of a structure against the first, by evidence and number of terms.",
+                    {"terms", "log odds", "probability", "residual/noise"},
+                    {}};
+  bool const scored = !judged.aside.empty();
+  if (scored) {
+    table.caption += fmt::format(
+        " Errors: root mean square in percent of the sd, the worst channel, on {}{}; {} rows ahead are {}; starts from {} rows "
+        "before.",
+        judged.aside,
+        judged.aside_seen ? ", which the coefficients of these scores have not seen, but the choice of terms has" : "",
+        judged.horizon_rows, seconds(judged.horizon), judged.window_rows);
+    table.header.insert(table.header.end(), {"1 row ahead %", fmt::format("{} rows %", judged.horizon_rows), "free run %"});
+  }
+  table.header.push_back("draws bounded");
+  auto const weight = [](JudgedStructure const& each) { return each.log_evidence + each.log_prior; };
+  double const best = judged.structures.empty() ? 0 : weight(judged.structures.front());
+  for (JudgedStructure const& each : judged.structures) {
+    if (!each.failure.empty()) continue;
+    std::vector<std::string> row = {each.terms};
+    row.insert(row.end(), {significant(weight(each) - best, 4), probability_text(each.probability),
+                           each.residual_over_noise > 0 ? significant(each.residual_over_noise, 3) : ""});
+    if (scored)
+      for (auto const error : {&JudgedChannel::one_step, &JudgedChannel::horizon, &JudgedChannel::free_run})
+        row.push_back(percent_text(each.percent(error)));
+    row.push_back(each.draws > 0 ? fmt::format("{} of {}", each.bounded, each.draws) : "");
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable failure_table(JudgedReport const& judged) {
+  ReportTable table{"structures that simulation could not judge", "", {"terms", "why"}, {}};
+  for (JudgedStructure const& each : judged.structures)
+    if (!each.failure.empty()) table.rows.push_back({each.terms, each.failure});
+  return table;
+}
+
+ReportTable coefficient_table(JudgedStructure const& best) {
+  bool const several = best.equations.size() > 1;
+  ReportTable table{"coefficients by simulation",
+                    "Beside those of the regression on the same terms.",
+                    {"term", "coefficient", "sd", "regression", "sd", "unit"},
+                    {}};
+  if (several) table.header.insert(table.header.begin(), "equation");
+  for (JudgedCoefficient const& each : best.coefficients) {
+    auto const [value, sd] = coefficient_text(each.value, each.sd);
+    auto const [before, before_sd] = coefficient_text(each.regression, each.regression_sd);
+    std::vector<std::string> row = {each.term, value, sd, before, before_sd, each.unit};
+    if (several) row.insert(row.begin(), each.target);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable channel_table(JudgedReport const& judged, JudgedStructure const& best) {
+  ReportTable table{
+      fmt::format("errors of the first structure on {}", judged.aside),
+      "Root mean square, in the channel's unit; the residual is that of the refit.",
+      {"channel", "unit", "sd", "noise", "residual", "1 row ahead", fmt::format("{} rows", judged.horizon_rows), "free run"},
+      {}};
+  for (JudgedChannel const& each : best.channels) {
+    auto const shown = [&](std::optional<double> value) {
+      if (value && each.sd > 0 && !(*value <= lost_sds * each.sd)) return fmt::format("> {} sd", lost_sds);
+      return value ? significant(*value, 3) : std::string();
+    };
+    table.rows.push_back({each.channel, each.unit, significant(each.sd, 3), each.noise > 0 ? significant(each.noise, 3) : "",
+                          significant(each.residual, 3), shown(each.one_step), shown(each.horizon), shown(each.free_run)});
+  }
+  return table;
+}
+
+Json number_or_null(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
+
+}  // namespace
+
+std::vector<ReportTable> judged_tables(JudgedReport const& judged) {
+  bool const any = !judged.structures.empty() && judged.structures.front().failure.empty();
+  std::vector<ReportTable> tables;
+  if (any) tables.push_back(structure_table(judged));
+  if (ReportTable failed = failure_table(judged); !failed.rows.empty()) tables.push_back(std::move(failed));
+  if (!any) return tables;
+  JudgedStructure const& best = judged.structures.front();
+  tables.push_back(coefficient_table(best));
+  if (!judged.aside.empty()) tables.push_back(channel_table(judged, best));
+  return tables;
+}
+
+nlohmann::ordered_json judged_json(JudgedReport const& judged) {
+  Json out = {{"segments", judged.segments},
+              {"shortest_segment", judged.shortest},
+              {"longest_segment", judged.longest},
+              {"whole", judged.whole},
+              {"solver", judged.solver},
+              {"kept_aside", judged.aside},
+              {"kept_aside_seen_by_choice", judged.aside_seen},
+              {"horizon", judged.horizon},
+              {"horizon_rows", judged.horizon_rows},
+              {"start_rows", judged.window_rows},
+              {"structures", Json::array()}};
+  for (JudgedStructure const& each : judged.structures) {
+    Json structure = {{"terms", each.terms}, {"rank_by_regression", each.of_regression}};
+    if (!each.failure.empty()) {
+      structure["failure"] = each.failure;
+      out["structures"].push_back(std::move(structure));
+      continue;
+    }
+    Json coefficients = Json::array(), channels = Json::array();
+    for (JudgedCoefficient const& one : each.coefficients)
+      coefficients.push_back({{"target", one.target},
+                              {"term", one.term},
+                              {"name", one.name},
+                              {"unit", one.unit},
+                              {"value", one.value},
+                              {"sd", number_or_null(one.sd)},
+                              {"regression", one.regression},
+                              {"regression_sd", one.regression_sd}});
+    for (JudgedChannel const& one : each.channels)
+      channels.push_back({{"channel", one.channel},
+                          {"unit", one.unit},
+                          {"sd", one.sd},
+                          {"residual", one.residual},
+                          {"noise", one.noise},
+                          {"one_step", number_or_null(one.one_step)},
+                          {"horizon", number_or_null(one.horizon)},
+                          {"free_run", number_or_null(one.free_run)}});
+    structure.update({{"equations", each.equations},
+                      {"log_evidence", each.log_evidence},
+                      {"log_prior", each.log_prior},
+                      {"probability", each.probability},
+                      {"residual_over_noise", each.residual_over_noise},
+                      {"draws", each.draws},
+                      {"draws_bounded", each.bounded},
+                      {"follows_for", each.follows},
+                      {"coefficients", std::move(coefficients)},
+                      {"channels", std::move(channels)}});
+    out["structures"].push_back(std::move(structure));
+  }
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> judged_files(Report const& report, JudgedReport const& judged) {
+  std::string structures =
+      csv_head(report) +
+      "rank,rank_by_regression,terms,failure,log_evidence,log_prior,probability,residual_over_noise,one_step_percent,"
+      "horizon_percent,free_run_percent,follows_for,draws,draws_bounded\n";
+  std::string refit = csv_head(report) + "rank,equation,term,name,unit,coefficient,sd,regression,regression_sd\n";
+  int rank = 0;
+  for (JudgedStructure const& each : judged.structures) {
+    auto const percent = [&](auto error) {
+      auto const value = each.percent(error);
+      return value ? shortest(*value) : std::string();
+    };
+    ++rank;
+    structures +=
+        each.failure.empty()
+            ? fmt::format("{},{},{},,{},{},{},{},{},{},{},{},{},{}\n", rank, each.of_regression, csv_field(each.terms),
+                          shortest(each.log_evidence), shortest(each.log_prior), shortest(each.probability),
+                          shortest(each.residual_over_noise), percent(&JudgedChannel::one_step), percent(&JudgedChannel::horizon),
+                          percent(&JudgedChannel::free_run), shortest(each.follows), each.draws, each.bounded)
+            : fmt::format("{},{},{},{},,,,,,,,,,\n", rank, each.of_regression, csv_field(each.terms), csv_field(each.failure));
+    for (JudgedCoefficient const& one : each.coefficients)
+      refit += fmt::format("{},{},{},{},{},{},{},{},{}\n", rank, csv_field(one.target), csv_field(one.term), csv_field(one.name),
+                           csv_field(one.unit), shortest(one.value), shortest(one.sd), shortest(one.regression),
+                           shortest(one.regression_sd));
+  }
+  return {{"structures.csv", std::move(structures)}, {"refit.csv", std::move(refit)}};
+}
+
+}  // namespace sysid

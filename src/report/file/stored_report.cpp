@@ -1,0 +1,153 @@
+// The record says which columns there are; each CSV file fills its own, in the order in which they were written.
+#include "report/file/stored_report.hpp"
+
+#include <fmt/format.h>
+
+#include "core/system/files.hpp"
+#include "core/text/diagnostic.hpp"
+#include "report/file/csv.hpp"
+#include "report/file/number_table.hpp"
+#include "report/file/record.hpp"
+#include "report/file/result_folder.hpp"
+
+namespace sysid {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file whose columns are taken one after the other.
+class Columns {
+ public:
+  explicit Columns(fs::path path) : path_(std::move(path)), table_(read_number_table(path_)), rows_(table_.rows()) {}
+
+  std::vector<double> take(std::string const& name, std::size_t rows) {
+    if (next_ >= table_.names.size() || table_.names[next_] != name)
+      throw other(fmt::format("has no column `{}` in place {}", name, next_ + 1));
+    if (rows_ != rows) throw other(fmt::format("has {} rows in place of {}", rows_, rows));
+    return std::move(table_.columns[next_++]);
+  }
+  /// Leaves out those that hold no number of the record.
+  void pass(std::string const& name) { (void)take(name, rows_); }
+  void end() const {
+    if (next_ != table_.names.size()) throw other(fmt::format("has {} columns in place of {}", table_.names.size(), next_));
+  }
+
+ private:
+  UserError other(std::string const& what) const {
+    return UserError({Severity::error,
+                      "",
+                      fmt::format("`{}` does not belong to this result: it {}", path_.string(), what),
+                      std::nullopt,
+                      {},
+                      "run the task again with --force"});
+  }
+  fs::path path_;
+  NumberTable table_;
+  std::size_t rows_;
+  std::size_t next_ = 0;
+};
+
+void read_chain(fs::path const& path, Draws const& draws, Chain& chain) {
+  Columns columns(path);
+  std::size_t const rows = chain.values.size();
+  auto const fill = [&](char const* name, std::vector<double>& column) {
+    if (column.empty())
+      columns.pass(name);
+    else
+      column = columns.take(name, rows);
+  };
+  fill("lp__", chain.log_density);
+  fill("accept_stat__", chain.acceptance);
+  fill("log_prior__", chain.log_prior);
+  fill("log_likelihood__", chain.log_likelihood);
+  for (auto& row : chain.values) row.resize(draws.names.size());
+  for (std::size_t p = 0; p < draws.names.size(); ++p) {
+    std::vector<double> const values = columns.take(stan_name(draws.names[p]), rows);
+    for (std::size_t d = 0; d < rows; ++d) chain.values[d][p] = values[d];
+  }
+  columns.end();
+}
+
+void read_prediction(fs::path const& path, Prediction& prediction) {
+  Columns columns(path);
+  std::size_t const rows = prediction.time.size();
+  prediction.time = columns.take(prediction.rows ? "row" : "t", rows);
+  for (PredictedQuantity& quantity : prediction.quantities) {
+    auto const band = [&](std::string const& name, Band& into) {
+      bool const there = !into.mean.empty();
+      for (auto const& [end, column] : {std::pair("_mean", &into.mean), std::pair("_sd", &into.sd), std::pair("_q2.5", &into.lower),
+                                        std::pair("_q97.5", &into.upper)}) {
+        std::vector<double> values = columns.take(name + end, rows);
+        if (there) *column = std::move(values);
+      }
+    };
+    band(quantity.name, quantity.response);
+    if (!quantity.noisy.mean.empty()) band(quantity.name + "_noisy", quantity.noisy);
+    if (!quantity.measured.empty()) quantity.measured = columns.take(quantity.name + "_measured", rows);
+  }
+  std::vector<double> const scored = columns.take("scored", rows);
+  for (std::size_t i = 0; i < rows; ++i) prediction.scored[i] = scored[i] != 0 ? 1 : 0;
+  columns.end();
+}
+
+void read_function(fs::path const& path, FunctionReport& function) {
+  Columns columns(path);
+  std::size_t const rows = function.grid.size();
+  auto const fill = [&](std::string const& name, auto const& place) {
+    std::vector<double> const values = columns.take(name, rows);
+    for (std::size_t i = 0; i < rows; ++i) place(function.grid[i]) = values[i];
+  };
+  for (std::size_t d = 0; d < function.inputs.size(); ++d)
+    fill(function.inputs[d].first, [d](FunctionPoint& point) -> double& { return point.inputs[d]; });
+  fill("mean", [](FunctionPoint& point) -> double& { return point.mean; });
+  fill("sd", [](FunctionPoint& point) -> double& { return point.sd; });
+  fill("q5", [](FunctionPoint& point) -> double& { return point.q5; });
+  fill("q95", [](FunctionPoint& point) -> double& { return point.q95; });
+  columns.end();
+}
+
+void read_particles(fs::path const& path, SelectedModel& model) {
+  Columns columns(path);
+  std::size_t const rows = model.weight.size();
+  model.weight = columns.take("weight__", rows);
+  model.distance = columns.take("distance__", rows);
+  columns.pass("population__");
+  for (std::size_t d = 0; d < model.parameters.size(); ++d) {
+    std::vector<double> const values = columns.take(stan_name(model.parameters[d].name), rows);
+    for (std::size_t j = 0; j < rows; ++j) model.declared(static_cast<int>(d), static_cast<int>(j)) = values[j];
+  }
+  columns.end();
+}
+
+}  // namespace
+
+Report read_result(fs::path const& folder) {
+  fs::path const path = folder / "report.cbor";
+  if (!fs::exists(path) && fs::exists(folder / "summary.json"))
+    throw UserError({Severity::error,
+                     "",
+                     fmt::format("the results in `{}` have no `report.cbor`", folder.string()),
+                     std::nullopt,
+                     {},
+                     "an earlier program wrote them, or the file was lost: run the task again with --force"});
+  Report report = read_record(read_file(path), path);
+  for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
+    read_chain(folder / draws_file(c), report.draws, report.draws.chains[c]);
+  std::vector<std::string> const prediction_names = prediction_files(report);
+  for (std::size_t p = 0; p < report.predictions.size(); ++p) read_prediction(folder / prediction_names[p], report.predictions[p]);
+  for (FunctionReport& function : report.functions) read_function(folder / function_file(function), function);
+  if (!report.selection) return report;
+  SelectionReport& selection = *report.selection;
+  for (SelectedModel& model : selection.result.models)
+    if (!model.weight.empty()) read_particles(folder / particles_file(model.name), model);
+  for (std::size_t m = 0; m < selection.polished_draws.size(); ++m) {
+    if (selection.result.models[m].died_in > 0 || selection.result.models[m].weight.empty()) continue;  // they have no files
+    Draws& draws = selection.polished_draws[m];
+    for (std::size_t c = 0; c < draws.chains.size(); ++c)
+      read_chain(folder / polished_file(selection.result.models[m].name, c), draws, draws.chains[c]);
+  }
+  return report;
+}
+
+}  // namespace sysid

@@ -1,0 +1,245 @@
+// The page of `sysid check` for a person.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/elementary.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/verdict.hpp"
+#include "report/page/check_page.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int margin = 14;
+
+std::string number_with_unit(std::string const& number, std::string const& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
+std::string count(int number, std::string const& noun) { return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s"); }
+
+// "  label       first line", further lines below it.
+std::string entry(std::string const& label, std::vector<std::string> const& lines) {
+  std::string out;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    out += fmt::format("  {:<{}}{}\n", i == 0 ? label : std::string(), margin - 2, lines[i]);
+  return out;
+}
+
+std::string table(std::string const& label, std::vector<std::vector<std::string>> const& rows, int left) {
+  std::string const text = align_columns(rows, left);
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t const end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return entry(label, lines);
+}
+
+std::vector<std::vector<std::string>> rows_of(std::vector<DeclaredLine> const& lines) {
+  std::vector<std::vector<std::string>> rows;
+  for (DeclaredLine const& line : lines) rows.push_back({line.name, line.unit.empty() ? "" : "[" + line.unit + "]", line.text});
+  return rows;
+}
+
+std::string model_text(ModelPage const& model) {
+  std::string out = fmt::format("model {}{}\n", model.name, model.title.empty() ? "" : " \"" + model.title + "\"");
+  std::vector<std::string> equations = model.equations;
+  std::string unknowns;
+  for (std::string const& unknown : model.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + unknown;
+  if (!model.unknowns.empty())  // a model that was accepted has as many equations, of elements and of parts, as unknowns
+    equations.push_back(fmt::format("{}{} for {}: {}",
+                                    model.equations.size() == model.unknowns.size() ? "" : "with all elements and parts: ",
+                                    count(static_cast<int>(model.unknowns.size()), "equation"),
+                                    count(static_cast<int>(model.unknowns.size()), "unknown"), unknowns));
+  out += entry(model.equations.size() == 1 ? "equation" : "equations", equations);
+  out += table(model.states.size() == 1 ? "state" : "states", rows_of(model.states), 3);
+  out += table(model.inputs.size() == 1 ? "input" : "inputs", rows_of(model.inputs), 3);
+  out += table(model.channels.size() == 1 ? "channel" : "channels", rows_of(model.channels), 3);
+  out += table(model.parameters.size() == 1 ? "parameter" : "parameters", rows_of(model.parameters), 3);
+  out += table("derived", rows_of(model.derived), 3);
+  out += entry("unchecked", model.unchecked);
+  return out;
+}
+
+// How many terms each equation has, then those that all share, or each with its own.
+std::string equation_text(DictionaryPage::Equation const& equation, bool alone) {
+  std::string const unit = equation.unit.empty() ? "" : fmt::format(" [{}]", equation.unit);
+  std::string out =
+      entry("target", {fmt::format("{}{}: {}", equation.target, unit, count(static_cast<int>(equation.terms.size()), "term"))});
+  return out + table(alone ? "terms" : "", rows_of(equation.terms), 3);
+}
+
+// Frequencies of records that count in longer units than seconds are told in those.
+bool slow(CoveragePage const& data) { return data.time_scale > 1; }
+std::string frequency_unit(CoveragePage const& data) { return slow(data) ? "1/" + data.time_unit : "Hz"; }
+double frequency(CoveragePage const& data, double hertz) { return slow(data) ? hertz * data.time_scale : hertz; }
+
+std::string coverage_text(CoveragePage const& data) {
+  if (!data.made_by.empty())
+    return entry("data", {fmt::format("{}: made by {}, not there yet: `sysid simulate` makes it", data.file, data.made_by)});
+  std::vector<std::string> lines = {
+      fmt::format("{}: rows {}..{} of {} scored{}, {}{}", data.file, data.first, data.last, data.rows,
+                  data.start_rows > 0 ? fmt::format(" ({} before them estimate the start)", data.start_rows) : std::string(),
+                  data.equal ? "" : "on average ",
+                  slow(data) ? fmt::format("one every {:.6g} {}", 1 / (data.rate * data.time_scale), data.time_unit)
+                             : fmt::format("{:.6g} Hz", data.rate))};
+  for (CoveragePage::Input const& input : data.inputs) {
+    std::string const what = input.rule.empty() ? input.name : input.name + ", " + input.rule;
+    lines.push_back(input.constant
+                        ? fmt::format("input {}: constant", what)
+                        : fmt::format("input {}: 99 % of its power between {} and {} {}, up to {} of the sampling rate", what,
+                                      significant(frequency(data, input.low), 3), significant(frequency(data, input.high), 3),
+                                      frequency_unit(data), fmt::format("{:.2f}", input.high / data.rate)));
+  }
+  for (CoveragePage::Channel const& channel : data.channels)
+    lines.push_back(channel.measured + channel.missing == 0
+                        ? fmt::format("{}: not in this data", channel.name)
+                        : fmt::format("{}: {} samples, {} missing, range {}", channel.name, channel.measured, channel.missing,
+                                      number_with_unit(significant(channel.range, 3), channel.unit)));
+  return entry("data", lines);
+}
+
+std::string prior_text(PriorPage const& prior, std::string const& time_unit, double time_scale) {
+  std::vector<std::string> lines = {prior.failed == 0 ? fmt::format("{} draws, all simulations stay finite", prior.draws)
+                                                      : fmt::format("{} of {} fail", prior.failed, prior.draws)};
+  if (prior.failed_as_stated > prior.failed)
+    lines.push_back(fmt::format("with {} {} of them fail: its steps are too long there", prior.stated, prior.failed_as_stated));
+  for (Failure const& failure : prior.failures)
+    lines.push_back(fmt::format("  {} x {}: {} (first at t = {} {})", failure.count, name(failure.kind), failure.where,
+                                significant(failure.time / time_scale, 4), time_unit));
+  if (prior.untraced > 0) lines.push_back(fmt::format("  {} x not looked into, as the first eight were", prior.untraced));
+  for (PriorPage::Channel const& channel : prior.channels)
+    lines.push_back(fmt::format("{}: nine in ten predict a range of {} to {}, the middle one {}; measured {}", channel.name,
+                                significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
+                                number_with_unit(significant(channel.measured, 2), channel.unit)));
+  return entry("prior draws", lines);
+}
+
+// An sd of a logarithm.
+std::string share(double value) {
+  return value < 0.5 ? significant(100 * value, 2) + " %" : "factor " + significant(elementary::exp(std::min(value, 700.0)), 2);
+}
+
+std::string information_text(InformationPage const& page) {
+  std::vector<std::vector<std::string>> rows = {{"", "prior width", "expected sd after the fit"}};
+  for (InformationPage::Line const& line : page.lines) {
+    auto const number = [&](double value) {
+      return line.relative ? share(value) : number_with_unit(significant(value, 2), line.unit);
+    };
+    rows.push_back({line.name, number(line.prior_width),
+                    !line.instead.empty() ? line.instead : fmt::format("{} to {}", number(line.low), number(line.high))});
+  }
+  std::string out = table("information", rows, 1);
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("at {} prior draws whose response is nearest in size to the data{}", page.draws,
+                              page.noise.empty() ? std::string() : "; noise as with " + page.noise));
+  lines.push_back("prior width: half of what holds the central 68 % of the prior, its sd where it is normal");
+  if (page.rows > 0) lines.push_back(fmt::format("over the first {} scored rows; the whole record tells more", page.rows));
+  for (std::string const& direction : page.null_directions) lines.push_back(direction);
+  for (std::string const& ridge : page.ridges) lines.push_back(ridge);
+  out += entry("", lines);
+  std::string moves;
+  for (auto const& [solver, move] : page.moves)
+    moves += fmt::format("{}{} sd from {}", moves.empty() ? "" : ", ", move > 5 ? "many" : significant(move, 2), solver);
+  if (!moves.empty())
+    out += entry("solver", {fmt::format("with {}, parameters move by {}", page.refinement, moves),
+                            page.advised.empty() ? "none of these settles the result"
+                            : page.taken.empty() ? fmt::format("{} would do; the fit chooses for itself", page.advised)
+                                                 : fmt::format("{} would do; the task takes {}", page.advised, page.taken)});
+  if (page.response_move && std::isfinite(*page.response_move))
+    out += entry("", {fmt::format("the middle response moves by {} % of its sd with {}, an nmse of {}",
+                                  significant(100 * *page.response_move, 2), page.refinement,
+                                  significant(100 * *page.response_move * *page.response_move, 2))});
+  return out;
+}
+
+std::string process_text(ProcessPage const& page) {
+  std::vector<std::string> lines = {page.failed == 0 ? fmt::format("{} draws, all of them with a likelihood", page.draws)
+                                                     : fmt::format("{} of {} without a likelihood", page.failed, page.draws)};
+  for (ProcessPage::Line const& line : page.lines) {
+    std::string text = fmt::format("{}: {} of {} to {}, the middle one {}", line.name, line.what, significant(line.prior.low, 2),
+                                   significant(line.prior.high, 2), number_with_unit(significant(line.prior.middle, 2), line.unit));
+    if (line.inputs)
+      text += fmt::format("; {} over {}, spaced by {}", count(line.inputs->places, "place"),
+                          number_with_unit(significant(line.inputs->range, 2), line.unit), significant(line.inputs->spacing, 2));
+    else
+      text += fmt::format("; sd of {} {}", page.channel, number_with_unit(significant(page.measured_sd, 2), page.unit));
+    lines.push_back(std::move(text));
+  }
+  if (page.rows > 0) {
+    double const work = std::pow(page.rows, 3) / 3;
+    lines.push_back(fmt::format("a likelihood of {} rows{}: {}", page.rows,
+                                page.repeated > 0 ? fmt::format(", {} with the inputs of another", page.repeated) : std::string(),
+                                page.filtered ? std::string("filtered, in steps proportional to them")
+                                              : fmt::format("{} operations, a third of their cube", significant(work, 2))));
+  }
+  return entry("processes", lines);
+}
+
+std::string findings_text(Findings const& findings) {
+  std::string out;
+  for (Severity const severity : {Severity::error, Severity::warning, Severity::note})
+    for (Finding const& finding : findings) {
+      if (finding.severity != severity) continue;
+      char const* const mark = severity == Severity::error ? "serious" : severity == Severity::warning ? "warning" : "note";
+      out += entry(mark, {finding.message});
+      if (!finding.help.empty()) out += entry("", {"what to do: " + finding.help});
+      out += entry("", {"more: sysid explain " + finding.code});
+    }
+  return out;
+}
+
+std::string task_text(TaskPage const& task) {
+  std::string out = fmt::format("task {}: {}\n", task.name, task.what);
+  for (CoveragePage const& data : task.coverage) out += coverage_text(data);
+  out += findings_text(task.findings);
+  for (Outlook const& outlook : task.outlooks) {
+    if (!outlook.candidate.empty()) out += fmt::format(" candidate {}\n", outlook.candidate);
+    if (outlook.prior) out += prior_text(*outlook.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
+    if (outlook.information) out += information_text(*outlook.information);
+    for (ProcessPage const& process : outlook.processes) out += process_text(process);
+    if (!outlook.left_out.empty()) out += entry("left out", {outlook.left_out});
+    out += findings_text(outlook.findings);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string dictionary_text(DictionaryPage const& page) {
+  std::string out = fmt::format("dictionary {}{}\n", page.name, page.title.empty() ? "" : " \"" + page.title + "\"");
+  out += table(page.states.size() == 1 ? "state" : "states", rows_of(page.states), 3);
+  out += table(page.inputs.size() == 1 ? "input" : "inputs", rows_of(page.inputs), 3);
+  for (DictionaryPage::Equation const& equation : page.equations) out += equation_text(equation, page.equations.size() == 1);
+  return out + entry("left out", page.left_out);
+}
+
+std::string check_text(CheckPage const& page) {
+  std::string out;
+  for (ModelPage const& model : page.models) out += model_text(model) + "\n";
+  for (DictionaryPage const& dictionary : page.dictionaries) out += dictionary_text(dictionary) + "\n";
+  for (TaskPage const& task : page.tasks) out += task_text(task) + "\n";
+  int serious = 0, warnings = page.warnings;
+  for (TaskPage const& task : page.tasks)
+    for (Finding const& finding : task.all_findings()) {
+      serious += finding.severity == Severity::error;
+      warnings += finding.severity == Severity::warning;
+    }
+  out += fmt::format("{}: {}, {}, {}: ", page.file, count(static_cast<int>(page.models.size()), "model"),
+                     count(page.data_blocks, "data block"), count(static_cast<int>(page.tasks.size()), "task"));
+  std::vector<std::string> found;
+  if (page.errors > 0) found.push_back(count(page.errors, "error"));
+  if (serious > 0) found.push_back(count(serious, "serious finding"));
+  if (warnings > 0) found.push_back(count(warnings, "warning"));
+  bool const all = std::all_of(page.tasks.begin(), page.tasks.end(), [](TaskPage const& task) {
+    return std::all_of(task.outlooks.begin(), task.outlooks.end(), [](Outlook const& each) { return each.left_out.empty(); });
+  });
+  out += fmt::format("{}\n", found.empty() ? all ? "nothing found" : "nothing found in what was looked at"
+                                           : fmt::format("{}", fmt::join(found, ", ")));
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,133 @@
+// Two tables: of models by their evidence, of predictions by their errors, those of the same samples together.
+#include "report/page/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "core/text/number.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+namespace {
+
+std::string checks_text(bool pass, int warnings) {
+  if (!pass) return "doubtful";
+  return warnings == 0 ? "pass" : fmt::format("{} {}", warnings, warnings == 1 ? "warning" : "warnings");
+}
+
+/// To a tenth, and never below zero by rounding alone.
+std::string difference_text(double difference) { return fmt::format("{:.1f}", std::fabs(difference) < 0.05 ? 0 : difference); }
+
+ReportTable fits_table(Comparison const& comparison) {
+  ReportTable table;
+  table.title = fmt::format("fitted to {}; probabilities of the models under equal odds before the data", comparison.data);
+  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "probability", "checks"};
+  double best = -std::numeric_limits<double>::infinity();
+  for (ComparedFit const& fit : comparison.fits) best = std::max(best, fit.log_evidence.value_or(best));
+  for (ComparedFit const& fit : comparison.fits) {
+    table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
+                          fit.log_evidence ? fmt::format("{:.1f}", *fit.log_evidence) : "-",
+                          fit.log_evidence ? difference_text(*fit.log_evidence - best) : "-",
+                          fit.probability ? fmt::format("{:.3f}", *fit.probability) : "-", checks_text(fit.pass, fit.warnings)});
+    std::string note;
+    if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);
+    if (fit.rough) note = fmt::format("{}: its evidence is rough, {:+.1f} along the axes of its mode", fit.name, *fit.rough);
+    if (!note.empty()) table.caption += (table.caption.empty() ? "" : "\n") + note;
+  }
+  return table;
+}
+
+/// Of predictions of the same samples, which stand one after another.
+ReportTable predictions_table(std::span<ComparedPrediction const> predictions) {
+  ReportTable table;
+  table.title = fmt::format("{}, rows {}", predictions.front().on, predictions.front().rows);
+  table.header = {"prediction", "model", "from", "nmse [%]", "coverage_95", "checks"};
+  for (ComparedPrediction const& each : predictions)
+    table.rows.push_back({each.name, each.model, each.kind, significant(each.nmse, 4),
+                          each.coverage ? significant(*each.coverage, 4) : "-", checks_text(each.pass, each.warnings)});
+  // Models without a past predict in one way only.
+  if (std::all_of(predictions.begin(), predictions.end(), [](ComparedPrediction const& each) { return each.kind.empty(); })) {
+    constexpr std::ptrdiff_t kind = 2;
+    table.header.erase(table.header.begin() + kind);
+    for (auto& row : table.rows) row.erase(row.begin() + kind);
+  }
+  return table;
+}
+
+/// A header of several words in two rows, its last word below: columns of numbers are no wider than they need.
+std::vector<std::vector<std::string>> stacked(std::vector<std::string> const& header) {
+  std::vector<std::vector<std::string>> rows(2);
+  for (std::string const& label : header) {
+    auto const space = label.find('[') == std::string::npos ? label.rfind(' ') : std::string::npos;
+    rows[0].push_back(space == std::string::npos ? "" : label.substr(0, space));
+    rows[1].push_back(space == std::string::npos ? label : label.substr(space + 1));
+  }
+  if (std::all_of(rows[0].begin(), rows[0].end(), [](std::string const& above) { return above.empty(); })) rows.erase(rows.begin());
+  return rows;
+}
+
+}  // namespace
+
+std::vector<ReportTable> comparison_tables(Comparison const& comparison) {
+  std::vector<ReportTable> tables;
+  if (!comparison.fits.empty()) tables.push_back(fits_table(comparison));
+  auto const& all = comparison.predictions;
+  for (auto first = all.begin(); first != all.end();) {
+    auto const last = std::find_if(
+        first, all.end(), [&](ComparedPrediction const& each) { return each.samples != first->samples || each.on != first->on; });
+    tables.push_back(predictions_table({first, last}));
+    first = last;
+  }
+  return tables;
+}
+
+std::string comparison_text(Comparison const& comparison) {
+  std::string text;
+  for (ReportTable const& table : comparison_tables(comparison)) {
+    std::vector<std::vector<std::string>> rows = stacked(table.header);
+    rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+    text += fmt::format("{}{}\n\n{}", text.empty() ? "" : "\n", table.title, align_columns(rows, 3));
+    if (!table.caption.empty()) text += "\n" + table.caption + "\n";
+  }
+  if (!comparison.notes.empty()) text += "\n";
+  for (std::string const& note : comparison.notes) text += note + "\n";
+  return text;
+}
+
+std::string comparison_json(Comparison const& comparison) {
+  using Json = nlohmann::ordered_json;
+  auto const number = [](std::optional<double> const& value) { return value ? Json(*value) : Json(nullptr); };
+  Json out = {{"data", comparison.data}, {"fits", Json::array()}, {"predictions", Json::array()}, {"notes", comparison.notes}};
+  for (ComparedFit const& fit : comparison.fits) {
+    Json entry = {{"name", fit.name},
+                  {"model", fit.model},
+                  {"parameters", fit.parameters},
+                  {"noise", fit.noise},
+                  {"log_evidence", number(fit.log_evidence)},
+                  {"rough", number(fit.rough)},
+                  {"probability", number(fit.probability)},
+                  {"pass", fit.pass},
+                  {"warnings", fit.warnings}};
+    if (!fit.log_evidence) entry["reason"] = fit.without;
+    out["fits"].push_back(std::move(entry));
+  }
+  for (ComparedPrediction const& each : comparison.predictions)
+    out["predictions"].push_back({{"name", each.name},
+                                  {"model", each.model},
+                                  {"from", each.kind},
+                                  {"on", each.on},
+                                  {"rows", each.rows},
+                                  {"nmse", each.nmse},
+                                  {"coverage_95", number(each.coverage)},
+                                  {"pass", each.pass},
+                                  {"warnings", each.warnings},
+                                  {"samples_sha256", each.samples}});
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sysid

@@ -1,0 +1,137 @@
+// What a task found: parameters, tables of its kind, the evidence of the model, modes.
+#include "report/page/html_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/number.hpp"
+#include "core/text/xml.hpp"
+#include "diagnostics/contraction.hpp"
+#include "report/page/html_words.hpp"
+#include "report/page/typeset.hpp"
+#include "report/text/report_text.hpp"
+#include "report/text/summary_text.hpp"
+
+namespace sysid {
+
+namespace {
+
+/// A cell of a table that other writers share: a number or a unit as a page shows it.
+std::string cell_html(std::string const& text, std::string const& column) {
+  if (column == "unit") return escape(pretty_unit(text));
+  if (column == "noise") return escape(pretty_powers(text));
+  return number_html(text);
+}
+
+/// Where a posterior lies whose middle is outside the prior's 90 %: how far beyond, in the width of that. Else empty.
+std::string outside_words(PriorInfo const& prior, double middle) {
+  double const width = *prior.q95 - *prior.q5, beyond = std::max(*prior.q5 - middle, middle - *prior.q95);
+  if (!(beyond > 0)) return "";
+  return fmt::format("{} the prior's 90 %, by {} of its width", middle > *prior.q95 ? "above" : "below",
+                     pretty_number(significant(beyond / width, 2)));
+}
+
+std::string parameters(Report const& report) {
+  if (report.summary.empty()) return "";
+  bool const optimum = report.draws.total() == 1;
+  HtmlTable table{"Priors against posteriors", {"parameter", "prior"}, {}, 3};
+  bool const priors = !report.priors.empty();
+  table.header.push_back(priors ? "posterior within it" : "");
+  for (std::string const& column :
+       optimum ? std::vector<std::string>{"optimum", "sd"} : std::vector<std::string>{"mean", "sd", "5 %", "median", "95 %"})
+    table.header.push_back(column);
+  for (Summary const& s : report.summary) {
+    if (s.coefficient) continue;
+    SummaryText const t = format_summary(s);
+    auto const prior =
+        std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& each) { return each.name == s.name; });
+    bool const known = prior != report.priors.end();
+    std::vector<std::string> row = {with_unit(s.name, s.unit), known ? code(prior->text) : "follows from the others", ""};
+    if (known && prior->q5 && prior->q95)
+      row[1] += fmt::format("<br/><span class=\"unit\">{} to {}</span>", pretty_number(significant(*prior->q5, 3)),
+                            pretty_number(significant(*prior->q95, 3)));
+    if (auto const ratio = known ? narrowing(*prior, s) : std::nullopt) {
+      auto const [low, high] = interval_90(s);
+      row[2] = range_chart(*prior->q5, *prior->q95, low, high, s.mean,
+                           fmt::format("{} from {} to {}, prior from {} to {}", s.name, significant(low, 3), significant(high, 3),
+                                       significant(*prior->q5, 3), significant(*prior->q95, 3))) +
+               fmt::format("<br/><span class=\"unit\">{}</span>",
+                           *ratio < hardly_narrower ? "hardly narrower"
+                                                    : pretty_number(significant(*ratio, *ratio < 10 ? 2 : 3)) + " times narrower");
+      if (std::string const words = outside_words(*prior, s.mean); !words.empty())
+        row[2] += fmt::format("<br/><span class=\"outside\">{}</span>", words);
+    }
+    for (std::string const& cell :
+         optimum ? std::vector<std::string>{t.mean, t.sd} : std::vector<std::string>{t.mean, t.sd, t.q5, t.median, t.q95})
+      row.push_back(pretty_number(cell));
+    table.rows.push_back(std::move(row));
+  }
+  for (FixedValue const& each : fixed_parameters(report)) {
+    table.rows.push_back({with_unit(each.name, each.unit), "fixed", "", number_html(each.value)});
+    table.rows.back().resize(table.header.size());
+  }
+  std::string out = html(table) + paragraph(learning_words(report));
+  return out + paragraph(std::string(optimum ? "sd: of the normal approximation at the optimum (Laplace). "
+                                             : "Digits end where the Monte Carlo error begins. ") +
+                             (priors ? "Below each prior the interval that holds 90 % of it, beside it the posterior's within "
+                                       "that: dark, with a stroke at the "
+                                       "mean, on a logarithmic scale where the prior's is positive and spans more than a decade; "
+                                       "an arrow where it goes on beyond that."
+                                     : ""),
+                         "note");
+}
+
+}  // namespace
+
+std::vector<FixedValue> fixed_parameters(Report const& report) {
+  if (report.selection || report.discovery) return {};
+  std::vector<std::string> records;
+  for (DataInfo const& each : report.data) records.push_back(each.name.substr(0, each.name.find('.')));
+  // The file as it ran has the records too; a prediction has the model alone.
+  std::string const& text = report.resolved_text.empty() ? report.model_text : report.resolved_text;
+  return fixed_values(text, report.model_name, records);
+}
+
+std::string result_html(Report const& report) {
+  std::string out = parameters(report);
+  if (report.evidence)
+    if (std::string const text = evidence_text(*report.evidence); !text.empty())
+      out += paragraph(
+          fmt::format("The model as a whole: {}. {}", text,
+                      report.evidence->log_evidence
+                          ? "It has a meaning only beside that of another model of the same samples: `sysid compare` sets "
+                            "them side by side, and a difference of 5 is strong."
+                          : ""));
+  for (ReportTable const& table : report.tables) out += table_html(table);
+  return out;
+}
+
+std::string table_html(ReportTable const& table, std::size_t words, TitleBegins title) {
+  HtmlTable out{title == TitleBegins::with_a_name ? table.title : capitalised(table.title), {}, {}, words};
+  for (std::string const& cell : table.header) out.header.push_back(escape(cell));
+  for (auto const& row : table.rows) {
+    out.rows.emplace_back();
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out.rows.back().push_back(cell_html(row[c], c < table.header.size() ? table.header[c] : ""));
+  }
+  return html(out) + paragraph(table.caption, "note");
+}
+
+std::string modes_html(Report const& report) {
+  if (report.modes.empty()) return "";
+  HtmlTable table{"Modes that the global search over the prior found", {"mode", "share", "log density"}, {}, 1};
+  std::size_t const count = std::min(report.modes[0].declared.size(), report.draws.names.size());
+  for (std::size_t i = 0; i < count; ++i) table.header.push_back(escape(report.draws.names[i]));
+  for (std::size_t m = 0; m < report.modes.size(); ++m) {
+    Mode const& mode = report.modes[m];
+    table.rows.push_back(
+        {std::to_string(m + 1), pretty_number(significant(mode.share, 3)), pretty_number(significant(mode.log_density, 6))});
+    for (std::size_t i = 0; i < std::min(count, mode.declared.size()); ++i)
+      table.rows.back().push_back(pretty_number(significant(mode.declared[i], 4)));
+  }
+  return paragraph(mode_words(report)) + html(table) + paragraph("Share: of the Laplace masses of all modes.", "note");
+}
+
+}  // namespace sysid

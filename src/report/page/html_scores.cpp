@@ -1,0 +1,74 @@
+// How well the model says what was measured: each score with what its value says.
+#include "report/page/html_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text/number.hpp"
+#include "core/text/xml.hpp"
+#include "diagnostics/scores.hpp"
+#include "report/page/html_words.hpp"
+#include "report/page/typeset.hpp"
+
+namespace sysid {
+
+namespace {
+
+std::string score_title(std::string const& name) {
+  if (name == "nmse") return "NMSE [%]";
+  if (name == "nmse_left_out") return "NMSE, left out one by one [%]";
+  if (name == "rmse") return "RMSE";
+  if (name == "chi_squared_per_sample") return "χ² per sample";
+  if (name == "coverage_95") return "share inside the 95 % band";
+  if (name == "coverage_3sd") return "share within 3 sd";
+  if (name == "whiteness_p") return "whiteness of the residuals, p";
+  if (name == "input_correlation_p") return "residuals uncorrelated with the input, p";
+  if (name.starts_with("input_correlation_p("))
+    return fmt::format("residuals uncorrelated with {}, p", escape(name.substr(20, name.size() - 21)));
+  return escape(name);
+}
+
+}  // namespace
+
+/// Of one channel with what each score says; of several as a table, and what the worst of each score says behind it.
+std::string scores_html(Report const& report) {
+  std::vector<FitLine> const lines = fit_lines(report);
+  if (lines.empty()) return "";
+  std::vector<std::string> names;
+  for (FitLine const& line : lines)
+    for (Score const& score : line.scores)
+      if (std::find(names.begin(), names.end(), score.name) == names.end()) names.push_back(score.name);
+  auto const cell = [&](FitLine const& line, std::string const& name) {
+    auto const score = std::find_if(line.scores.begin(), line.scores.end(), [&](Score const& each) { return each.name == name; });
+    if (score == line.scores.end()) return std::string();
+    std::string const value = pretty_number(significant(score->value, 4));
+    return name == "rmse" && !line.unit.empty() ? with_unit(value, line.unit) : value;
+  };
+  std::string out;
+  if (lines.size() == 1) {
+    HtmlTable table{fmt::format("Scores of {}", lines[0].what()), {"score", "value", "what it says"}, {}, 1};
+    table.last_is_words = true;
+    for (std::string const& name : names)
+      table.rows.push_back({score_title(name), cell(lines[0], name), escape(score_words(report, lines, name))});
+    out = html(table);
+  } else {
+    HtmlTable table{"Scores", {"channel"}, {}, 1};
+    for (std::string const& name : names) table.header.push_back(score_title(name));
+    for (FitLine const& line : lines) {
+      table.rows.push_back({escape(line.what())});
+      for (std::string const& name : names) table.rows.back().push_back(cell(line, name));
+    }
+    out = html(table) + "<dl>\n";
+    for (std::string const& name : names)
+      if (std::string const words = score_words(report, lines, name); !words.empty())
+        out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", score_title(name), escape(words));
+    out += "</dl>\n";
+  }
+  return out + paragraph(
+                   "NMSE: mean squared error as a percentage of the variance of what was measured; RMSE: its root, in the "
+                   "channel's unit. Bands include the noise.",
+                   "note");
+}
+
+}  // namespace sysid

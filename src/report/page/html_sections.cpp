@@ -1,0 +1,125 @@
+// Each section with the figures that belong to its numbers.
+#include "report/page/html_sections.hpp"
+#include "diagnostics/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text/xml.hpp"
+#include "report/page/html_parts.hpp"
+#include "report/page/html_words.hpp"
+#include "report/page/typeset.hpp"
+#include "report/text/report_text.hpp"
+
+namespace sysid {
+
+namespace {
+
+std::string verdict_html(Report const& report) {
+  if (!has_verdict(report)) return "";
+  std::string out = fmt::format("<p class=\"headline\">{}</p>\n{}", marked(capitalised(verdict_words(report))),
+                                paragraph(verdict_meaning(report)));
+  if (report.findings.empty()) return out;
+  out += "<ul>\n";
+  for (Finding const& finding : by_weight(report.findings))
+    out +=
+        fmt::format("<li class=\"{0}\"><b>{1}</b> {2}{3} <span class=\"code\">{4}</span></li>\n", severity_word(finding.severity),
+                    finding.severity == Severity::error     ? "Failed:"
+                    : finding.severity == Severity::warning ? "Look at:"
+                                                            : "Note:",
+                    marked(finding.message),
+                    finding.help.empty() ? "" : fmt::format(". <span class=\"help\">What to do: {}</span>", marked(finding.help)),
+                    code(finding.code));
+  return out + "</ul>\n<p class=\"note\">More about a word in this type: <code>sysid explain</code> and the word.</p>\n";
+}
+
+std::string model_html(Report const& report) {
+  std::string out;
+  if (!report.equations.empty()) {
+    out += "<div class=\"equations\" role=\"group\" tabindex=\"0\" aria-label=\"Equations\">\n";
+    for (std::string const& equation : typeset(report.equations)) out += fmt::format("<p>{}</p>\n", equation);
+    out += "</div>\n";
+  }
+  HtmlTable priors{"Priors", {"parameter", "prior"}, {}, 2};
+  for (PriorInfo const& prior : report.priors)
+    if (std::none_of(report.summary.begin(), report.summary.end(), [&](Summary const& s) { return s.name == prior.name; }))
+      priors.rows.push_back({with_unit(prior.name, prior.unit), code(prior.text)});
+  if (!priors.rows.empty()) out += html(priors);
+  // With the others where these have a table of their own.
+  HtmlTable fixed{"Fixed parameters", {"parameter", "value"}, {}, 1};
+  if (report.summary.empty())
+    for (FixedValue const& each : fixed_parameters(report))
+      fixed.rows.push_back({with_unit(each.name, each.unit), number_html(each.value)});
+  if (!fixed.rows.empty()) out += html(fixed);
+  return out + folded("The model as it was written", report.model_text);
+}
+
+std::string result_title(Report const& report) {
+  if (report.selection) return "Models and their parameters";
+  if (report.discovery) return "Terms and coefficients";
+  return "Parameters: from prior to posterior";
+}
+
+/// The figures of a page, numbered in the order in which its sections take them.
+class Pictures {
+ public:
+  Pictures(std::vector<DrawnFigure> const& figures, std::string const& prefix) : figures_(figures), prefix_(prefix) {}
+
+  std::string of(plot::Topic topic) {
+    std::string shown, left_out;
+    for (DrawnFigure const& drawn : figures_) {
+      if (drawn.figure.topic != topic) continue;
+      if (drawn.svg) {
+        ++number_;
+        shown += figure_html(drawn, fmt::format("{}figure-{}", prefix_, number_), number_);
+      } else {
+        left_out += fmt::format("<li>{} ({})</li>\n", escape(drawn.figure.title),
+                                code(fmt::format("figures/{}.gnuplot", drawn.figure.name)));
+      }
+    }
+    if (left_out.empty()) return shown;
+    return shown +
+           fmt::format(
+               "<div class=\"missing\"><p>Left out, since figures were not asked for, or gnuplot is not installed or refused "
+               "them. Install it (<code>apt-get install gnuplot-nox</code>) and make this page again with <code>sysid "
+               "report</code>, or draw the scripts beside this page:</p>\n<ul>\n{}</ul></div>\n",
+               left_out);
+  }
+
+ private:
+  std::vector<DrawnFigure> const& figures_;
+  std::string const& prefix_;
+  int number_ = 0;
+};
+
+}  // namespace
+
+std::string_view verdict_kind(Report const& report) {
+  if (!has_verdict(report)) return "plain";
+  Severity const worst = grade(report);
+  return worst == Severity::error ? "bad" : worst == Severity::warning ? "doubtful" : "good";
+}
+
+std::vector<HtmlSection> task_sections(Report const& report, std::vector<DrawnFigure> const& figures, std::string const& prefix,
+                                       int level) {
+  std::vector<HtmlSection> out;
+  Pictures pictures(figures, prefix);
+  auto const add = [&](std::string const& id, std::string const& title, std::string body, std::string kind = {}) {
+    if (!body.empty()) out.push_back({prefix + id, title, std::move(body), std::move(kind)});
+  };
+  add("verdict", "Verdict", verdict_html(report), fmt::format("verdict {}", verdict_kind(report)));
+  add("model", report.discovery ? "Equations found" : "Model", model_html(report));
+  add("result", result_title(report), result_html(report) + pictures.of(plot::Topic::result));
+  add("fit", report.draws.total() == 0 && !report.selection ? "Prediction" : "Fit",
+      scores_html(report) + pictures.of(plot::Topic::fit));
+  add("diagnostics", "Diagnostics of the chains", chains_html(report) + pictures.of(plot::Topic::chains));
+  add("modes", "Modes", modes_html(report));
+  add("simulations", "Simulations and failures", simulations_html(report));
+  add("data", "Data", data_html(report, level + 1));
+  add("settings", "Settings and versions", settings_html(report));
+  add("repeat", "To repeat this", repetition_html(report));
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,269 @@
+// Sentences with numbers in them. The bars are those of the checks, which alone decide the verdict.
+#include "report/page/html_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/text/number.hpp"
+#include "diagnostics/chain_checks.hpp"
+#include "diagnostics/contraction.hpp"
+#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/verdict.hpp"
+
+namespace sysid {
+
+namespace {
+
+/// A score on the channel where it is worst.
+struct Worst {
+  double value;
+  std::string where;  // " (force on wave_06)"; empty where there is one line alone
+};
+
+std::string number(double value, int digits = 3) { return pretty_number(significant(value, digits)); }
+
+std::optional<Worst> worst(std::vector<FitLine> const& lines, std::string_view name, std::function<double(double)> const& badness) {
+  std::optional<Worst> out;
+  for (FitLine const& line : lines)
+    for (Score const& score : line.scores)
+      if (score.name == name && std::isfinite(score.value) && (!out || badness(score.value) > badness(out->value)))
+        out = {score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : ""};
+  return out;
+}
+
+std::string error_words(Worst const& nmse) {
+  std::string out = fmt::format("{} % of the variance of what was measured is left over{}: ", number(nmse.value), nmse.where);
+  if (nmse.value >= 100) return out + "no better than a constant at the mean.";
+  if (nmse.value >= 5) return out + "the model misses a visible part; see the residuals for what.";
+  if (nmse.value >= 1) return out + "a fair fit; what is left may be noise or structure, which the residuals tell.";
+  return out + "model and measurement can hardly be told apart by eye.";
+}
+
+std::string coverage_words(Worst const& coverage, double expected) {
+  // Five in a hundred may be missing where 95 % are expected, one in a hundred where 99.7 % are: chance goes by the root.
+  double const off = coverage.value - expected, short_of = std::sqrt(0.05 * (1 - expected));
+  return fmt::format("{} % of the scored samples lie inside{}, where {} % should: {}.", number(100 * coverage.value),
+                     coverage.where, number(100 * expected),
+                     off < -short_of ? "the bands are too narrow for these data"
+                     : off > 0.035   ? "the bands are wider than need be"
+                                     : "the bands are as wide as they say");
+}
+
+/// The check knows how much of it is chance. fitted: the noise is a parameter, which takes the size that the residuals leave.
+std::string size_words(Worst const& size, bool found, bool fitted) {
+  return fmt::format("Residuals are {} times as large as the noise of the model{}, as mean squares: {}.", number(size.value),
+                     size.where,
+                     !found && fitted ? "the size of the noise was fitted to them, so that this says nothing of the model"
+                     : !found         ? "noise accounts for them"
+                     : size.value > 1 ? "the noise is larger than the model says, or the model misses something"
+                                      : "the noise is smaller than the model says");
+}
+
+std::string chance_words(Worst const& p, std::string_view pattern, std::string_view none) {
+  return fmt::format("p {}{}: {}.", p.value < 1e-4 ? "below 0.0001" : "= " + number(p.value, 2), p.where,
+                     p.value < rare ? pattern : none);
+}
+
+bool has_chains(Report const& report) { return report.draws.total() > 1 && !report.summary.empty(); }
+
+struct Extreme {
+  double value;
+  std::string name;
+};
+
+std::optional<Extreme> extreme(Report const& report, std::function<double(Summary const&)> const& of, bool largest) {
+  std::optional<Extreme> out;
+  for (Summary const& summary : report.summary) {
+    double const value = of(summary);
+    if (!std::isfinite(value)) continue;
+    if (!out || (largest ? value > out->value : value < out->value)) out = {value, summary.name};
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string verdict_words(Report const& report) {
+  if (!report.discovery || !has_verdict(report)) return verdict_headline(report);
+  std::string missing;
+  for (DiscoveredEquation const& each : report.discovery->equations)
+    if (each.equation.empty()) missing += fmt::format("{}`{}`", missing.empty() ? "nothing found for " : ", ", each.target);
+  std::string const judged = judge(report.findings).text;
+  return missing + (missing.empty() ? "" : "; ") + judged.substr(0, judged.find('\n'));
+}
+
+std::string verdict_meaning(Report const& report) {
+  if (!has_verdict(report)) return "";
+  bool const bands = !report.selection && !report.discovery && report.draws.total() == 0;
+  std::string_view const numbers = report.discovery ? "the equations" : bands ? "the bands" : "the numbers";
+  switch (grade(report)) {
+    case Severity::error:
+      return fmt::format(
+          "Until the cause is mended {} below may change by more than the uncertainty that stands beside them: what to do "
+          "stands with each point.",
+          numbers);
+    case Severity::warning:
+      return fmt::format(
+          "You may use {} once you have looked at the points below and know that they do not matter for your purpose.", numbers);
+    default:
+      break;
+  }
+  if (bands)
+    return "No check speaks against using the bands. They hold if the model does on this record: compare them with what was "
+           "measured.";
+  if (report.discovery)
+    return "No check speaks against the equations. They are the best of the terms offered, not proof that no other term acts.";
+  return "No check speaks against using the numbers. That is no proof of the model: compare it with what was measured, best on "
+         "rows that "
+         "it was not fitted to.";
+}
+
+std::string score_words(Report const& report, std::vector<FitLine> const& lines, std::string const& score) {
+  auto const say = [&](std::function<double(double)> const& badness, auto const& words) {
+    auto const found = worst(lines, score, badness);
+    return found ? words(*found) : std::string();
+  };
+  auto const high = [](double value) { return value; };
+  auto const low = [](double value) { return -value; };
+  if (score == "nmse" || score == "nmse_left_out") return say(high, error_words);
+  for (auto const& [name, expected] : {std::pair("coverage_95", 0.95), std::pair("coverage_3sd", 0.9973)})
+    if (score == name)
+      return say([at = expected](double value) { return std::fabs(value - at); },
+                 [at = expected](Worst const& each) { return coverage_words(each, at); });
+  if (score == "chi_squared_per_sample")
+    return say([](double value) { return std::fabs(std::log(std::max(value, 1e-300))); },
+               [&](Worst const& each) {
+                 return size_words(each,
+                                   std::any_of(report.findings.begin(), report.findings.end(),
+                                               [](Finding const& finding) { return finding.code == "noise_size"; }),
+                                   !report.noise.empty());
+               });
+  if (score == "whiteness_p")
+    return say(low, [](Worst const& p) {
+      return chance_words(p, "residuals follow one another, so that dynamics are missing or the noise is not white",
+                          "no residual follows from those before it");
+    });
+  if (score.starts_with("input_correlation_p"))
+    return say(low, [](Worst const& p) {
+      return chance_words(p, "residuals follow the input, so that the model misses a part of the response",
+                          "nothing of the input is left in the residuals");
+    });
+  return "";
+}
+
+std::vector<ChainWords> chain_words(Report const& report) {
+  std::vector<ChainWords> out;
+  if (!has_chains(report)) return out;
+  if (auto const rhat = extreme(
+          report, [](Summary const& s) { return s.rhat; }, true)) {
+    bool const good = rhat->value <= rhat_bar;
+    out.push_back({"R-hat",
+                   fmt::format("{:.3f} at most ({}): {} below {}.", rhat->value, rhat->name,
+                               good                      ? "the chains tell the same story; they do"
+                               : rhat->value > rhat_loud ? "the chains tell different stories; they should be"
+                                                         : "the chains have not quite agreed; they should be",
+                               rhat_bar),
+                   good});
+  }
+  for (auto const& [name, what, of] :
+       {std::tuple("bulk ESS", "means", std::function([](Summary const& s) { return s.ess_bulk; })),
+        std::tuple("tail ESS", "5 and 95 % limits", std::function([](Summary const& s) { return s.ess_tail; }))})
+    if (auto const ess = extreme(report, of, false)) {
+      bool const good = ess->value >= ess_bar;
+      out.push_back({name,
+                     fmt::format("{:.0f} at least ({}): the draws are worth that many independent ones for {}, {}.", ess->value,
+                                 ess->name, what, good ? "enough" : fmt::format("fewer than the {} that are asked for", ess_bar)),
+                     good});
+    }
+  if (auto const error = extreme(
+          report, [](Summary const& s) { return s.sd > 0 ? s.mcse_mean / s.sd : std::nan(""); }, true)) {
+    // Of as many independent draws as are asked for.
+    bool const good = error->value <= 1 / std::sqrt(ess_bar) + 1e-12;
+    out.push_back({"Monte Carlo error",
+                   fmt::format("{} % of an sd at most ({}): another seed would move a mean by about that much.",
+                               number(100 * error->value, 2), error->name),
+                   good});
+  }
+  double accepted = 0, count = 0;
+  for (Chain const& chain : report.draws.chains)
+    for (double const each : chain.acceptance)
+      if (std::isfinite(each)) accepted += each, ++count;
+  if (count > 0) {
+    double const rate = accepted / count;
+    bool const good = rate >= least_acceptance;
+    out.push_back({"acceptance",
+                   fmt::format("{} % of the moves that led to kept draws were accepted on average: {}.", number(100 * rate, 2),
+                               !good        ? "the chains hardly moved"
+                               : rate < 0.1 ? "few, yet the effective sample sizes above say what they are worth"
+                               : rate > 0.6 ? "many, as of short steps; the effective sample sizes above say what they are worth"
+                                            : "as it should be where a chain walks at random"),
+                   good});
+  }
+  return out;
+}
+
+std::string ledger_words(Report const& report) {
+  Ledger const& ledger = report.ledger;
+  if (ledger.solves() == 0 && ledger.failures().empty()) return "";
+  if (ledger.failed() == 0) return fmt::format("{} simulations, none of them failed.", ledger.solves());
+  double const share =
+      100 * static_cast<double>(ledger.failed()) / static_cast<double>(std::max<std::uint64_t>(ledger.solves(), 1));
+  Severity const severity = failure_severity(ledger.failed(), ledger.solves());
+  bool const fitted = report.draws.total() > 0 || report.selection;
+  return fmt::format("{} simulations, {} of them failed ({} %). {}: {}", ledger.solves(), ledger.failed(), number(share, 2),
+                     fitted ? "A simulation that fails counts as impossible for its parameters"
+                            : "A trajectory that fails is left out of the bands",
+                     severity == Severity::note ? "so few do not shape the result."
+                     : severity == Severity::warning
+                         ? "look whether the posterior ends where the model does."
+                         : "with so many the posterior may end where the solver does, not where the data say.");
+}
+
+std::string mode_words(Report const& report) {
+  std::size_t const count = report.modes.size();
+  std::string places;
+  for (std::size_t m = 0; m < count; ++m)
+    places += fmt::format("{}{}", m == 0 ? "" : m + 1 == count ? " and " : ", ", report.modes[m].hits);
+  bool const counted = std::any_of(report.modes.begin(), report.modes.end(), [](Mode const& each) { return each.hits > 0; });
+  std::string out = fmt::format("The search found {}{}. ", count == 1 ? "one mode" : fmt::format("{} modes", count),
+                                counted ? fmt::format(", where {} of its local searches ended", places) : "");
+  if (grade(report) == Severity::error) {
+    bool const near = std::any_of(report.findings.begin(), report.findings.end(),
+                                  [](Finding const& each) { return each.code == "searched_near"; });
+    return out + fmt::format(
+                     "A check failed: a better mode may lie where no search went. Search {}with wider priors, or again with "
+                     "another seed.",
+                     near ? "everywhere (`search = everywhere`), " : "");
+  }
+  if (count == 1) return out + "It saw no other values of the parameters that explain the data nearly as well.";
+  return out + (report.modes[1].share > 0.01 ? "Several carry weight: the parameters are not told by these data alone."
+                                             : "Those behind the first carry next to no weight.");
+}
+
+std::string learning_words(Report const& report) {
+  if (grade(report) == Severity::error) return "";  // what the chains have not told
+  std::string idle;
+  int known = 0, more = 0;
+  for (Summary const& summary : report.summary) {
+    if (summary.coefficient) continue;
+    for (PriorInfo const& prior : report.priors) {
+      if (prior.name != summary.name) continue;
+      auto const ratio = narrowing(prior, summary);
+      if (!ratio) continue;
+      ++known;
+      if (*ratio >= hardly_narrower) continue;
+      if (++more <= 6) idle += (idle.empty() ? "" : ", ") + summary.name;
+    }
+  }
+  if (known == 0) return "";
+  if (more == 0) return "The data narrow every parameter that has a prior of its own.";
+  if (more > 6) idle += fmt::format(" and {} more", more - 6);
+  return fmt::format(
+      "The data say little of {}: the posterior is hardly narrower than the prior, so that the choice of the prior matters there.",
+      idle);
+}
+
+}  // namespace sysid

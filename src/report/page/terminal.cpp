@@ -1,0 +1,102 @@
+// Aligned columns under the user's names and units; digits end where chance begins.
+#include "report/page/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/number.hpp"
+#include "diagnostics/scores.hpp"
+#include "diagnostics/verdict.hpp"
+#include "report/text/report_text.hpp"
+#include "report/text/summary_text.hpp"
+
+namespace sysid {
+
+namespace {
+
+std::string draws_line(Draws const& draws) {
+  if (draws.chains.empty()) return "";
+  if (draws.total() == 1) return "one point, the optimum";
+  std::size_t const chains = draws.chains.size();
+  return fmt::format("{} chain{} of {} draws", chains, chains == 1 ? "" : "s", draws.chains[0].values.size());
+}
+
+std::string summary_table(Report const& report) {
+  if (report.draws.total() == 1) {
+    std::vector<std::vector<std::string>> rows = {{"", "unit", "optimum", "Laplace sd"}};
+    for (Summary const& s : report.summary)
+      if (!s.coefficient) rows.push_back({s.name, s.unit, format_summary(s).mean, format_summary(s).sd});
+    return align_columns(rows, 2);
+  }
+  std::vector<std::vector<std::string>> rows = {{"", "unit", "mean", "sd", "q5", "q95", "rhat", "ess_bulk", "ess_tail"}};
+  for (Summary const& s : report.summary) {
+    if (s.coefficient) continue;
+    SummaryText const t = format_summary(s);
+    rows.push_back({s.name, s.unit, t.mean, t.sd, t.q5, t.q95, t.rhat, t.ess_bulk, t.ess_tail});
+  }
+  return align_columns(rows, 2);
+}
+
+std::string scores_line(FitLine const& line) {
+  std::string out;
+  for (Score const& score : line.scores) {
+    std::string const unit = score.name.starts_with("nmse") ? "%" : score.name == "rmse" ? line.unit : "";
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", score.name, significant(score.value, 4));
+    if (!unit.empty()) out += fmt::format(" [{}]", unit);
+  }
+  return out;
+}
+
+// Nothing for what has none by its nature.
+std::string evidence_line(Report const& report) {
+  if (!report.evidence) return "";
+  std::string const text = evidence_text(*report.evidence);
+  return text.empty() ? "" : text + "\n";
+}
+
+// The unit that the records count their time in, and one of it in s.
+std::pair<std::string, double> time_unit(Report const& report) {
+  if (report.predictions.empty()) return {"s", 1};
+  return {report.predictions.front().time_unit, report.predictions.front().time_scale};
+}
+
+std::string ledger_text(Report const& report) {
+  Ledger const& ledger = report.ledger;
+  auto const [unit, scale] = time_unit(report);
+  if (ledger.solves() == 0 && ledger.failed() == 0) return "";
+  std::string out = fmt::format("{} simulations, {} failed\n", ledger.solves(), ledger.failed());
+  for (Failure const& failure : ledger.failures())
+    out += fmt::format(
+        "  {} x {}: {}{}\n", failure.count, name(failure.kind), failure.where,
+        std::isnan(failure.time) ? "" : fmt::format(" (first at t = {} {})", significant(failure.time / scale, 4), unit));
+  return out;
+}
+
+}  // namespace
+
+std::string terminal_summary(Report const& report) {
+  std::string out = report.task;
+  if (!report.what.empty()) out += ": " + report.what;
+  std::string const draws = draws_line(report.draws);
+  out += fmt::format("\n{}{}seed {}\n", draws, draws.empty() ? "" : ", ", report.seed);
+  if (!report.summary.empty()) out += "\n" + summary_table(report);
+  for (ReportTable const& table : report.tables) {
+    std::vector<std::vector<std::string>> rows = {table.header};
+    rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+    out += fmt::format("\n{}\n{}", table.title, align_columns(rows, 1));
+  }
+  std::string facts;
+  for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what(), scores_line(line));
+  facts += evidence_line(report) + ledger_text(report);
+  if (!facts.empty()) out += "\n" + facts;
+  if (has_verdict(report)) {
+    std::string const judged = judge(report.findings).text;
+    std::string const list = judged.substr(std::min(judged.find('\n'), judged.size()));
+    out += fmt::format("\nverdict: {}{}\n", verdict_headline(report), list);
+  }
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,64 @@
+// What a discovery of equations found.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "result/simulation_validation.hpp"
+
+namespace sysid {
+
+/// A term of the dictionary in one equation. Coefficients are in `unit`.
+struct DiscoveredTerm {
+  std::string text, unit;
+  std::string name;  // of its coefficient in the source of what was found
+  std::string fate;  // "known", "kept", "dropped", "dropped in round 2", "left out"
+  bool kept = false;
+  double coefficient = 0, sd = 0;  // on the chosen support
+  double measure = 0;              // DiscoveryReport::measure
+  double mean = 0, mean_sd = 0;    // as the selector has it, averaged over supports
+  double contribution = 0;         // root mean square of coefficient * term over that of what is explained
+  double inflation = 0;            // of the variance by the other terms; 0: not kept
+};
+
+/// Terms that could stand together, the best first.
+struct DiscoveredSupport {
+  std::vector<std::string> terms;
+  double probability = 0;  // 0 where the selector knows none
+  double log_evidence = 0;
+};
+
+struct DiscoveredEquation {
+  std::string target;    // "m*y'' - x"
+  std::string equation;  // "m*y'' - x = -20 y' - 1e4 y"; empty: none was found
+  std::vector<DiscoveredTerm> terms;
+  std::vector<DiscoveredSupport> supports;
+  double explained = 0;    // share of the projections, not of the motion
+  double noise_ratio = 0;  // residual over measurement noise; 0: not known
+  double own_noise = 0;    // sd, at a sample, of what the equation is off by itself; 0: none was found
+  std::string unit;        // of the target, in which own_noise is
+  int rows = 0;
+  bool exact = true, converged = true;
+};
+
+struct DiscoveryReport {
+  std::string selector, derivatives;
+  std::string measure;   // "inclusion probability"
+  bool windows = false;  // rows are windows, of this half-width
+  int half_width = 0;
+  struct Noise {
+    std::string channel, unit;
+    double sd = 0;       // in `unit`
+    bool given = false;  // else estimated from the record
+  };
+  std::vector<Noise> noise;
+  std::vector<DiscoveredEquation> equations;
+  struct LeftOut {
+    std::string term, reason;
+  };
+  std::vector<LeftOut> left_out;       // of the dictionary, before the record was looked at
+  std::optional<JudgedReport> judged;  // by simulation; absent: it was left out, or there is nothing to simulate
+  std::string source;                  // of the model that was found; empty: none
+};
+
+}  // namespace sysid

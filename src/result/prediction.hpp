@@ -1,0 +1,45 @@
+// What a model says along a record: bands of posterior draws beside what was measured.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sysid {
+
+/// Pointwise over draws, each [N]; lower and upper: quantiles of 2.5 and 97.5 % by `predictive_quantile`. Empty: there is none.
+struct Band {
+  std::vector<double> mean, sd, lower, upper;
+  int draws = 0, left_out = 0;  // of these so many, which it is not of
+};
+
+/// A channel, a state or a derived quantity along a record, declared unit.
+struct PredictedQuantity {
+  std::string name, unit;
+  Band response;                 // of the model alone
+  Band noisy;                    // with measurement noise added to each draw; empty for what is not measured
+  std::vector<double> measured;  // [N], NaN where missing; empty for what is not measured
+};
+
+/// What the record drives the model with, declared unit.
+struct PredictedInput {
+  std::string name, unit;
+  std::vector<double> values;  // [N]
+};
+
+struct Prediction {
+  std::string experiment;
+  std::vector<double> time;          // [N] s, or row numbers
+  std::string time_unit = "s";       // in which figures show it,
+  double time_scale = 1;             // [s] one of these
+  bool rows = false;                 // rows are independent: there is no time
+  std::vector<std::uint8_t> scored;  // [N]
+  std::vector<PredictedQuantity> quantities;
+  std::vector<PredictedInput> inputs = {};  // in the model's order
+};
+
+struct Score {
+  std::string name;
+  double value;
+};
+
+}  // namespace sysid

@@ -1,0 +1,111 @@
+// What a task found, as plain data: tasks fill it, the writers of report/ turn it into files and text.
+// Nothing in it depends on the host or the hour but `timing`.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/setting/settings.hpp"
+#include "core/system/ledger.hpp"
+#include "result/discovery.hpp"
+#include "result/draws.hpp"
+#include "result/evidence.hpp"
+#include "result/finding.hpp"
+#include "result/function.hpp"
+#include "result/mode.hpp"
+#include "result/prediction.hpp"
+#include "result/restoring_force.hpp"
+#include "result/selection.hpp"
+#include "result/summary.hpp"
+
+namespace sysid {
+
+/// Named values in the order in which they are shown.
+using Facts = std::vector<std::pair<std::string, SettingValue>>;
+
+/// A prior whose arguments are numbers, as its density can be computed again from: SI values.
+struct PriorNumbers {
+  std::string distribution;            // "log_uniform"
+  std::vector<double> arguments;       // canonical, in the order of the distribution's row
+  std::optional<double> lower, upper;  // the user's truncation
+  double scale = 1;                    // SI value of one declared unit
+};
+
+struct PriorInfo {
+  std::string name, unit;
+  std::string text;                                 // "log_uniform(0.1, 10)"
+  std::function<double(double)> density;            // of the declared value; empty when it depends on other parameters
+  std::optional<PriorNumbers> numbers = {};         // the same, stored; empty when it depends on other parameters
+  std::optional<double> q5 = {}, q95 = {};          // declared unit; empty where they are not known
+  std::optional<double> lowest = {}, highest = {};  // one part in 2000 of it lies below, and above
+};
+
+/// A value that a record was made with, as its head states it; in the declared unit of the parameter.
+struct TrueValue {
+  std::string name, unit;
+  double value = 0;
+};
+
+struct DataInfo {
+  std::string name;  // "bench.train"
+  std::string file, sha256;
+  int rows = 0;                    // of the file
+  int scored = 0;                  // of the split
+  std::string scored_rows;         // which: "101..500", counted from 1
+  std::string samples_sha256;      // of the measured samples that the likelihood reads, with their rows and in their declared units
+  std::vector<std::string> notes;  // "input x = force [N], held (zero_order)"
+  std::vector<TrueValue> truth = {};
+};
+
+/// The scores of a channel on an experiment.
+struct FitLine {
+  std::string experiment, channel;  // "bench.train", "displacement"; empty: over all channels of all experiments
+  std::string unit;                 // of its rmse
+  std::vector<Score> scores;
+
+  std::string what() const { return channel.empty() ? "all channels" : channel + " on " + experiment; }
+};
+
+/// A table of what this kind of task adds: candidate models, inclusion probabilities, populations.
+struct ReportTable {
+  std::string title, caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+struct Report {
+  std::string version;  // of sysid
+  std::string task;     // "posterior"
+  std::string what;     // "fit duffing to bench.train with mh"
+  std::string model_name, model_title;
+  std::vector<std::string> equations;  // statements of the model in the language, one each; of a discovery, what it found
+  std::string model_text;              // the user's text
+  std::string resolved_text;           // the file that reproduces this run, every setting spelt out
+  std::vector<PriorInfo> priors;
+  std::vector<DataInfo> data;
+  Draws draws;                   // may be empty (simulate, predict)
+  std::vector<Summary> summary;  // of the draws, parameters first
+  std::string verdict;           // in plain words, its first line is shown; empty: as `judge` words the findings
+  Findings findings;
+  std::vector<FitLine> fit;               // what the task itself has scored
+  std::vector<Prediction> predictions;    // of each experiment: over the fitted rows, or of the predicted ones
+  std::vector<Mode> modes;                // by falling share
+  std::optional<Evidence> evidence;       // of a fit that has come to its end
+  std::vector<std::string> noise;         // of a fit: its parameters that only the noise reads
+  std::vector<FunctionReport> functions;  // unknown ones of the equations
+  std::vector<RestoringForce> forces;     // of each experiment and oscillator that has one
+  std::vector<ReportTable> tables;
+  std::optional<SelectionReport> selection;
+  std::optional<DiscoveryReport> discovery;
+  Ledger ledger;
+  std::uint64_t seed = 0;
+  int place = 0;                      // of the task in its file
+  std::string command;                // that makes this result again, ready for a shell
+  std::vector<std::string> unseeded;  // tasks whose seeds the command does not carry: they were drawn
+  Facts settings, versions;
+  Facts timing;  // seconds, threads, host: for timing.json alone
+};
+
+}  // namespace sysid

@@ -1,0 +1,104 @@
+// Shares, the leading model, and particles as draws.
+#include "result/selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/numeric/random.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+
+double PopulationRecord::share(int model) const {
+  return accepted == 0 ? 0 : static_cast<double>(models[static_cast<std::size_t>(model)].particles) / accepted;
+}
+
+double PopulationRecord::acceptance() const {
+  return proposed == 0 ? 1 : static_cast<double>(accepted) / static_cast<double>(proposed);
+}
+
+WeightedSummary summarise_weighted(std::string name, std::string unit, std::span<double const> values,
+                                   std::span<double const> weights) {
+  WeightedSummary summary{std::move(name), std::move(unit)};
+  for (std::size_t i = 0; i < values.size(); ++i) summary.mean += weights[i] * values[i];
+  double variance = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) variance += weights[i] * (values[i] - summary.mean) * (values[i] - summary.mean);
+  summary.sd = std::sqrt(variance);
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  auto const quantile = [&](double probability) {
+    double below = 0;
+    for (std::size_t const i : order) {
+      below += weights[i];
+      if (below >= probability) return values[i];
+    }
+    return order.empty() ? 0.0 : values[order.back()];
+  };
+  summary.median = quantile(0.5);
+  summary.q5 = quantile(0.05);
+  summary.q95 = quantile(0.95);
+  return summary;
+}
+
+std::vector<int> resample(std::span<double const> weights, int count, double uniform) {
+  std::vector<int> chosen;
+  double const total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  double below = weights.empty() ? 0 : weights.front();
+  std::size_t item = 0;
+  for (int k = 0; k < count && !weights.empty(); ++k) {
+    double const place = (k + uniform) / count * total;
+    while (below < place && item + 1 < weights.size()) below += weights[++item];
+    chosen.push_back(static_cast<int>(item));
+  }
+  return chosen;
+}
+
+int SelectionReport::leader() const {
+  auto const best = std::max_element(result.models.begin(), result.models.end(),
+                                     [](auto const& a, auto const& b) { return a.probability < b.probability; });
+  return static_cast<int>(best - result.models.begin());
+}
+
+Draws resampled_draws(SelectedModel const& model, std::uint64_t seed) {
+  Draws draws;
+  for (ParameterInfo const& parameter : model.parameters) {
+    draws.names.push_back(parameter.name);
+    draws.units.push_back(parameter.unit);
+  }
+  draws.parameter_count = static_cast<int>(model.parameters.size());
+  draws.chains.resize(1);
+  Stream stream({seed, Purpose::selection, 0, 0});
+  for (int const j : resample(model.weight, static_cast<int>(model.weight.size()), stream.uniform())) {
+    draws.chains[0].values.emplace_back();
+    for (int d = 0; d < model.declared.rows(); ++d) draws.chains[0].values.back().push_back(model.declared(d, j));
+  }
+  return draws;
+}
+
+Report leading_model(Report const& report) {
+  SelectedModel const& model = report.selection->result.models[static_cast<std::size_t>(report.selection->leader())];
+  Report leading;
+  leading.task = report.task;
+  leading.model_name = model.name;
+  leading.priors = report.priors;
+  leading.data = report.data;
+  leading.draws = resampled_draws(model, report.selection->resampling_seed);
+  for (WeightedSummary const& s : model.summaries) leading.summary.push_back(as_summary(s, effective_particles(model.weight)));
+  return leading;
+}
+
+Summary as_summary(WeightedSummary const& s, double ess) {
+  double const none = std::numeric_limits<double>::quiet_NaN();
+  return {s.name, s.unit, s.mean, s.median, s.sd, none, s.q5, s.q95, none, none, none, s.sd / std::sqrt(ess)};
+}
+
+double effective_particles(std::vector<double> const& weights) {
+  double squares = 0;
+  for (double const w : weights) squares += w * w;
+  return 1 / squares;
+}
+
+}  // namespace sysid

@@ -1,0 +1,58 @@
+// What simulation says of discovered structures: coefficients fitted to the motion, evidence, stability, errors on held-out rows.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sysid {
+
+/// Of one channel, in `unit`.
+struct JudgedChannel {
+  std::string channel, unit;
+  double sd = 0;        // of what is measured on the rows kept aside
+  double residual = 0;  // sd of the refit's residuals
+  double noise = 0;     // as the regression took it; 0: not known
+  // Root mean square errors on rows kept aside; nothing where there are too few rows, or where a run is not finite.
+  std::optional<double> one_step, horizon, free_run;
+};
+
+struct JudgedCoefficient {
+  std::string target, term, name, unit;
+  double regression = 0, regression_sd = 0;  // in `unit`
+  double value = 0, sd = 0;
+  bool of_target = false;  // it stands in the target: known to be there
+};
+
+/// A structure: one support for each equation.
+struct JudgedStructure {
+  std::string terms;                   // "y'', y', y, y^3"; of several equations "x': x, y; y': ..."
+  std::vector<std::string> equations;  // with the refit's coefficients
+  int of_regression = 0;               // its place there, from 1
+  std::string failure;                 // why it was not judged; empty: it was
+  bool given_up = false;               // it was not, because that costs too much
+  double log_evidence = 0, log_prior = 0;
+  double probability = 0;          // among the structures tried
+  double residual_over_noise = 0;  // of the worst channel; 0: noise not known
+  int draws = 0, bounded = 0;
+  double follows = 0;  // [s] of the free run until a channel is off by 40 % of its sd
+  std::vector<JudgedCoefficient> coefficients;
+  std::vector<JudgedChannel> channels;
+
+  /// The largest error in percent of a channel's sd; nothing where there is none.
+  std::optional<double> percent(std::optional<double> JudgedChannel::*error) const;
+};
+
+struct JudgedReport {
+  std::vector<JudgedStructure> structures;  // best first
+  int segments = 0;                         // of which the refit starts each afresh
+  double shortest = 0, longest = 0;         // of a segment [s]
+  bool whole = false;                       // no record could be cut less
+  double step = 0;                          // [s] of the record
+  double horizon = 0;                       // [s] of predictions k steps ahead
+  int horizon_rows = 0, window_rows = 0;
+  std::string aside;        // "bench.test", "the last fifth of bench"; empty: nothing was scored
+  bool aside_seen = false;  // the choice of structures saw these rows
+  std::string solver;
+};
+
+}  // namespace sysid

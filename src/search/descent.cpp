@@ -1,0 +1,171 @@
+// Levenberg-Marquardt over lanes.
+#include "search/descent.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "linear_algebra/decompositions.hpp"
+#include "search/ascent.hpp"
+
+namespace sysid {
+namespace {
+
+// Of a prior width: residuals bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
+// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
+double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
+
+constexpr double prior_difference_width = 1e-3;  // second differences need more
+constexpr double most_step = 2;
+constexpr double worth_taking = 1e-8;  // predicted gain in log density below which a search is done
+constexpr double dampings[] = {0.1, 1, 10, 100};
+constexpr int damping_count = 4;
+
+struct Slope {
+  Eigen::VectorXd gradient;  // of the log density
+  Eigen::MatrixXd curvature;
+};
+
+void add_prior(Objective const& objective, std::vector<Climber*> const& block, std::vector<Slope>& slopes) {
+  if (objective.aim == Aim::likelihood) return;
+  int const dimension = objective.dimension();
+  int const columns = 2 * dimension + 1;
+  LaneArray theta(dimension, columns * static_cast<int>(block.size()));
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    for (int c = 0; c < columns; ++c) {
+      for (int p = 0; p < dimension; ++p) {
+        double const shift = c == 2 * p ? 1 : c == 2 * p + 1 ? -1 : 0;
+        theta(p, static_cast<int>(k) * columns + c) = block[k]->theta(p) + shift * prior_difference_width * objective.scale(p);
+      }
+    }
+  }
+  std::vector<double> const value = objective.log_prior(theta);
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    double const* const f = value.data() + k * static_cast<std::size_t>(columns);
+    for (int p = 0; p < dimension; ++p) {
+      double const h = prior_difference_width * objective.scale(p);
+      double const slope = (f[2 * p] - f[2 * p + 1]) / (2 * h);
+      double const bend = (2 * f[2 * dimension] - f[2 * p] - f[2 * p + 1]) / (h * h);
+      if (std::isfinite(slope)) slopes[k].gradient(p) += slope;
+      if (std::isfinite(bend) && bend > 0) slopes[k].curvature(p, p) += bend;
+    }
+  }
+}
+
+/// Gradient and Gauss-Newton curvature of every climber of the block.
+std::vector<Slope> slopes_of(Objective const& objective, std::vector<Climber*> const& block, Ledger& ledger) {
+  int const dimension = objective.dimension();
+  int const columns = 2 * dimension + 1;
+  int const rows = objective.target.residual_count();
+  double const width = difference_width(objective.target);
+  LaneArray theta(dimension, columns * static_cast<int>(block.size()));
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    for (int c = 0; c < columns; ++c) {
+      for (int p = 0; p < dimension; ++p) {
+        double const shift = c == 2 * p ? 1 : c == 2 * p + 1 ? -1 : 0;
+        theta(p, static_cast<int>(k) * columns + c) = block[k]->theta(p) + shift * width * objective.scale(p);
+      }
+    }
+  }
+  LaneArray residuals(rows, theta.width());
+  objective.target.residuals(theta, residuals, ledger);
+
+  std::vector<Slope> slopes;
+  Eigen::MatrixXd jacobian(rows, dimension);
+  Eigen::VectorXd centre(rows);
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    int const first = static_cast<int>(k) * columns;
+    for (int r = 0; r < rows; ++r) centre(r) = residuals(r, first + 2 * dimension);
+    for (int p = 0; p < dimension; ++p) {
+      double const h = width * objective.scale(p);
+      auto const finite = [&](int column) { return rows > 0 && std::isfinite(residuals(0, first + column)); };
+      bool const ahead = finite(2 * p), behind = finite(2 * p + 1);
+      for (int r = 0; r < rows; ++r) {
+        double const up = ahead ? residuals(r, first + 2 * p) : centre(r);
+        double const down = behind ? residuals(r, first + 2 * p + 1) : centre(r);
+        double const apart = (ahead ? h : 0) + (behind ? h : 0);
+        jacobian(r, p) = apart > 0 ? (up - down) / apart : 0;  // both neighbours failed: leave the coordinate alone
+      }
+    }
+    if (!jacobian.allFinite() || !centre.allFinite()) {
+      slopes.push_back({Eigen::VectorXd::Zero(dimension), Eigen::MatrixXd::Zero(dimension, dimension)});
+      continue;
+    }
+    slopes.push_back({-jacobian.transpose() * centre, jacobian.transpose() * jacobian});
+  }
+  add_prior(objective, block, slopes);
+  return slopes;
+}
+
+Eigen::VectorXd damped_step(Objective const& objective, Slope const& slope, double damping) {
+  // In prior widths, so that a weak direction of one unit is not rounded away by a stiff one of another.
+  Eigen::VectorXd const& s = objective.scale;
+  Eigen::MatrixXd system = s.asDiagonal() * slope.curvature * s.asDiagonal();
+  Eigen::VectorXd const diagonal = system.diagonal();
+  double const ridge = 1e-12 * std::max(1.0, diagonal.maxCoeff());
+  for (Eigen::Index p = 0; p < system.rows(); ++p) system(p, p) += damping * std::max(diagonal(p), 1e-8) + ridge;
+  Eigen::VectorXd step = solve_symmetric(system, slope.gradient.cwiseProduct(s));
+  if (!step.allFinite()) return Eigen::VectorXd::Zero(s.size());
+  double const longest = step.cwiseAbs().maxCoeff();
+  if (longest > most_step) step *= most_step / longest;
+  return step.cwiseProduct(s);
+}
+
+/// One round of one block of climbers.
+void climb_once(Objective const& objective, std::vector<Climber*> const& block, Ledger& ledger) {
+  std::vector<Slope> const slopes = slopes_of(objective, block, ledger);
+  std::vector<Eigen::VectorXd> trials;
+  std::vector<double> promised;
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    for (double const factor : dampings) {
+      Eigen::VectorXd const step = damped_step(objective, slopes[k], factor * block[k]->damping);
+      trials.push_back(objective.clamp(block[k]->theta + step));
+      promised.push_back(std::fabs(slopes[k].gradient.dot(trials.back() - block[k]->theta)));
+    }
+  }
+  std::vector<double> const reached = log_density_in_blocks(objective, to_lanes(trials), ledger);
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    Climber& climber = *block[k];
+    climber.curvature = slopes[k].curvature;
+    std::size_t const first = k * damping_count;
+    std::size_t best = first;
+    for (std::size_t i = first; i < first + damping_count; ++i)
+      if (reached[i] > reached[best]) best = i;
+    double const hope = *std::max_element(promised.begin() + static_cast<std::ptrdiff_t>(first),
+                                          promised.begin() + static_cast<std::ptrdiff_t>(first + damping_count));
+    if (reached[best] > climber.log_density) {
+      climber.theta = trials[best];
+      climber.log_density = reached[best];
+      climber.damping = std::max(1e-12, climber.damping * dampings[best - first] * 0.3);
+    } else {
+      climber.damping *= 1e3;
+    }
+    climber.done = hope < worth_taking || climber.damping > 1e12;
+  }
+}
+
+}  // namespace
+
+Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::move(theta), log_density, 1e-2, {}, false}; }
+
+void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
+           std::function<bool()> const& stop) {
+  if (objective.target.has_gradient()) return climb_by_gradient(objective, climbers, rounds, ledger, stop);
+  // Blocks hold a few million residuals at most, whatever the length of the record.
+  int const columns = 2 * objective.dimension() + 1;
+  int const rows = std::max(1, objective.target.residual_count());
+  std::size_t const width = static_cast<std::size_t>(std::clamp((1 << 22) / rows / columns, 1, std::max(1, 512 / columns)));
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Climber*> active;
+    for (Climber& climber : climbers)
+      if (!climber.done) active.push_back(&climber);
+    if (active.empty()) return;
+    for (std::size_t first = 0; first < active.size(); first += width) {
+      if (stop && stop()) return;
+      std::size_t const last = std::min(active.size(), first + width);
+      climb_once(objective,
+                 {active.begin() + static_cast<std::ptrdiff_t>(first), active.begin() + static_cast<std::ptrdiff_t>(last)}, ledger);
+    }
+  }
+}
+
+}  // namespace sysid

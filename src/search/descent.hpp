@@ -1,0 +1,34 @@
+// Levenberg-Marquardt from many starts at once: every finite difference and every trial step of every start is a lane of one batch.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "search/objective.hpp"
+
+namespace sysid {
+
+/// One local search.
+struct Climber {
+  Eigen::VectorXd theta;
+  double log_density = 0;
+  double damping = 1e-2;
+  Eigen::MatrixXd curvature;  // Gauss-Newton plus the prior's, at the point before the last step; empty before the first
+  bool done = false;          // no further step is worth taking, or none is possible
+  int hits = 1;               // searches that it stands for
+};
+
+Climber climber_at(Eigen::VectorXd theta, double log_density);
+
+/// Up to `rounds` steps of every climber that is not done; stops early when `stop` says so.
+///
+///   maximise  -1/2 sum r(theta)^2 + log prior(theta);   (J'J + P + damping D) step = -J'r + grad log prior,   D = diag(J'J + P)
+///
+/// J by central differences of 1e-5 prior widths, more where the target is rough; P is minus the diagonal second derivative of the
+/// log prior where positive. Each round tries four dampings a decade apart and keeps the best. Steps are at most two prior widths
+/// long in any coordinate. A target that has a gradient is climbed by that instead. Levenberg 1944, Marquardt 1963; as in More 1978
+/// but for the choice of damping, which lanes make cheap.
+void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
+           std::function<bool()> const& stop);
+
+}  // namespace sysid

@@ -1,0 +1,30 @@
+// The Gaussian approximation at an optimum: a few Newton steps onto it, then the curvature by central differences in lanes.
+#pragma once
+#include <Eigen/Core>
+
+#include "search/objective.hpp"
+#include "search/run_context.hpp"
+
+namespace sysid {
+
+/// Prior widths: no direction of a mode is taken for longer.
+constexpr double longest_width = 10;
+
+/// Climbs the last step from `theta` and returns the mode with
+///
+///   log mass = log density + P/2 log 2 pi - 1/2 log det H,   H = -second derivatives of the log density          MacKay 2003, ch.
+///   27
+///
+/// over the sampler's coordinates, or for an objective that is a density of the declared parameters over those. `guess` is a
+/// curvature to choose difference widths by (Gauss-Newton); above 40 parameters it is also the curvature used, as P^2 simulations
+/// cost more than they tell. Directions along which the curvature leaves more than ten prior widths get those, and are listed in
+/// `flat`. Declared sds: first order, through the derivative of the declared values.
+Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger);
+
+/// Distance of two modes in units of their widths: sqrt((a - b)' (A + B)^-1 (a - b)), A and B the covariances.
+double distance(Mode const& a, Mode const& b);
+
+Eigen::VectorXd theta_of(Mode const& mode);
+Eigen::MatrixXd covariance_of(Mode const& mode);
+
+}  // namespace sysid

@@ -1,0 +1,139 @@
+// Searches that meet, and what they have found.
+#include "search/local_searches.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/numeric/elementary.hpp"
+#include "search/laplace.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double near = 0.05;    // prior widths
+constexpr double hopeless = 30;  // nats below the best optimum
+constexpr std::size_t most_modes = 12;
+constexpr double same_mode = 0.5;  // of the two modes' widths
+
+constexpr int most_rounds = 60;
+constexpr int rounds_apart = 3;  // between two looks at which have met
+constexpr std::uint64_t scale_step = 2;
+
+double gap(Objective const& objective, Eigen::VectorXd const& a, Eigen::VectorXd const& b) {
+  return (a - b).cwiseQuotient(objective.scale).cwiseAbs().maxCoeff();
+}
+
+/// Logarithm of what a mode counts for: a likelihood has no mass.
+double log_weight(Aim aim, Mode const& mode) { return aim == Aim::likelihood ? mode.log_density : mode.log_mass; }
+
+void share_out(Aim aim, std::vector<Mode>& modes) {
+  double heaviest = -std::numeric_limits<double>::infinity(), sum = 0;
+  for (Mode const& mode : modes) heaviest = std::max(heaviest, log_weight(aim, mode));
+  for (Mode& mode : modes) sum += mode.share = elementary::exp(log_weight(aim, mode) - heaviest);
+  for (Mode& mode : modes) mode.share /= sum;
+}
+
+/// log of the largest volume that Laplace's approximation gives a mode: of ten prior widths along every axis.
+double most_log_volume(Objective const& objective) {
+  double sum = 0;
+  for (double const scale : objective.scale)
+    sum += elementary::log(scale * longest_width) + 0.5 * elementary::log(2 * std::numbers::pi);
+  return sum;
+}
+
+/// Without those that would not come near the best.
+std::vector<Climber> within_reach(std::vector<Climber> climbers, std::vector<double> const& reach) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (Climber const& each : climbers) best = std::max(best, each.log_density);
+  std::vector<Climber> left;
+  for (std::size_t k = 0; k < climbers.size(); ++k)
+    if (reach[k] >= best - hopeless) left.push_back(std::move(climbers[k]));
+  return left;
+}
+
+}  // namespace
+
+void sort_best_first(std::vector<Climber>& climbers) {
+  std::stable_sort(climbers.begin(), climbers.end(),
+                   [](Climber const& a, Climber const& b) { return a.log_density > b.log_density; });
+}
+
+bool in_one_basin(Objective const& objective, Climber const& a, Climber const& b) {
+  return gap(objective, a.theta, b.theta) < near;
+}
+
+std::vector<Climber> distinct(Objective const& objective, std::vector<Climber> climbers) {
+  sort_best_first(climbers);
+  std::vector<Climber> apart;
+  for (Climber& climber : climbers) {
+    auto const same = [&](Climber const& better) {
+      if (better.curvature.size() == 0 || !in_one_basin(objective, climber, better)) return false;
+      Eigen::VectorXd const between = climber.theta - better.theta;
+      return between.dot(better.curvature * between) < 1;
+    };
+    auto const found = std::find_if(apart.begin(), apart.end(), same);
+    if (found != apart.end())
+      found->hits += climber.hits;
+    else
+      apart.push_back(std::move(climber));
+  }
+  return apart;
+}
+
+std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
+                           std::function<bool()> const& stop) {
+  std::vector<Mode> modes;
+  for (Climber const& climber : distinct(objective, std::move(climbers))) {
+    if ((stop && stop()) || modes.size() >= most_modes || !std::isfinite(climber.log_density)) break;
+    if (!modes.empty() && climber.log_density < modes.front().log_density - hopeless) break;
+    Eigen::MatrixXd const guess =
+        climber.curvature.size() > 0 ? climber.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
+    Mode mode = laplace_mode(objective, climber.theta, guess, ledger);
+    mode.hits = climber.hits;
+    auto const same =
+        std::find_if(modes.begin(), modes.end(), [&](Mode const& other) { return distance(mode, other) < same_mode; });
+    if (same == modes.end()) {
+      modes.push_back(std::move(mode));
+    } else {
+      int const hits = same->hits + mode.hits;
+      if (mode.log_density > same->log_density) *same = std::move(mode);
+      same->hits = hits;
+    }
+  }
+  std::erase_if(modes, [&](Mode const& mode) { return !std::isfinite(log_weight(objective.aim, mode)); });
+  // What is asked for is the highest point, except by chains; how much lies around it is another question.
+  auto const rank = [&](Mode const& m) { return objective.aim == Aim::posterior ? m.log_mass : m.log_density; };
+  std::stable_sort(modes.begin(), modes.end(), [&](Mode const& a, Mode const& b) { return rank(a) > rank(b); });
+  share_out(objective.aim, modes);
+  return modes;
+}
+
+LocalSearches modes_from(Target const& target, Aim aim, ConstLanes starts, double least_log_mass, std::uint64_t seed,
+                         Ledger& ledger, std::function<bool()> const& stop) {
+  Objective const objective = make_objective(target, aim, seed, scale_step);
+  std::vector<double> const density = log_density_in_blocks(objective, starts, ledger, stop);
+  std::vector<Climber> climbers;
+  for (int w = 0; w < starts.width(); ++w)
+    if (std::isfinite(density[static_cast<std::size_t>(w)]))
+      climbers.push_back(climber_at(column(starts, w), density[static_cast<std::size_t>(w)]));
+  LocalSearches result;
+  for (int round = 0; round < most_rounds && !climbers.empty() && !result.given_up; round += rounds_apart) {
+    std::vector<double> reach;  // where each would come to at the rate of these rounds
+    for (Climber const& each : climbers) reach.push_back(each.log_density);
+    climb(objective, climbers, rounds_apart, ledger, stop);
+    int const as_many_again = (most_rounds - round - rounds_apart) / rounds_apart;
+    for (std::size_t k = 0; k < climbers.size(); ++k)
+      reach[k] = climbers[k].log_density + (climbers[k].done ? 0 : as_many_again * (climbers[k].log_density - reach[k]));
+    double const highest = *std::max_element(reach.begin(), reach.end());
+    climbers = distinct(objective, within_reach(std::move(climbers), reach));
+    if (std::all_of(climbers.begin(), climbers.end(), [](Climber const& each) { return each.done; })) break;
+    result.given_up = highest + most_log_volume(objective) < least_log_mass;
+  }
+  if (result.given_up) climbers.resize(1, climbers.front());
+  result.modes = modes_of(objective, std::move(climbers), ledger, stop);
+  return result;
+}
+
+}  // namespace sysid

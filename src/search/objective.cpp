@@ -1,0 +1,89 @@
+// Densities a search climbs.
+#include "search/objective.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
+
+namespace sysid {
+
+std::vector<double> Objective::log_prior(ConstLanes theta) const {
+  std::vector<double> out(static_cast<std::size_t>(theta.width()), 0.0);
+  if (aim != Aim::likelihood) target.log_prior(theta, out, aim == Aim::posterior);
+  return out;
+}
+
+std::vector<double> Objective::log_density(ConstLanes theta, Ledger& ledger) const {
+  std::vector<double> const prior = log_prior(theta);
+  std::vector<double> out(prior.size());
+  target.log_likelihood(theta, out, ledger);
+  for (std::size_t w = 0; w < out.size(); ++w) {
+    out[w] += prior[w];
+    if (!std::isfinite(out[w])) out[w] = -std::numeric_limits<double>::infinity();
+  }
+  return out;
+}
+
+Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws) {
+  int const dimension = target.dimension();
+  Objective objective{target, aim, Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Constant(dimension, -infinity),
+                      Eigen::VectorXd::Constant(dimension, infinity)};
+  for (int p = 0; p < dimension; ++p) {
+    std::vector<double> finite;
+    for (double const v : prior_draws.row(p))
+      if (std::isfinite(v)) finite.push_back(v);
+    if (finite.empty()) continue;
+    double const spread = (quantile(finite, 0.84) - quantile(finite, 0.16)) / 2;
+    if (spread > 0) objective.scale(p) = spread;
+    auto const [least, most] = std::minmax_element(finite.begin(), finite.end());
+    ParameterInfo const& info = target.parameters()[static_cast<std::size_t>(p)];
+    bool const below = std::isfinite(info.lower), above = std::isfinite(info.upper);
+    // A bounded side lies at infinity of the coordinate; the end with one bound is always the lower one of log(x - a) and log(b -
+    // x).
+    if (below || above) objective.low(p) = *least - 3 * objective.scale(p);
+    if (below && above) objective.high(p) = *most + 3 * objective.scale(p);
+  }
+  return objective;
+}
+
+Objective make_objective(Target const& target, Aim aim, std::uint64_t seed, std::uint64_t step) {
+  constexpr int enough = 512;
+  LaneArray draws(target.dimension(), enough);
+  target.sample_prior({seed, Purpose::start, 0, step}, draws);
+  return make_objective(target, aim, draws);
+}
+
+LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points) {
+  int const rows = points.empty() ? 0 : static_cast<int>(points.front().size());
+  LaneArray lanes(rows, static_cast<int>(points.size()));
+  for (int w = 0; w < lanes.width(); ++w)
+    for (int p = 0; p < rows; ++p) lanes(p, w) = points[static_cast<std::size_t>(w)](p);
+  return lanes;
+}
+
+Eigen::VectorXd column(ConstLanes theta, int lane) {
+  Eigen::VectorXd x(theta.rows());
+  for (int p = 0; p < theta.rows(); ++p) x(p) = theta(p, lane);
+  return x;
+}
+
+std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger,
+                                          std::function<bool()> const& stop) {
+  constexpr int block = 512;
+  std::vector<double> out;
+  for (int first = 0; first < theta.width(); first += block) {
+    if (stop && stop()) {
+      out.resize(static_cast<std::size_t>(theta.width()), -std::numeric_limits<double>::infinity());
+      break;
+    }
+    int const count = std::min(block, theta.width() - first);
+    std::vector<double> const part = objective.log_density(theta.columns(first, count), ledger);
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,42 @@
+// What a search climbs: a posterior or a likelihood over the sampler's coordinates, with the prior's widths as its yardstick.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "core/system/ledger.hpp"
+#include "likelihood/target.hpp"
+#include "search/aim.hpp"
+
+namespace sysid {
+
+struct Objective {
+  Target const& target;
+  Aim aim;
+  Eigen::VectorXd scale;  // [P] half the central 68 % of the prior draws, > 0
+  Eigen::VectorXd low,
+      high;  // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
+
+  int dimension() const { return static_cast<int>(scale.size()); }
+  /// The prior's part alone; 0 for `likelihood`.
+  std::vector<double> log_prior(ConstLanes theta) const;
+  /// -infinity wherever it is not finite.
+  std::vector<double> log_density(ConstLanes theta, Ledger& ledger) const;
+  Eigen::VectorXd clamp(Eigen::VectorXd theta) const { return theta.cwiseMax(low).cwiseMin(high); }
+};
+
+/// prior_draws [P x N] give the scales.
+Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws);
+/// Scales from as many draws as know the prior's widths, which is all that is asked of them; step: theirs, of Purpose::start.
+Objective make_objective(Target const& target, Aim aim, std::uint64_t seed, std::uint64_t step);
+
+/// The columns of a batch, from vectors.
+LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points);
+Eigen::VectorXd column(ConstLanes theta, int lane);
+
+/// The log density of the columns in blocks of at most 512 lanes: enough to fill any machine, little enough to hold. `stop` is
+/// asked before each; what it leaves out is -infinity.
+std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger,
+                                          std::function<bool()> const& stop = {});
+
+}  // namespace sysid

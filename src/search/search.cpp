@@ -1,0 +1,340 @@
+// From the prior to the modes.
+#include "search/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "core/numeric/elementary.hpp"
+#include "core/system/failed_places.hpp"
+#include "core/text/words.hpp"
+#include "linear_algebra/decompositions.hpp"
+#include "search/descent.hpp"
+#include "search/laplace.hpp"
+#include "search/local_searches.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int draws_per_pass = 2048;
+constexpr int early_rounds = 6, late_rounds = 100, usual_rounds = 15;
+constexpr int most_passes = 4;
+
+/// How much a search looks at: of which draws it asks the density, and how many of them it climbs from.
+struct Breadth {
+  int draws;
+  std::size_t likeliest, others, finalists;
+};
+constexpr Breadth broad{draws_per_pass, 96, 32, 16};
+/// Of a likelihood that takes a matrix decomposition each time, and tells its gradient.
+constexpr Breadth narrow{64, 6, 2, 4};
+/// Of an equation with an unknown function in it: what is not linear are the few other parameters, and every round asks for the
+/// slopes of all coefficients.
+constexpr Breadth few{draws_per_pass, 12, 4, 3};
+
+constexpr double notable_share = 0.01;
+
+// Steps of Purpose::start: streams of different uses never meet.
+constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_step = 1'000'000;
+
+/// The draws worth a local search: the likeliest, and the first of the rest.
+std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Breadth const& breadth, Ledger& ledger,
+                                   std::function<bool()> const& stop) {
+  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger, stop);
+  std::vector<int> order;
+  for (int w = 0; w < draws.width(); ++w)
+    if (std::isfinite(density[static_cast<std::size_t>(w)])) order.push_back(w);
+  std::size_t const best = std::min(breadth.likeliest, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(best), order.end(), [&](int a, int b) {
+    double const fa = density[static_cast<std::size_t>(a)], fb = density[static_cast<std::size_t>(b)];
+    return fa > fb || (fa == fb && a < b);
+  });
+  std::sort(order.begin() + static_cast<std::ptrdiff_t>(best), order.end());
+  order.resize(std::min(order.size(), best + breadth.others));
+  std::vector<Climber> starts;
+  for (int const w : order) starts.push_back(climber_at(column(draws, w), density[static_cast<std::size_t>(w)]));
+  return starts;
+}
+
+/// The best of `climbers` that lie apart, filled up with the next best.
+std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Climber> climbers, std::size_t finalists) {
+  sort_best_first(climbers);
+  std::vector<Climber> chosen, rest;
+  for (Climber& climber : climbers) {
+    bool const apart =
+        std::none_of(chosen.begin(), chosen.end(), [&](Climber const& other) { return in_one_basin(objective, climber, other); });
+    (apart && chosen.size() < finalists ? chosen : rest).push_back(std::move(climber));
+  }
+  for (Climber& climber : rest)
+    if (chosen.size() < finalists) chosen.push_back(std::move(climber));
+  return chosen;
+}
+
+std::string describe(Target const& target, Mode const& mode) {
+  std::string text;
+  auto const parameters = target.parameters();
+  for (std::size_t p = 0; p < parameters.size() && p < 6; ++p)
+    text += fmt::format("{}{} = {:.4g}", p == 0 ? "" : ", ", parameters[p].name, mode.declared[p]);
+  return parameters.size() > 6 ? text + ", ..." : text;
+}
+
+// Whether a parameter is known to a twentieth of the range of its prior, over decades in logarithms. Near a bound the unconstrained
+// coordinate is flat, which the parameter is not.
+bool is_known(ParameterInfo const& parameter, double value, double sd) {
+  constexpr double part = 0.05;
+  if (!std::isfinite(parameter.lower) || !std::isfinite(parameter.upper)) return false;
+  if (parameter.lower > 0 && parameter.upper >= 10 * parameter.lower)
+    return sd / value < part * elementary::log(parameter.upper / parameter.lower);
+  return sd < part * (parameter.upper - parameter.lower);
+}
+
+// move [P]: of declared parameters. Nothing where all that take part are known.
+std::optional<Finding> flat_direction(Target const& target, Mode const& mode, std::span<double const> move) {
+  std::vector<std::string> names, moves;
+  bool known = true;
+  for (std::size_t p = 0; p < move.size(); ++p) {
+    ParameterInfo const& parameter = target.parameters()[p];
+    if (move[p] == 0) continue;
+    known = known && is_known(parameter, mode.declared[p], mode.sd[p]);
+    if (parameter.coefficient) {  // an unknown function stands for all its coefficients
+      std::string const function = parameter.name.substr(0, parameter.name.find('['));
+      if (std::find(names.begin(), names.end(), function) == names.end()) names.push_back(function);
+      continue;
+    }
+    names.push_back(parameter.name);
+    moves.push_back(fmt::format("{} by {:+.2g}{}", parameter.name, move[p], parameter.unit.empty() ? "" : " " + parameter.unit));
+  }
+  if (known) return std::nullopt;
+  if (names.size() == 1)
+    return Finding{Severity::warning, "flat_direction",
+                   fmt::format("the data leave {} undetermined: its width is the prior's", names.front()),
+                   "fix it to a value, give it a narrower prior, or measure what tells it"};
+  if (moves.empty())
+    return Finding{Severity::warning, "flat_direction",
+                   fmt::format("the data leave a combination of {} undetermined: its width is the prior's", listed(names)),
+                   "fix an amplitude or a length, or measure what tells the functions apart"};
+  return Finding{
+      Severity::warning, "flat_direction",
+      fmt::format("the data leave a combination of {} undetermined: moving {} together changes next to nothing, and its width is "
+                  "the prior's",
+                  listed(names), listed(moves)),
+      "fix one of them, give them narrower priors, or measure what tells them apart"};
+}
+
+void add_findings(Objective const& objective, SearchResult& result) {
+  std::vector<Mode> const& modes = result.modes;
+  for (std::size_t i = 1; i < modes.size() && objective.aim != Aim::likelihood; ++i) {
+    if (modes[i].share <= notable_share) continue;
+    result.findings.push_back(
+        {Severity::warning, "second_mode",
+         fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
+                     describe(objective.target, modes[i])),
+         "look at both solutions: add data or prior knowledge that tells them apart, or run more chains and report both"});
+  }
+  auto const parameters = static_cast<std::size_t>(objective.dimension());
+  for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters)
+    if (auto finding = flat_direction(objective.target, modes.front(), {modes.front().flat.data() + at, parameters}))
+      result.findings.push_back(std::move(*finding));
+}
+
+bool has_coefficients(Target const& target) {
+  return std::any_of(target.parameters().begin(), target.parameters().end(),
+                     [](ParameterInfo const& each) { return each.coefficient; });
+}
+
+LaneArray draw_prior(Target const& target, StreamKey key, int count) {
+  LaneArray draws(target.dimension(), count);
+  target.sample_prior(key, draws);
+  return draws;
+}
+
+/// Coefficients of unknown functions at zero, where a model is what it is without them.
+void begin_without_functions(Target const& target, LaneArray& draws) {
+  for (int p = 0; p < target.dimension(); ++p)
+    if (target.parameters()[static_cast<std::size_t>(p)].coefficient)
+      for (int w = 0; w < draws.width(); ++w) draws(p, w) = 0;
+}
+
+}  // namespace
+
+SearchResult search(Target const& target, Aim aim, RunContext& context) {
+  SearchResult result;
+  Breadth const& breadth = target.has_gradient() ? narrow : has_coefficients(target) ? few : broad;
+  // All that a search of one pass does but its last rounds, of which a handful is usual.
+  auto const dimension = static_cast<std::uint64_t>(target.dimension());
+  std::uint64_t const round = target.has_gradient() ? 1 : 2 * dimension + 1 + 4,
+                      usual = static_cast<std::uint64_t>(breadth.draws) +
+                              (breadth.likeliest + breadth.others) * early_rounds * round +
+                              breadth.finalists * usual_rounds * round;
+  std::uint64_t const before = context.ledger.solves();
+  std::uint64_t expected = usual;
+  auto const stop = [&] {
+    context.progress.advance(std::min(context.ledger.solves() - before, expected - 1), "");
+    return context.stop_requested();
+  };
+  context.progress.begin("searching the prior", expected);
+  StreamKey const key{context.seed, Purpose::start, 0, search_step};
+  std::optional<Objective> objective;
+  std::vector<Climber> ended;
+  bool begun = false;
+  int const passes = has_coefficients(target) ? 1 : most_passes;
+  for (int pass = 0; pass < passes && !stop(); ++pass) {
+    LaneArray draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
+    if (!objective) objective.emplace(make_objective(target, aim, draws));
+    begin_without_functions(target, draws);
+    std::vector<Climber> starts = choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop);
+    begun = begun || !starts.empty();
+    climb(*objective, starts, early_rounds, context.ledger, stop);
+    std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
+    climb(*objective, last, late_rounds, context.ledger, stop);
+    ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
+    if (stop()) break;
+    if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
+    if (!result.modes.empty() && (result.modes.front().hits > 1 || ended.size() == 1)) break;
+    expected = context.ledger.solves() - before + usual;
+    context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), expected);
+  }
+  bool const stopped = stop();
+  context.progress.end(!stopped);
+  if (stopped) {
+    result.interrupted = true;
+    result.modes.clear();
+    return result;
+  }
+  if (result.modes.empty()) {
+    result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(most_passes * breadth.draws));
+    if (begun) {  // draws are finite, but all climbs from them end where the likelihood does
+      std::string const places = failed_places(context.ledger);
+      result.failure->message = fmt::format("all climbs from draws of the prior end where the model cannot be simulated{}{}",
+                                            places.empty() ? "" : ": ", places);
+      result.failure->help =
+          "look at the units of the data and at the priors: the data pull the parameters out of the range in which the model has a "
+          "solution; or let the solver choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff";
+    }
+    return result;
+  }
+  add_findings(*objective, result);
+  return result;
+}
+
+SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunContext& context) {
+  SearchResult result;
+  std::uint64_t const before = context.ledger.solves();
+  auto const round = static_cast<std::uint64_t>(target.has_gradient() ? 1 : 2 * target.dimension() + 1 + 4);
+  std::uint64_t const expected = static_cast<std::uint64_t>(starts.width()) * round * usual_rounds;
+  auto const stop = [&] {
+    context.progress.advance(std::min(context.ledger.solves() - before, expected - 1), "");
+    return context.stop_requested();
+  };
+  context.progress.begin("searching near an earlier fit", expected);
+  result.modes =
+      modes_from(target, aim, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger, stop).modes;
+  result.interrupted = stop();
+  context.progress.end(!result.interrupted);
+  if (result.interrupted) {
+    result.modes.clear();
+    return result;
+  }
+  if (result.modes.empty()) {
+    result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(starts.width()));
+    return result;
+  }
+  add_findings(make_objective(target, aim, draw_prior(target, {context.seed, Purpose::start, 0, search_step}, draws_per_pass)),
+               result);
+  return result;
+}
+
+std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains) {
+  std::vector<int> count(modes.size(), 0);
+  int left = chains;
+  for (std::size_t m = 0; m < modes.size() && left > 0; ++m) {
+    if (m > 0 && modes[m].share <= notable_share) continue;
+    ++count[m];
+    --left;
+  }
+  for (; left > 0; --left) {
+    std::size_t most_wanting = 0;
+    auto const want = [&](std::size_t m) { return modes[m].share * chains - count[m]; };
+    for (std::size_t m = 1; m < modes.size(); ++m)
+      if (want(m) > want(most_wanting)) most_wanting = m;
+    ++count[most_wanting];
+  }
+  std::vector<int> mode_of_chain;
+  for (std::size_t m = 0; m < modes.size(); ++m)
+    mode_of_chain.insert(mode_of_chain.end(), static_cast<std::size_t>(count[m]), static_cast<int>(m));
+  return mode_of_chain;
+}
+
+namespace {
+
+/// Redraws the columns of `starts` until the density is finite at each; `redraw(chain, attempt)` gives the next try. Returns the
+/// chains that never got one.
+template <class Redraw>
+std::vector<int> settle(Target const& target, LaneArray& starts, int attempts, Ledger& ledger, Redraw const& redraw) {
+  std::vector<int> open(static_cast<std::size_t>(starts.width()));
+  std::iota(open.begin(), open.end(), 0);
+  for (int attempt = 0; attempt < attempts && !open.empty(); ++attempt) {
+    std::vector<Eigen::VectorXd> points;
+    for (int const chain : open) points.push_back(redraw(chain, attempt));
+    LaneArray const theta = to_lanes(points);
+    std::vector<double> prior(open.size()), likelihood(open.size());
+    target.log_prior(theta, prior);
+    target.log_likelihood(theta, likelihood, ledger);
+    std::vector<int> still;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      for (int p = 0; p < starts.rows(); ++p) starts(p, open[i]) = theta(p, static_cast<int>(i));
+      if (!std::isfinite(prior[i] + likelihood[i])) still.push_back(open[i]);
+    }
+    open = std::move(still);
+  }
+  return open;
+}
+
+}  // namespace
+
+LaneArray overdispersed_starts(Target const& target, std::vector<Mode> const& modes, std::vector<int> const& mode_of_chain,
+                               RunContext& context) {
+  constexpr double inflation = 3;
+  LaneArray starts(target.dimension(), static_cast<int>(mode_of_chain.size()));
+  auto const mode_of = [&](int chain) -> Mode const& {
+    return modes[static_cast<std::size_t>(mode_of_chain[static_cast<std::size_t>(chain)])];
+  };
+  auto const redraw = [&](int chain, int attempt) -> Eigen::VectorXd {
+    Mode const& mode = mode_of(chain);
+    Stream stream(
+        {context.seed, Purpose::start, static_cast<std::uint64_t>(chain), dispersal_step + static_cast<std::uint64_t>(attempt)});
+    Eigen::VectorXd z(target.dimension());
+    for (double& v : z) v = stream.normal();
+    Eigen::VectorXd const move = cholesky_or_diagonal(covariance_of(mode)) * z;
+    return theta_of(mode) + inflation * move;
+  };
+  for (int const chain : settle(target, starts, 100, context.ledger, redraw))
+    for (int p = 0; p < starts.rows(); ++p) starts(p, chain) = mode_of(chain).theta[static_cast<std::size_t>(p)];
+  return starts;
+}
+
+std::optional<LaneArray> prior_starts(Target const& target, int chains, RunContext& context) {
+  LaneArray starts(target.dimension(), chains);
+  auto const redraw = [&](int chain, int attempt) {
+    StreamKey const key{context.seed, Purpose::start, static_cast<std::uint64_t>(chain),
+                        prior_start_step + static_cast<std::uint64_t>(attempt)};
+    return column(draw_prior(target, key, 1), 0);
+  };
+  if (!settle(target, starts, 1000, context.ledger, redraw).empty()) return std::nullopt;
+  return starts;
+}
+
+Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
+  std::string const places = failed_places(ledger);
+  return {
+      Severity::error, "no_finite_start",
+      fmt::format("the likelihood is finite at none of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
+      "look at this part of the equations, narrow the priors towards values for which the model can be solved, or let the solver "
+      "choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff"};
+}
+
+}  // namespace sysid

@@ -1,0 +1,51 @@
+// Global search: prior draws in lanes, local searches from many of them, the modes they end in with their masses, and starts for
+// chains.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "likelihood/target.hpp"
+#include "search/aim.hpp"
+#include "search/objective.hpp"
+#include "search/run_context.hpp"
+
+namespace sysid {
+
+struct SearchResult {
+  // By falling share for the posterior, by falling density for the others; at least one unless failed or interrupted.
+  std::vector<Mode> modes;
+  Findings findings;
+  std::optional<Finding> failure;  // the likelihood is finite at no prior draw
+  bool interrupted = false;
+};
+
+/// 2048 prior draws; a few Levenberg-Marquardt rounds from the likeliest 96 and from 32 others, since far from the optimum a noise
+/// parameter that happens to match the misfit decides which draw is likeliest; to convergence from the best 16 distinct ones. When
+/// a single one of them reaches the best mode the search is repeated on further draws, up to four times in all: a mode met once may
+/// have a better neighbour that was not met. Where the target has a gradient, fewer: 64 draws, 8 of them climbed from, 4 to the
+/// end; where an equation holds an unknown function, 16 are climbed from, its coefficients at zero, 3 to the end, in one pass.
+/// Progress counts simulations against those of a typical search.
+SearchResult search(Target const& target, Aim aim, RunContext& context);
+
+/// Local searches from `starts` [P x N] alone, which need not have a finite density: a search that somebody has aimed. What lies
+/// elsewhere is not looked for, and a note says so.
+SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunContext& context);
+
+/// Spreads `chains` over modes by their shares: every mode above 1 % gets one while chains last, the rest go where the share is
+/// most under-represented. Returns the mode of each chain; modes in order.
+std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains);
+
+/// Starts [P x chains] around each chain's mode: normal with three times its Laplace sd, redrawn (up to 100 times) while the
+/// density is not finite, the mode itself after that.
+LaneArray overdispersed_starts(Target const& target, std::vector<Mode> const& modes, std::vector<int> const& mode_of_chain,
+                               RunContext& context);
+
+/// Starts [P x chains] from the prior, each redrawn until its density is finite; nothing after 1000 attempts.
+std::optional<LaneArray> prior_starts(Target const& target, int chains, RunContext& context);
+
+/// The failure of a run whose prior holds no point with a finite likelihood.
+Finding no_finite_start(Ledger const& ledger, std::uint64_t draws);
+
+}  // namespace sysid
