@@ -34,14 +34,6 @@ ast::Expression sum_of(std::span<ast::Expression const> terms, Span span) {
 
 }  // namespace
 
-std::string Shape::text() const {
-  if (rank == 0) return "a number";
-  if (rank == 1) return fmt::format("a vector of {}", rows);
-  return fmt::format("a {} by {} matrix", rows, columns);
-}
-Shape vector_of(int rows) { return {1, rows, 1}; }
-Shape matrix_of(int rows, int columns) { return {2, rows, columns}; }
-
 std::string element_name(std::string const& name, Shape const& shape, std::size_t element) {
   if (shape.rank == 0) return name;
   auto const columns = static_cast<std::size_t>(shape.columns);
