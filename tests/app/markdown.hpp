@@ -24,7 +24,7 @@ inline fs::path const root = SYSID_SOURCE_DIR;
 
 inline std::vector<fs::path> pages() {
   std::vector<fs::path> found = {root / "README.md", root / "models/README.md"};
-  for (char const* folder : {"docs", "docs/methods", "docs/stdlib"})
+  for (char const* folder : {"docs", "docs/methods", "docs/stdlib", "docs/decisions"})
     for (auto const& entry : fs::directory_iterator(root / folder))
       if (entry.path().extension() == ".md") found.push_back(entry.path());
   for (auto const& entry : fs::directory_iterator(root / "models"))
