@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Three decimals; more where they would read as certain.
-std::string probability_text(double p) {
+std::string model_probability_text(double p) {
   if (p == 0 || p == 1) return fmt::format("{}", p);
   if (p < 1e-6) return "< 1e-6";
   if (p < 0.0005) return fmt::format("{:.1g}", p);
@@ -38,10 +38,10 @@ ReportTable model_table(SelectionReport const& selection) {
   if (checked) table.header.push_back("by likelihood");
   for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
     SelectedModel const& model = selection.result.models[m];
-    table.rows.push_back({model.name, probability_text(model.prior), probability_text(model.probability),
-                          probability_text(model.share), model.died_in > 0 ? fmt::format("{}", model.died_in) : "-"});
+    table.rows.push_back({model.name, model_probability_text(model.prior), model_probability_text(model.probability),
+                          model_probability_text(model.share), model.died_in > 0 ? fmt::format("{}", model.died_in) : "-"});
     if (checked)
-      table.rows.back().push_back(selection.likelihoods[m] ? probability_text(selection.likelihoods[m]->probability) : "-");
+      table.rows.back().push_back(selection.likelihoods[m] ? model_probability_text(selection.likelihoods[m]->probability) : "-");
   }
   return table;
 }
@@ -55,7 +55,7 @@ ReportTable population_table(SelectionReport const& selection) {
     table.rows.push_back({fmt::format("{}", t + 1), std::isfinite(record.threshold) ? significant(record.threshold, 4) : "none",
                           fmt::format("{}", record.simulated), significant(record.acceptance(), 2), significant(record.ess, 3)});
     for (auto const& model : record.models)
-      table.rows.back().push_back(model.particles == 0 ? "-" : probability_text(model.probability));
+      table.rows.back().push_back(model.particles == 0 ? "-" : model_probability_text(model.probability));
   }
   return table;
 }
