@@ -7,9 +7,9 @@
 #include <cstring>
 #include <limits>
 
+#include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "core/text/words.hpp"
-#include "data/digest.hpp"
 #include "data/errors.hpp"
 
 namespace sysid {

@@ -128,10 +128,9 @@ std::vector<std::size_t> spikes(ScoredChannel const& of) {
   std::vector<double> sizes;
   for (std::size_t const place : of.places) sizes.push_back(errors[place] = error_at(of, place));
   if (sizes.empty()) return {};
-  double const middle = quantile(sizes, 0.5);
+  double const middle = median(sizes);
   if (!(middle > 0)) return {};
-  constexpr double sd_of_median = 1.4826;
-  for (double& error : errors) error /= sd_of_median * middle;
+  for (double& error : errors) error /= sd_of_mad * middle;
   return alone(of, outliers(errors));
 }
 
