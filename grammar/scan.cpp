@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 
+#include "core/text/utf8.hpp"
 #include "grammar/errors.hpp"
 #include "syntax/words.hpp"
 
@@ -50,8 +51,6 @@ constexpr std::ptrdiff_t longest_word = 200;
 
 constexpr std::array<std::string_view, 5> two_character_operators{"==", "!=", "<=", ">=", ".."};
 constexpr std::string_view one_character_operators = "+-*/^<>=~,;(){}[].'%";
-
-bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
 /// Length of the well-formed UTF-8 character that begins `text` (RFC 3629: no overlong forms, no surrogates), or 0.
 std::size_t character_length(std::string_view text) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid::grammar {
 
 namespace {
@@ -39,15 +41,15 @@ int width_of(Item const& item, int first, int last) {
   int total = 0;
   for (int i = first; i < last; ++i) {
     Piece const& piece = item.pieces[static_cast<std::size_t>(i)];
-    total += width(piece.text) + (i > first && piece.blank_before ? 1 : 0);
+    total += text_width(piece.text) + (i > first && piece.blank_before ? 1 : 0);
   }
   return total;
 }
 
 void align_names(std::vector<Item*> const& rows) {
   int widest = 0;
-  for (Item const* row : rows) widest = std::max(widest, width(row->pieces[0].text));
-  for (Item* row : rows) row->pieces[1].padding = widest - width(row->pieces[0].text);
+  for (Item const* row : rows) widest = std::max(widest, text_width(row->pieces[0].text));
+  for (Item* row : rows) row->pieces[1].padding = widest - text_width(row->pieces[0].text);
 }
 
 void align_units_and_signs(std::vector<Item*> const& rows) {

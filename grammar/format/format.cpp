@@ -1,5 +1,6 @@
 // The formatter's stages: pieces, columns, lines, comments behind lines; and the proof that nothing was lost.
 #include "syntax/format.hpp"
+#include "core/text/utf8.hpp"
 
 #include "grammar/format/columns.hpp"
 #include "grammar/format/line_breaks.hpp"
@@ -40,14 +41,14 @@ void place_comments(std::vector<TextLine>& lines) {
     for (; last < lines.size() && !lines[last].comment.empty() && lines[last].level == lines[first].level &&
            (last == first || !lines[last].empty_before);
          ++last) {
-      column = std::max(column, lines[last].under_previous ? 0 : width(lines[last].code) + before_comment);
-      longest = std::max(longest, width(lines[last].comment));
+      column = std::max(column, lines[last].under_previous ? 0 : text_width(lines[last].code) + before_comment);
+      longest = std::max(longest, text_width(lines[last].comment));
     }
     bool const one_column = column + longest <= longest_line;
     int own = 0;
     for (std::size_t i = first; i < last; ++i) {
-      if (!lines[i].under_previous) own = width(lines[i].code) + before_comment;
-      lines[i].code.append(static_cast<std::size_t>((one_column ? column : own) - width(lines[i].code)), ' ');
+      if (!lines[i].under_previous) own = text_width(lines[i].code) + before_comment;
+      lines[i].code.append(static_cast<std::size_t>((one_column ? column : own) - text_width(lines[i].code)), ' ');
       lines[i].code += lines[i].comment;
     }
     first = std::max(last, first + 1);

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid::grammar {
 
 namespace {
@@ -50,7 +52,7 @@ class Breaker {
       int length = indentation(begin);
       for (std::size_t end = begin + 1; end <= last; ++end) {
         Piece const& piece = pieces_[end - 1];
-        length += width(piece.text) + (end - 1 > begin ? (piece.blank_before ? 1 : 0) + piece.padding : 0);
+        length += text_width(piece.text) + (end - 1 > begin ? (piece.blank_before ? 1 : 0) + piece.padding : 0);
         if (end < last && !pieces_[end].break_penalty) continue;
         int const excess = length > longest_line ? length - longest_line : 0;
         double const behind = end < last ? cost[end] + new_line + *pieces_[end].break_penalty : 0;

@@ -118,11 +118,6 @@ class Collector {
 
 }  // namespace
 
-int width(std::string_view text) {
-  return static_cast<int>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 std::vector<Item> items_of(Source const& source, Layout const& layout) { return Collector(source, layout).run(); }
 
 }  // namespace sysid::grammar

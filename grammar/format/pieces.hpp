@@ -10,9 +10,6 @@
 
 namespace sysid::grammar {
 
-/// Number of characters of UTF-8: what a text takes on the screen.
-int width(std::string_view text);
-
 struct Comment {
   std::string text;
   bool own_line = false;

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "core/text/utf8.hpp"
+#include "core/text/words.hpp"
+
 namespace sysid::data_errors {
 namespace {
 
@@ -22,26 +25,15 @@ std::string place(Cell const& cell) { return fmt::format("{}, column `{}`", plac
 std::string shown(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result;
-  for (char const c : text.substr(0, longest)) result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  // Never half a UTF-8 character.
-  if (text.size() > longest) {
-    while (!result.empty() && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80) result.pop_back();
-    if (!result.empty() && static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
-    result += "...";
-  }
-  return result;
+  for (char const c : text.substr(0, character_begin(text, longest)))
+    result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return text.size() > longest ? result + "..." : result;
 }
 
-std::string count(int number, std::string const& noun) {
-  return number == 1 ? fmt::format("1 {}", noun) : fmt::format("{} {}s", number, noun);
-}
-
-std::string listed(std::vector<std::string> const& names) {
-  constexpr std::size_t most = 20;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += fmt::format("{}`{}`", i == 0 ? "" : ", ", shown(names[i]));
-  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
-  return text;
+std::string column_names(std::vector<std::string> const& names) {
+  std::vector<std::string> marked;
+  for (std::string const& name : names) marked.push_back(fmt::format("`{}`", shown(name)));
+  return first_listed(marked, 20);
 }
 
 }  // namespace
@@ -72,7 +64,7 @@ Diagnostic open_quote(std::string const& file, int line, Mention mention) {
 Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention) {
   return error(
       "E4005", mention,
-      fmt::format("{} has {}, but the header names {}", place(file, row, line), count(cells, "cell"), count(columns, "column")),
+      fmt::format("{} has {}, but the header names {}", place(file, row, line), counted(cells, "cell"), counted(columns, "column")),
       "a missing value is an empty cell between separators; a decimal comma needs another separator than the comma");
 }
 
@@ -81,7 +73,7 @@ Diagnostic comment_in_data(std::string const& file, int row, int line, Mention m
 }
 
 Diagnostic too_few_rows(std::string const& file, int rows, Mention mention) {
-  return error("E4007", mention, fmt::format("`{}` has {}", file, rows == 0 ? "no rows" : count(rows, "row")),
+  return error("E4007", mention, fmt::format("`{}` has {}", file, rows == 0 ? "no rows" : counted(rows, "row")),
                "a record needs at least 2 rows");
 }
 
@@ -92,7 +84,7 @@ Diagnostic missing_column(std::string const& file, std::string const& column, st
     help = "columns are separated by commas, semicolons or tabs, not by blanks";
   if (!help.empty()) help += help.back() == '?' ? " " : "; ";
   return error("E4008", mention, fmt::format("`{}` has no column `{}`", file, column),
-               help + fmt::format("its {} {}", known.size() == 1 ? "only column is" : "columns are", listed(known)));
+               help + fmt::format("its {} {}", known.size() == 1 ? "only column is" : "columns are", column_names(known)));
 }
 
 Diagnostic repeated_column(std::string const& file, std::string const& column, Mention mention) {
@@ -147,7 +139,8 @@ Diagnostic unequal_steps(int row, double step, double usual, Mention mention) {
 }
 
 Diagnostic rows_outside(std::string const& file, std::string const& what, int first, int last, int rows, Mention mention) {
-  return error("E4016", mention, fmt::format("{} wants rows {}..{}, but `{}` has {}", what, first, last, file, count(rows, "row")),
+  return error("E4016", mention,
+               fmt::format("{} wants rows {}..{}, but `{}` has {}", what, first, last, file, counted(rows, "row")),
                fmt::format("rows count from 1 below the header; the last is {}", rows));
 }
 

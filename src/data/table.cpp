@@ -7,18 +7,15 @@
 #include <cstring>
 #include <limits>
 
+#include "core/system/digest.hpp"
 #include "core/system/files.hpp"
-#include "data/digest.hpp"
+#include "core/text/words.hpp"
 #include "data/errors.hpp"
 
 namespace sysid {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  std::size_t const begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
+constexpr std::string_view blanks = " \t";  // within a cell a line end is text
 
 bool is_quoted(std::string_view trimmed_cell) {
   return trimmed_cell.size() >= 2 && trimmed_cell.front() == '"' && trimmed_cell.back() == '"';
@@ -26,14 +23,14 @@ bool is_quoted(std::string_view trimmed_cell) {
 
 /// The text between the quotes, `""` read as one quote; an unquoted cell as it stands.
 std::string unquoted(std::string_view cell) {
-  cell = trimmed(cell);
+  cell = trimmed(cell, blanks);
   if (!is_quoted(cell)) return std::string(cell);
   std::string text;
   for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
     text += cell[i];
     if (cell[i] == '"') ++i;
   }
-  return std::string(trimmed(text));
+  return std::string(trimmed(text, blanks));
 }
 
 /// Well-formed UTF-8 (Unicode 15, table 3-7) without NUL.
@@ -65,8 +62,8 @@ bool is_utf8(std::string_view text) {
 enum class Kind { number, missing, text, not_finite, out_of_range };
 
 Kind parse_number(std::string_view cell, double& value) {
-  cell = trimmed(cell);
-  if (is_quoted(cell)) cell = trimmed(cell.substr(1, cell.size() - 2));
+  cell = trimmed(cell, blanks);
+  if (is_quoted(cell)) cell = trimmed(cell.substr(1, cell.size() - 2), blanks);
   if (cell.empty() || cell == "NA") return Kind::missing;
   if (cell.front() == '+') {
     cell.remove_prefix(1);
@@ -174,8 +171,8 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
   Lines line(table.bytes_, table.bytes_.starts_with("\xef\xbb\xbf") ? 3 : 0);
   bool header_found = false;
   while (!header_found && line.next()) {
-    std::string_view const text = trimmed(line.text());
-    if (text.starts_with('#')) table.comments_.emplace_back(trimmed(text.substr(1)));
+    std::string_view const text = trimmed(line.text(), blanks);
+    if (text.starts_with('#')) table.comments_.emplace_back(trimmed(text.substr(1), blanks));
     header_found = !text.empty() && !text.starts_with('#');
   }
   if (!header_found) throw UserError(data_errors::no_header(table.name_, mention));
@@ -203,12 +200,12 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
   };
   while (line.next()) {
     std::string_view const text = line.text();
-    if (separator == '\t' ? text.find_first_not_of(' ') == std::string_view::npos : trimmed(text).empty()) {
+    if (separator == '\t' ? text.find_first_not_of(' ') == std::string_view::npos : trimmed(text, blanks).empty()) {
       ++empty_lines;
       continue;
     }
     for (; empty_lines > 0; --empty_lines) add_row(line.begin, line.begin, line.number - empty_lines);
-    if (trimmed(text).starts_with('#'))
+    if (trimmed(text, blanks).starts_with('#'))
       throw UserError(data_errors::comment_in_data(table.name_, table.rows_ + 1, line.number, mention));
     add_row(line.begin, line.end, line.number);
   }
@@ -237,7 +234,7 @@ std::vector<double> Table::numbers(std::string const& column, std::optional<Span
       continue;
     }
     data_errors::Cell const place{name_, row, line(row), column};
-    std::string_view const shown = trimmed(text);
+    std::string_view const shown = trimmed(text, blanks);
     throw UserError(kind == Kind::not_finite     ? data_errors::not_finite(place, shown, mention)
                     : kind == Kind::out_of_range ? data_errors::out_of_range(place, shown, mention)
                                                  : data_errors::not_a_number(place, shown, mention));

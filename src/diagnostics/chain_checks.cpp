@@ -8,6 +8,8 @@
 #include <functional>
 #include <string>
 
+#include "core/text/words.hpp"
+
 namespace sysid {
 namespace {
 
@@ -20,15 +22,13 @@ std::string worst(std::vector<Summary> const& summaries, std::function<double(Su
   for (Summary const& s : summaries)
     if (badness(s) > bar) bad.push_back(&s);
   std::stable_sort(bad.begin(), bad.end(), [&](Summary const* a, Summary const* b) { return badness(*a) > badness(*b); });
-  std::string text;
-  for (std::size_t i = 0; i < bad.size() && i < names_shown; ++i)
-    text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", bad[i]->name, show(*bad[i]));
-  if (bad.size() > names_shown) text += fmt::format(" and {} more", bad.size() - names_shown);
-  return text;
+  std::vector<std::string> named;
+  for (Summary const* s : bad) named.push_back(fmt::format("{} ({})", s->name, show(*s)));
+  return first_listed(named, names_shown);
 }
 
 std::string chain_list(std::vector<std::size_t> const& chains) {
-  std::string text = chains.size() == 1 ? "chain " : "chains ";
+  std::string text = plural("chain", chains.size()) + " ";
   for (std::size_t i = 0; i < chains.size() && i < 8; ++i) text += fmt::format("{}{}", i == 0 ? "" : ", ", chains[i] + 1);
   return chains.size() > 8 ? text + ", ..." : text;
 }

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/numeric/statistics.hpp"
 #include "result/finding.hpp"
+#include "result/summary.hpp"
 
 namespace sysid {
 

@@ -2,7 +2,6 @@
 #include "diagnostics/convergence.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -11,38 +10,13 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/fourier.hpp"
+#include "core/numeric/normal_quantile.hpp"
+#include "core/numeric/statistics.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-double mean_of(std::vector<double> const& x) {
-  double const n = static_cast<double>(x.size());
-  double const rough = std::accumulate(x.begin(), x.end(), 0.0) / n;
-  double rest = 0;
-  for (double const v : x) rest += v - rough;
-  return rough + rest / n;
-}
-
-/// Sample variance, divisor n - 1. What additions round off is summed beside (Neumaier 1974), so that the last digit is that of
-/// programs that sum in a wider type.
-double variance_of(std::vector<double> const& x) {
-  double const mean = mean_of(x);
-  double sum = 0, rest = 0;
-  for (double const v : x) {
-    double const square = (v - mean) * (v - mean), next = sum + square;
-    rest += sum > square ? sum - next + square : square - next + sum;
-    sum = next;
-  }
-  return (sum + rest) / (static_cast<double>(x.size()) - 1);
-}
-
-std::vector<double> pooled(ChainValues const& draws) {
-  std::vector<double> all;
-  for (auto const& chain : draws) all.insert(all.end(), chain.begin(), chain.end());
-  return all;
-}
 
 /// Whether diagnostics have no value: nothing there, something not finite, or all the same. `posterior` calls a range below 2.2e-16
 /// constant, which would blind it to quantities that are small in SI units; here only equal draws are constant.
@@ -71,39 +45,6 @@ ChainValues split(ChainValues const& draws) {
   return first;
 }
 
-/// Quantile of the standard normal, relative error about 1e-16.          Wichura 1988, algorithm AS 241, PPND16
-double normal_quantile(double p) {
-  auto const ratio = [](double r, std::array<double, 8> const& a, std::array<double, 8> const& b) {
-    double top = a[7], bottom = b[7];
-    for (std::size_t i = 7; i-- > 0;) {
-      top = top * r + a[i];
-      bottom = bottom * r + b[i];
-    }
-    return top / bottom;
-  };
-  double const q = p - 0.5;
-  if (std::fabs(q) <= 0.425) {
-    return q * ratio(0.180625 - q * q,
-                     {3.3871328727963666080, 133.14166789178437745, 1971.5909503065514427, 13731.693765509461125,
-                      45921.953931549871457, 67265.770927008700853, 33430.575583588128105, 2509.0809287301226727},
-                     {1.0, 42.313330701600911252, 687.18700749205790830, 5394.1960214247511077, 21213.794301586595867,
-                      39307.895800092710610, 28729.085735721942674, 5226.4952788528545610});
-  }
-  double const r = std::sqrt(-elementary::log(q < 0 ? p : 1 - p));
-  double const size =
-      r <= 5 ? ratio(r - 1.6,
-                     {1.42343711074968357734, 4.63033784615654529590, 5.76949722146069140550, 3.64784832476320460504,
-                      1.27045825245236838258, 2.41780725177450611770e-1, 2.27238449892691845833e-2, 7.74545014278341407640e-4},
-                     {1.0, 2.05319162663775882187, 1.67638483018380384940, 6.89767334985100004550e-1, 1.48103976427480074590e-1,
-                      1.51986665636164571966e-2, 5.47593808499534494600e-4, 1.05075007164441684324e-9})
-             : ratio(r - 5,
-                     {6.65790464350110377720, 5.46378491116411436990, 1.78482653991729133580, 2.96560571828504891230e-1,
-                      2.65321895265761230930e-2, 1.24266094738807843860e-3, 2.71155556874348757815e-5, 2.01033439929228813265e-7},
-                     {1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1, 1.48753612908506148525e-2,
-                      7.86869131145613259100e-4, 1.84631831751005468180e-5, 1.42151175831644588870e-7, 2.04426310338993978564e-15});
-  return q < 0 ? -size : size;
-}
-
 /// Normal scores of the ranks over all chains, ties sharing their average rank.          Vehtari et al. 2021, eq. 14
 ChainValues rank_normalised(ChainValues const& draws) {
   std::vector<double> const all = pooled(draws);
@@ -116,7 +57,7 @@ ChainValues rank_normalised(ChainValues const& draws) {
     std::size_t last = first;
     while (last + 1 < order.size() && all[order[last + 1]] == all[order[first]]) ++last;
     double const rank = 0.5 * static_cast<double>(first + last) + 1;
-    double const z = normal_quantile((rank - 0.375) / (count + 0.25));
+    double const z = normal_score((rank - 0.375) / (count + 0.25));
     for (std::size_t i = first; i <= last; ++i) score[order[i]] = z;
     first = last + 1;
   }
@@ -165,10 +106,10 @@ double basic_rhat(ChainValues const& chains) {
   double const n = static_cast<double>(chains.front().size());
   std::vector<double> means, variances;
   for (auto const& chain : chains) {
-    means.push_back(mean_of(chain));
-    variances.push_back(variance_of(chain));
+    means.push_back(corrected_mean(chain));
+    variances.push_back(corrected_variance(chain));
   }
-  return std::sqrt((n * variance_of(means) / mean_of(variances) + n - 1) / n);
+  return std::sqrt((n * corrected_variance(means) / corrected_mean(variances) + n - 1) / n);
 }
 
 /// Effective sample size of chains that are already split: Geyer's initial monotone sequence.          Vehtari et al. 2021,
@@ -178,10 +119,10 @@ double basic_ess(ChainValues const& chains, Fourier const& fourier) {
   std::size_t const length = chains.front().size();
   double const n = static_cast<double>(length);
   std::vector<double> means;
-  for (auto const& chain : chains) means.push_back(mean_of(chain));
+  for (auto const& chain : chains) means.push_back(corrected_mean(chain));
   std::vector<double> const covariance = mean_autocovariance(chains, means, fourier);
   double const within = covariance[0] * n / (n - 1);
-  double const total = within * (n - 1) / n + (chains.size() > 1 ? variance_of(means) : 0.0);
+  double const total = within * (n - 1) / n + (chains.size() > 1 ? corrected_variance(means) : 0.0);
   auto const correlation = [&](std::size_t lag) { return 1 - (within - covariance[lag]) / total; };
 
   std::vector<double> rho(length, 0.0);
@@ -257,21 +198,21 @@ double ess_tail(ChainValues const& draws) {
 
 double ess_mean(ChainValues const& draws) { return basic_ess(split(draws), fourier_for(draws)); }
 
-double mcse_mean(ChainValues const& draws) { return std::sqrt(variance_of(pooled(draws)) / ess_mean(draws)); }
+double mcse_mean(ChainValues const& draws) { return std::sqrt(corrected_variance(pooled(draws)) / ess_mean(draws)); }
 
 Summary summarise(std::string name, std::string unit, ChainValues const& draws) {
   Summary summary{std::move(name), std::move(unit), nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
   std::vector<double> all = pooled(draws);
   if (all.empty() || std::any_of(all.begin(), all.end(), [](double v) { return !std::isfinite(v); })) return summary;
-  summary.mean = mean_of(all);
-  summary.sd = std::sqrt(variance_of(all));
+  summary.mean = corrected_mean(all);
+  summary.sd = std::sqrt(corrected_variance(all));
   std::sort(all.begin(), all.end());
   summary.median = sorted_quantile(all, 0.5);
   summary.q5 = sorted_quantile(all, 0.05);
   summary.q95 = sorted_quantile(all, 0.95);
   std::vector<double> deviation = all;
   for (double& v : deviation) v = std::fabs(v - summary.median);
-  summary.mad = 1.4826 * quantile(std::move(deviation), 0.5);
+  summary.mad = sd_of_mad * sysid::median(std::move(deviation));
   if (has_no_diagnostics(draws)) return summary;
   ChainValues const scores = rank_normalised(split(draws));
   summary.rhat = rhat_about(draws, scores, summary.median);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/numeric/statistics.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
@@ -140,11 +141,6 @@ NullDirection named(NullDirection::Kind kind, Vector const& direction, Vector co
   return result;
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 }  // namespace
 
 NullSpace find_null_space(std::span<LocalSlopes const> draws) {
@@ -192,7 +188,7 @@ NullSpace find_null_space(std::span<LocalSlopes const> draws) {
   for (Eigen::Index p = 0; p < n; ++p) {
     std::vector<double> spreads;
     for (LocalNull const& each : all) spreads.push_back(each.at->spread(p) * each.at->scale(p));
-    unit(p) = median(spreads);
+    unit(p) = upper_median(spreads);
   }
   for (LocalNull const& each : all) {
     // A parameter at zero has no logarithm: its own move stays out of the relative chart.

@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/statistics.hpp"
+
 namespace sysid {
 
 std::vector<std::size_t> outliers(std::span<double const> residuals) {
   constexpr std::size_t least = 20;
-  constexpr double far = 6, sd_of_median = 1.4826;
+  constexpr double far = 6;
   std::vector<double> sizes;
   for (double const residual : residuals)
     if (!std::isnan(residual)) sizes.push_back(std::fabs(residual));
   if (sizes.size() < least) return {};
-  auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  double const limit = far * std::max(1.0, sd_of_median * *middle);
+  double const limit = far * std::max(1.0, sd_of_mad * upper_median(sizes));
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < residuals.size(); ++i)
     if (std::fabs(residuals[i]) > limit) places.push_back(i);

@@ -10,6 +10,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "diagnostics/contraction.hpp"
 #include "diagnostics/outliers.hpp"
 #include "diagnostics/residual_tests.hpp"
@@ -127,10 +128,9 @@ std::vector<std::size_t> spikes(ScoredChannel const& of) {
   std::vector<double> sizes;
   for (std::size_t const place : of.places) sizes.push_back(errors[place] = error_at(of, place));
   if (sizes.empty()) return {};
-  double const middle = quantile(sizes, 0.5);
+  double const middle = median(sizes);
   if (!(middle > 0)) return {};
-  constexpr double sd_of_median = 1.4826;
-  for (double& error : errors) error /= sd_of_median * middle;
+  for (double& error : errors) error /= sd_of_mad * middle;
   return alone(of, outliers(errors));
 }
 
@@ -175,12 +175,11 @@ void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
       named.push_back(
           fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(of.sized.values[place])));
   if (places.size() > most_named) named.push_back("...");
-  findings.push_back(
-      {Severity::warning, "samples_far_off",
-       fmt::format("{} {} of {} {} far from all others ({})", places.size(), places.size() == 1 ? "sample" : "samples", of.name(),
-                   places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
-       "look at these rows: leave out what is no measurement (an empty cell), or state noise with heavy "
-       "tails: `student_t(y, 4, scale = sigma)`"});
+  findings.push_back({Severity::warning, "samples_far_off",
+                      fmt::format("{} of {} {} far from all others ({})", counted(places.size(), "sample"), of.name(),
+                                  places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
+                      "look at these rows: leave out what is no measurement (an empty cell), or state noise with heavy "
+                      "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
 void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Findings& findings) {

@@ -26,21 +26,16 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
   out.left_out = static_cast<int>(trajectories.size() - usable.size());
   if (usable.empty()) return out;
   std::size_t const samples = usable[0]->size();
-  auto const count = static_cast<double>(usable.size());
   std::vector<double> values(usable.size());
   for (std::size_t i = 0; i < samples; ++i) {
     if (!predictable[i]) {
       for (auto* column : {&out.mean, &out.sd, &out.lower, &out.upper}) column->push_back(std::nan(""));
       continue;
     }
-    double sum = 0;
-    for (std::size_t d = 0; d < usable.size(); ++d) sum += values[d] = (*usable[d])[i];
-    double const mean = sum / count;
-    double squares = 0;
-    for (double const v : values) squares += (v - mean) * (v - mean);
+    for (std::size_t d = 0; d < usable.size(); ++d) values[d] = (*usable[d])[i];
+    out.mean.push_back(mean(values));
+    out.sd.push_back(usable.size() > 1 ? std::sqrt(sample_variance(values)) : 0);
     std::sort(values.begin(), values.end());
-    out.mean.push_back(mean);
-    out.sd.push_back(usable.size() > 1 ? std::sqrt(squares / (count - 1)) : 0);
     out.lower.push_back(predictive_quantile(values, 0.025));
     out.upper.push_back(predictive_quantile(values, 0.975));
   }

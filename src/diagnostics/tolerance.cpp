@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text/words.hpp"
 #include "search/laplace.hpp"
 #include "search/refit.hpp"
 
@@ -75,7 +76,7 @@ Finding shaped(SolverSettings const& solver, bool chosen, std::string const& wha
 }  // namespace
 
 std::string accuracy(SolverSettings const& solver) {
-  return solver.fixed_step() ? fmt::format("{} integrator step{} per sample", solver.substeps, solver.substeps == 1 ? "" : "s")
+  return solver.fixed_step() ? counted(solver.substeps, "integrator step") + " per sample"
                              : fmt::format("relative tolerances of {}", solver.relative);
 }
 

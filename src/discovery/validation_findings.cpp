@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "result/discovery.hpp"
 
 namespace sysid {
@@ -21,8 +22,6 @@ constexpr double lost_percent = 70;         // of the sd: half of the variance
 constexpr double foretold_percent = 50;     // of the sd, one dominant period ahead
 constexpr double telling_percent = 10;      // noise that has a part in that
 constexpr double small_residual = 0.7;      // of the noise that the regression took
-
-std::string quoted(std::vector<std::string> const& names) { return fmt::format("`{}`", fmt::join(names, "`, `")); }
 
 bool explains_motion(JudgedReport const& judged) {
   JudgedStructure const& best = judged.structures.front();

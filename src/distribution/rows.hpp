@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/numeric/normal_quantile.hpp"
 #include "distribution/distribution.hpp"
 #include "function/primitive.hpp"
 
@@ -43,10 +44,6 @@ inline bool positive(double x) { return x > 0 && x < std::numeric_limits<double>
 /// P(Z <= z) and P(Z > z) of the standard normal, each accurate where it is small: erfc(-+z / sqrt 2) / 2.                DLMF 7.18
 inline Term standard_normal_lower(Term z) { return 0.5 * erfc(-(z / std::numbers::sqrt2)); }
 inline Term standard_normal_upper(Term z) { return 0.5 * erfc(z / std::numbers::sqrt2); }
-/// The z with P(Z <= z) = probability, 0 < probability < 1.
-double standard_normal_quantile(double probability);
-/// The z with P(0 <= Z <= z) = q, |q| < 1/2, exact near 0.
-double standard_normal_quantile_from_middle(double q);
 inline double standard_normal_quantile(double probability, Tail tail) {
   double const z = standard_normal_quantile(probability);
   return tail == Tail::lower ? z : -z;

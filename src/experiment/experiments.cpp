@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
-#include "data/digest.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/past.hpp"
 

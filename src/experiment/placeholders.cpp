@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/text/words.hpp"
+
 namespace sysid {
 namespace {
 
@@ -59,15 +61,12 @@ std::vector<Suspect> suspects(std::vector<double> const& values) {
 
 Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, Suspect const& suspect, bool input) {
   constexpr std::size_t most_named = 5;
-  std::vector<int> named;
-  for (std::size_t const row : suspect.rows)
-    if (named.size() < most_named) named.push_back(data.experiment.first_row + static_cast<int>(row));
-  std::size_t const more = suspect.rows.size() - named.size();
+  std::vector<std::string> rows;
+  for (std::size_t const row : suspect.rows) rows.push_back(std::to_string(data.experiment.first_row + static_cast<int>(row)));
   return {Severity::warning, "looks_missing",
-          fmt::format("column `{}` of {} is {:.12g}{} in {} {}{}, far from all its other numbers: a missing value?", column.column,
-                      data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit,
-                      suspect.rows.size() == 1 ? "row" : "rows", fmt::join(named, ", "),
-                      more > 0 ? fmt::format(" and {} more", more) : ""),
+          fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
+                      data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit, plural("row", rows.size()),
+                      first_listed(rows, most_named)),
           input
               ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a blow that left the "
                 "range of the recorder is larger than that"

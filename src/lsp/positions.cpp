@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid::lsp {
 namespace {
 
-bool continues(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
-int units(char byte) { return continues(byte) ? 0 : static_cast<unsigned char>(byte) >= 0xF0U ? 2 : 1; }
+int units(char byte) { return continues_character(byte) ? 0 : static_cast<unsigned char>(byte) >= 0xF0U ? 2 : 1; }
 
 }  // namespace
 
@@ -19,7 +20,7 @@ Lines::Lines(std::string_view text) : text_(text), begins_{0} {
 
 Position Lines::position(std::uint32_t offset) const {
   offset = std::min(offset, static_cast<std::uint32_t>(text_.size()));
-  while (offset > 0 && offset < text_.size() && continues(text_[offset])) --offset;
+  offset = static_cast<std::uint32_t>(character_begin(text_, offset));
   auto const behind = std::upper_bound(begins_.begin(), begins_.end(), offset);
   Position position{static_cast<int>(behind - begins_.begin()) - 1, 0};
   for (std::uint32_t i = *(behind - 1); i < offset; ++i) position.character += units(text_[i]);
@@ -35,7 +36,7 @@ std::uint32_t Lines::offset(Position position) const {
     if (units(text_[at]) > left) break;
     left -= units(text_[at]);
     ++at;
-    while (at < text_.size() && continues(text_[at])) ++at;
+    while (at < text_.size() && continues_character(text_[at])) ++at;
     if (left <= 0) break;
   }
   return at;

@@ -5,17 +5,15 @@
 #include <cctype>
 #include <charconv>
 
+#include "core/text/words.hpp"
+
 namespace sysid::lsp {
 namespace {
 
+constexpr std::string_view blanks = " \t\r\n\v\f";
+
 bool same_name(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) { return std::tolower(x) == y; });
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) text.remove_prefix(1);
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
-  return text;
 }
 
 }  // namespace
@@ -25,7 +23,7 @@ std::optional<Incoming> read_message(std::istream& in) {
   std::string fault;
   bool any = false;
   for (std::string line; std::getline(in, line);) {
-    std::string_view const text = trimmed(line);
+    std::string_view const text = trimmed(line, blanks);
     if (text.empty()) {
       if (!any) continue;
       if (!length) return Incoming{{}, fault.empty() ? "a header without Content-Length" : fault};
@@ -36,8 +34,8 @@ std::optional<Incoming> read_message(std::istream& in) {
     }
     any = true;
     std::size_t const colon = text.find(':');
-    if (colon == std::string_view::npos || !same_name(trimmed(text.substr(0, colon)), "content-length")) continue;
-    std::string_view const digits = trimmed(text.substr(colon + 1));
+    if (colon == std::string_view::npos || !same_name(trimmed(text.substr(0, colon), blanks), "content-length")) continue;
+    std::string_view const digits = trimmed(text.substr(colon + 1), blanks);
     std::size_t value = 0;
     auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || end != digits.data() + digits.size() || value > most_message_bytes)

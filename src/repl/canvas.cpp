@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/text/number.hpp"
+#include "core/text/utf8.hpp"
 
 namespace sysid::repl {
 namespace {

@@ -1,6 +1,7 @@
 // The commands of the prompt, one row each, and how one is told from a statement of the language.
 #include <algorithm>
 
+#include "core/text/words.hpp"
 #include "repl/words.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"
@@ -31,14 +32,14 @@ std::span<CommandRow const> commands() {
 }
 
 CommandRow const* command_of(std::string_view entry, std::string& arguments) {
-  std::string const text = stripped(entry);
+  std::string const text(trimmed(entry));
   if (text.empty()) return nullptr;
   auto const row = [](std::string_view name) {
     auto const all = commands();
     return &*std::find_if(all.begin(), all.end(), [&](CommandRow const& each) { return each.name == name; });
   };
   if (text.front() == '?') {
-    arguments = stripped(std::string_view(text).substr(1));
+    arguments = trimmed(std::string_view(text).substr(1));
     return row("help");
   }
   std::size_t end = 0;
@@ -46,7 +47,7 @@ CommandRow const* command_of(std::string_view entry, std::string& arguments) {
   std::string const word = text == "exit" ? "quit" : text.substr(0, end);
   auto const all = commands();
   if (std::none_of(all.begin(), all.end(), [&](CommandRow const& each) { return each.name == word; })) return nullptr;
-  arguments = stripped(std::string_view(text).substr(end));
+  arguments = trimmed(std::string_view(text).substr(end));
   if (arguments.empty()) return row(word);
   // What an operator follows is a name: `load = fit ...`, `load*y + x`. A path may begin with / . or ~.
   bool const apart = text[end] == ' ' || text[end] == '\t';

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "assist/completion.hpp"
+#include "core/text/utf8.hpp"
 #include "repl/help.hpp"
 #include "repl/statistics.hpp"
 #include "syntax/words.hpp"
@@ -169,9 +170,7 @@ std::string common_beginning(std::vector<std::string> const& words) {
     common.resize(i);
   }
   // No character is cut in two.
-  while (!common.empty() && common.size() < words.front().size() &&
-         (static_cast<unsigned char>(words.front()[common.size()]) & 0xC0U) == 0x80U)
-    common.pop_back();
+  common.resize(character_begin(words.front(), common.size()));
   return common;
 }
 

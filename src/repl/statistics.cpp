@@ -15,12 +15,8 @@ namespace {
 using Values = std::vector<double>;
 using Value = std::optional<double>;
 
-double mean_of(Values const& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 double sum_of_products(Values const& a, Values const& b) {
-  double const mean_a = mean_of(a), mean_b = mean_of(b);
+  double const mean_a = sysid::mean(a), mean_b = sysid::mean(b);
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - mean_a) * (b[i] - mean_b);
   return sum;
@@ -35,7 +31,7 @@ bool scatters(Asked const& asked, std::size_t argument = 0) {
   return false;
 }
 
-Value mean(Asked const& asked) { return mean_of(asked.values); }
+Value mean(Asked const& asked) { return sysid::mean(asked.values); }
 
 Value sd(Asked const& asked) {
   if (asked.of.sd) return asked.of.sd;
@@ -44,7 +40,7 @@ Value sd(Asked const& asked) {
   return std::sqrt(sum_of_products(asked.values, asked.values) / others);
 }
 
-Value median(Asked const& asked) { return sysid::quantile(asked.values, 0.5); }
+Value median(Asked const& asked) { return sysid::median(asked.values); }
 
 Value quantile(Asked const& asked) {
   if (!scatters(asked)) return {};
@@ -81,7 +77,7 @@ Value corr(Asked const& asked) {
 Value probability(Asked const& asked) {
   if (!scatters(asked)) return {};
   if (std::all_of(asked.values.begin(), asked.values.end(), [](double each) { return each == 0 || each == 1; }))
-    return mean_of(asked.values);
+    return sysid::mean(asked.values);
   asked.refuse(asked.call.arguments[0].span, "a probability is that of a comparison", "for example `probability(k3 > 0)`");
   return {};
 }

@@ -7,6 +7,7 @@
 
 #include "app/preflight/check_file.hpp"
 #include "app/run/compare.hpp"
+#include "core/text/words.hpp"
 #include "repl/words.hpp"
 #include "repl/workbench.hpp"
 #include "report/page/check_page.hpp"
@@ -91,7 +92,7 @@ bool Workbench::refit(Arguments arguments) {
   for (std::size_t i = 0; i < task.data.size(); ++i)
     statement += fmt::format("{}{}{}", i == 0 ? " to " : ", ", now(ItemKind::data, task.data[i].data.text),
                              task.data[i].part ? "." + task.data[i].part->text : "");
-  std::string options = stripped(with);
+  std::string options(trimmed(with));
   // What the new options state, by the rules of the language; a mistake in them is told when the fit is entered.
   std::set<std::string> stated;
   bool backend = false;

@@ -256,7 +256,7 @@ void Work::move_to(std::filesystem::path const& to) {
       auto const* file = std::get_if<ast::DataFile>(&statement);
       if (file == nullptr || fs::path(file->path.value).is_absolute()) continue;
       std::string const seen = (before / file->path.value).lexically_normal().lexically_relative(after.lexically_normal()).string();
-      item.text.replace(file->path.span.begin, file->path.span.end - file->path.span.begin, sysid::quoted(seen));
+      item.text.replace(file->path.span.begin, file->path.span.end - file->path.span.begin, string_literal(seen));
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "app/session/preconditions.hpp"
+#include "core/text/words.hpp"
 #include "core/text/wrapped.hpp"
 #include "data/table.hpp"
 #include "experiment/experiments.hpp"
@@ -130,7 +131,7 @@ bool Workbench::complete(std::string const& entry) const {
 }
 
 bool Workbench::enter(std::string const& entry) {
-  std::string const text = stripped(entry);
+  std::string const text(trimmed(entry));
   std::string arguments;
   if (CommandRow const* row = command_of(text, arguments)) return command(*row, arguments);
   return guarded(Source("prompt", entry), [&] { return enter_parts(entry); });
@@ -140,7 +141,7 @@ bool Workbench::enter_parts(std::string const& entry) {
   Diagnostics diagnostics;
   auto const parts = parts_of(entry, diagnostics);
   if (!diagnostics.all().empty()) {
-    suggest_command(diagnostics, stripped(entry));
+    suggest_command(diagnostics, std::string(trimmed(entry)));
     show(diagnostics, entry);
     return false;
   }

@@ -24,7 +24,7 @@ class Printer {
 
  private:
   std::string operator()(ast::Number const& number) const { return number_text(number.value) + bracketed(number.unit); }
-  std::string operator()(ast::Text const& text) const { return quoted(text.value); }
+  std::string operator()(ast::Text const& text) const { return string_literal(text.value); }
   std::string operator()(ast::Reference const& reference) const { return text_of(reference); }
   std::string operator()(ast::Box<ast::Unary> const& unary) const {
     if (unary->symbol == "not") return "not " + Printer()(*unary->operand, Binding::negation);
@@ -86,7 +86,7 @@ std::string number_text(double value) {
   return text.substr(0, e + 1) + sign + text.substr(digits);
 }
 
-std::string quoted(std::string_view text) {
+std::string string_literal(std::string_view text) {
   std::string out = "\"";
   for (char const c : text) {
     if (c == '"' || c == '\\') out += '\\';

@@ -22,7 +22,7 @@ std::string joined(Items const& items, std::string_view separator, Print print) 
 /// The shortest digits that read back as the same number; 1e-4 rather than 1e-04.
 std::string number_text(double value);
 /// In quotes, escapes written.
-std::string quoted(std::string_view text);
+std::string string_literal(std::string_view text);
 /// " [m]"; nothing for none.
 std::string bracketed(std::optional<ast::UnitExpression> const& unit);
 

@@ -44,7 +44,7 @@ bool is_plain_identifier(std::string_view text) {
 }
 
 std::string text_of(ast::Column const& column) {
-  return (is_plain_identifier(column.name) ? column.name : quoted(column.name)) + bracketed(column.unit);
+  return (is_plain_identifier(column.name) ? column.name : string_literal(column.name)) + bracketed(column.unit);
 }
 
 std::string text_of(ast::FunctionDefinition const& function) {
@@ -81,7 +81,7 @@ struct ModelStatementText {
 };
 
 struct DataStatementText {
-  std::string operator()(ast::DataFile const& s) const { return "file " + quoted(s.path.value); }
+  std::string operator()(ast::DataFile const& s) const { return "file " + string_literal(s.path.value); }
   std::string operator()(ast::DataTime const& s) const { return "time " + text_of(s.column); }
   std::string operator()(ast::DataRate const& s) const { return (s.step ? "step " : "rate ") + unparse(s.value); }
   std::string operator()(ast::DataInput const& s) const {
@@ -135,7 +135,7 @@ std::string block(std::string const& head, Statements const& statements, Text te
 struct ItemText {
   std::string operator()(ast::Use const& use) const { return "use " + use.module.text; }
   std::string operator()(ast::Model const& model) const {
-    std::string const title = model.title ? " " + quoted(model.title->value) : "";
+    std::string const title = model.title ? " " + string_literal(model.title->value) : "";
     std::string const arguments = model.arguments.empty() ? "" : fmt::format("({})", comma_list(model.arguments));
     return block("model " + model.name.text + arguments + title, model.statements, ModelStatementText{});
   }
@@ -143,11 +143,11 @@ struct ItemText {
     return block("data " + data.name.text, data.statements, DataStatementText{});
   }
   std::string operator()(ast::Candidates const& set) const {
-    std::string const title = set.title ? " " + quoted(set.title->value) : "";
+    std::string const title = set.title ? " " + string_literal(set.title->value) : "";
     return block("candidates " + set.name.text + title, set.statements, CandidateStatementText{});
   }
   std::string operator()(ast::Dictionary const& dictionary) const {
-    std::string const title = dictionary.title ? " " + quoted(dictionary.title->value) : "";
+    std::string const title = dictionary.title ? " " + string_literal(dictionary.title->value) : "";
     return block("dictionary " + dictionary.name.text + title, dictionary.statements, DictionaryStatementText{});
   }
   std::string operator()(ast::FunctionDefinition const& function) const { return text_of(function); }

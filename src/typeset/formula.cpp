@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/text/utf8.hpp"
 #include "syntax/binding.hpp"
 #include "syntax/expression_text.hpp"
 
@@ -186,9 +187,9 @@ std::string Formula::operator()(ast::Reference const& reference) const {
   std::vector<std::string> indices;
   for (std::string const& index : printed.indices) {
     bool const digits = index.find_first_not_of("0123456789") == std::string::npos;
-    indices.push_back(digits                                       ? to_.digits(index)
-                      : letters(index) == 1 || greek_letter(index) ? to_.letter(index)
-                                                                   : to_.word(index));
+    indices.push_back(digits                                          ? to_.digits(index)
+                      : text_width(index) == 1 || greek_letter(index) ? to_.letter(index)
+                                                                      : to_.word(index));
   }
   for (ast::Expression const& index : reference.index) indices.push_back((*this)(index));
   if (!indices.empty()) out = to_.lowered(out, list(indices));
@@ -221,7 +222,7 @@ std::string Formula::call(ast::Call const& call) const {
     return to_.cases(branches);
   }
   std::string const head =
-      letters(function) == 1 || greek_letter(function) != nullptr ? name(function) : to_.word(printed_function(function));
+      text_width(function) == 1 || greek_letter(function) != nullptr ? name(function) : to_.word(printed_function(function));
   return to_.row({head, to_.fenced(Fence::parentheses, arguments(call.arguments))});
 }
 

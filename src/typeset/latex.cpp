@@ -1,6 +1,7 @@
 // LaTeX with amsmath.
 #include <fmt/format.h>
 
+#include "core/text/utf8.hpp"
 #include "typeset/notation.hpp"
 #include "typeset/symbol.hpp"
 
@@ -31,7 +32,7 @@ class Latex final : public Notation {
  public:
   std::string letter(std::string_view text) const override {
     if (GreekLetter const* greek = greek_letter(text)) return std::string(greek->command);
-    return letters(text) == 1 ? escaped(text) : fmt::format("\\mathit{{{}}}", escaped(text));
+    return text_width(text) == 1 ? escaped(text) : fmt::format("\\mathit{{{}}}", escaped(text));
   }
   std::string word(std::string_view text) const override {
     for (std::string_view const command : commands)

@@ -1,6 +1,7 @@
 // MathML Core, and well-formed as XML: characters in place of named entities.
 #include <fmt/format.h>
 
+#include "core/text/utf8.hpp"
 #include "core/text/xml.hpp"
 #include "typeset/notation.hpp"
 #include "typeset/symbol.hpp"
@@ -56,7 +57,7 @@ class MathMl final : public Notation {
     return fmt::format("<mi>{}</mi>", greek != nullptr ? std::string(greek->letter) : escape(text));
   }
   std::string word(std::string_view text) const override {
-    return fmt::format("<mi{}>{}</mi>", letters(text) == 1 ? " mathvariant=\"normal\"" : "", escape(text));
+    return fmt::format("<mi{}>{}</mi>", text_width(text) == 1 ? " mathvariant=\"normal\"" : "", escape(text));
   }
   std::string calligraphic(std::string_view text) const override {
     std::string out;

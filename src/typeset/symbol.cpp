@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid {
 
 namespace {
@@ -27,7 +29,7 @@ Symbol without_underscore(std::string_view name) {
   std::size_t end = name.size();
   while (end > 0 && is_digit(name[end - 1])) --end;
   std::string_view const word = name.substr(0, end);
-  bool const one_letter = letters(word) == 1 || greek_letter(word) != nullptr;
+  bool const one_letter = text_width(word) == 1 || greek_letter(word) != nullptr;
   if (end == name.size() || !one_letter) return {std::string(name), {}};
   return {std::string(word), {std::string(name.substr(end))}};
 }
@@ -38,11 +40,6 @@ GreekLetter const* greek_letter(std::string_view text) {
   auto const* const row =
       std::find_if(greek.begin(), greek.end(), [&](GreekLetter const& each) { return each.name == text || each.letter == text; });
   return row == greek.end() ? nullptr : &*row;
-}
-
-std::size_t letters(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
 Symbol symbol(std::string_view name) {

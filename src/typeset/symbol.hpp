@@ -39,7 +39,4 @@ struct GreekLetter {
 /// By its name or by the letter; nothing for other text.
 GreekLetter const* greek_letter(std::string_view text);
 
-/// Number of characters of UTF-8.
-std::size_t letters(std::string_view text);
-
 }  // namespace sysid

@@ -32,7 +32,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"model", {"core", "expression", "gaussian_process", "distribution"}},
     {"syntax", {"core"}},
     {"grammar", {"core", "syntax"}},
-    {"grammar/format", {"syntax", "grammar"}},
+    {"grammar/format", {"core", "syntax", "grammar"}},
     {"regression/column", {"core", "linear_algebra", "data", "expression"}},
     {"regression/weak", {"core", "linear_algebra", "data", "regression/column"}},
     {"regression/choice", {"core", "linear_algebra"}},

@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include "answer.hpp"
 #include "core/system/interrupt.hpp"
 
@@ -139,6 +141,12 @@ TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   Answer const damaged = run("k", output.path(), {}, options);
   CHECK(damaged.exit == ExitCode::user_error);
   CHECK(damaged.messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") != std::string::npos);
+  nlohmann::json older = nlohmann::json::from_cbor(checkpoint);
+  older.erase("version");
+  std::vector<std::uint8_t> const bytes = nlohmann::json::to_cbor(older);
+  write(output.path() / "posterior" / "checkpoint.cbor", std::string(bytes.begin(), bytes.end()));
+  CHECK(run("k", output.path(), {}, options).messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") !=
+        std::string::npos);
 }
 
 TEST_CASE("an output folder that cannot be made or written is an error of input and output, before any work") {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/fit_target.hpp"
-#include "data/digest.hpp"
+#include "core/system/digest.hpp"
 #include "exchange/exported.hpp"
 #include "exchange/stan_names.hpp"
 #include "exchange/stan_program.hpp"

@@ -243,16 +243,16 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
   // In the search, at the first iteration, in burn-in, at its last and first after, in sampling, before the last batch.
   for (int const limit : {3, searching, searching + 77, searching + 199, searching + 200, searching + 231, questions - 1}) {
     CAPTURE(limit);
-    std::string saved;
+    std::vector<std::uint8_t> saved;
     int asked = 0;
     Bench first(9);
     first.context.interrupted = [&] { return ++asked > limit; };
-    first.context.checkpoint = [&](nlohmann::json const& state) { saved = state.dump(); };
+    first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
     FitResult const part = mh::run(known.target, settings, first.context);
     REQUIRE(part.interrupted);
     CHECK(part.draws.total() < unbroken.draws.total());
     Bench second(9);
-    second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::parse(saved));
+    second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
     FitResult const resumed = mh::run(known.target, settings, second.context);
     CHECK_FALSE(resumed.interrupted);
     CHECK(same_draws(unbroken, resumed));

@@ -5,6 +5,7 @@
 
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
+#include "core/text/words.hpp"
 #include "experiment/experiments.hpp"
 #include "syntax/parse.hpp"
 
@@ -87,9 +88,8 @@ TaskPage check_task(Session& session, Task const& task) {
       look_ahead(session, *fit, *experiments, page.outlooks.emplace_back());
   } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
     CandidateSet const& set = file.candidates[static_cast<std::size_t>(selection->candidates)];
-    page.what =
-        fmt::format("select {} ({} {}) to {} with {}", set.name, set.models.size(), set.models.size() == 1 ? "model" : "models",
-                    data_names(file, selection->fits.front().experiments), selection->backend);
+    page.what = fmt::format("select {} ({}) to {} with {}", set.name, counted(set.models.size(), "model"),
+                            data_names(file, selection->fits.front().experiments), selection->backend);
     auto const experiments = cover(session, data.front(), page);
     check_bands(page);
     if (experiments) look_ahead_at_candidates(session, task, *selection, page);

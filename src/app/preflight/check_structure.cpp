@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/preflight/check_file.hpp"
+#include "core/text/words.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
@@ -66,8 +67,7 @@ void add_pasts(Model const& model, ModelPage& page) {
   for (Past const& past : model.pasts) {
     if (past.channel >= 0) continue;
     std::size_t const lags = past.registers.size();
-    page.states.push_back(
-        {past.name, past.unit_text(), lags == 0 ? std::string() : fmt::format("{} past sample{}", lags, lags == 1 ? "" : "s")});
+    page.states.push_back({past.name, past.unit_text(), lags == 0 ? std::string() : counted(lags, "past sample")});
     page.unknowns.push_back(past.name);
   }
 }

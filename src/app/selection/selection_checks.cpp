@@ -10,6 +10,7 @@
 
 #include "app/selection/likelihood_check.hpp"
 #include "app/session/fit_target.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -127,8 +128,7 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
   SelectionTarget::Batch const batch{model, selected.theta.view().columns(0, count), distance, ending};
   finer.distances({&batch, 1}, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < distance.size(); ++i) shift.push_back(std::abs(distance[i] - selected.distance[i]));
-  std::nth_element(shift.begin(), shift.begin() + count / 2, shift.end());
-  double const median = shift[static_cast<std::size_t>(count / 2)];
+  double const median = upper_median(std::move(shift));
   if (median <= tolerable_shift * result.threshold) return {};
   std::string const what =
       !std::isfinite(median) ? std::string("half of the particles or more do not stay finite: what they say is the integrator's")

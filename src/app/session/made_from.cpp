@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/system/digest.hpp"
 #include "core/system/files.hpp"
-#include "data/digest.hpp"
 
 namespace sysid {
 namespace {

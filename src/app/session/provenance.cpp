@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/system/digest.hpp"
 #include "core/text/number.hpp"
-#include "data/digest.hpp"
+#include "core/text/words.hpp"
 #include "experiment/placeholders.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/past.hpp"
@@ -81,8 +82,8 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
       info.notes.push_back(fmt::format("{} = {}{}", parameter.name, shortest(parameter.from_si(*data.use.constants[p])), unit));
     }
   if (int const history = data_lag(model); history > 0)
-    info.notes.push_back(fmt::format("the first {} row{} the model looks back to {} not scored", history, history == 1 ? "" : "s",
-                                     history == 1 ? "is" : "are"));
+    info.notes.push_back(
+        fmt::format("the first {} the model looks back to {} not scored", counted(history, "row"), history == 1 ? "is" : "are"));
   for (std::size_t c = 0; c < data.experiment.has_past.size(); ++c) {
     std::vector<std::uint8_t> const& has_past = data.experiment.has_past[c];
     auto const without = std::count(has_past.begin(), has_past.end(), 0);

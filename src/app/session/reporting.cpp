@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/made_from.hpp"
+#include "core/system/digest.hpp"
 #include "core/system/files.hpp"
-#include "data/digest.hpp"
 #include "experiment/experiments.hpp"
 #include "experiment/prior_density.hpp"
 #include "report/file/result_folder.hpp"

@@ -14,6 +14,9 @@ namespace {
 
 using json = nlohmann::json;
 
+// Of the file itself. A file of an older format has none and is refused as damaged: nothing of it can be taken up.
+constexpr int file_version = 2;
+
 std::optional<json> read(std::filesystem::path const& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   std::string const bytes = read_file(path);
@@ -52,7 +55,8 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   if (!session_.options.resume) return nullptr;
   auto const stored = read(path_);
   if (!stored) return nullptr;
-  if (!stored->is_object() || !stored->contains("who") || !stored->contains("content"))
+  if (!stored->is_object() || stored->value("version", json()) != file_version || !stored->contains("who") ||
+      !stored->contains("content"))
     throw UserError(
         {Severity::error, "E6207", fmt::format("`{}` is damaged", path_.string()), std::nullopt, {}, "start again with --force"});
   if (stored->at("who") != who())
@@ -66,7 +70,7 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
 }
 
 void TaskCheckpoint::save(json const& content) const {
-  std::vector<std::uint8_t> const bytes = json::to_cbor(json{{"who", who()}, {"content", content}});
+  std::vector<std::uint8_t> const bytes = json::to_cbor(json{{"version", file_version}, {"who", who()}, {"content", content}});
   write_file(path_, std::string_view(reinterpret_cast<char const*>(bytes.data()), bytes.size()));
 }
 

@@ -12,6 +12,7 @@
 #include "app/session/session.hpp"
 #include "app/task/drawn_functions.hpp"
 #include "app/task/signals.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/drift.hpp"
@@ -22,14 +23,6 @@
 
 namespace sysid {
 namespace {
-
-double population_sd(std::vector<double> const& values) {
-  double mean = 0, square = 0;
-  for (double const value : values) mean += value;
-  mean /= static_cast<double>(values.size());
-  for (double const value : values) square += (value - mean) * (value - mean);
-  return std::sqrt(square / static_cast<double>(values.size()));
-}
 
 // Made data carry the error of the integrator: said when it is more than a tenth of the noise (or a thousandth of the response).
 void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
@@ -46,7 +39,7 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
     if (finer.quantities()[q].channel < 0) continue;
     std::vector<double> difference = result.values[q][0];
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= fine.values[q][0][i];
-    double const share = population_sd(difference) / population_sd(fine.values[q][0]);
+    double const share = std::sqrt(population_variance(difference)) / std::sqrt(population_variance(fine.values[q][0]));
     if (share > tolerable)
       session.notices << fmt::format("{}: warning: with {} {} changes by {:.2g} % of its size; add `{}` or finer\n", task.name,
                                      what.solver.finer_words(), finer.quantities()[q].name, 100 * share,
@@ -287,7 +280,7 @@ ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& wh
     if (quantity.channel < 0) continue;
     std::vector<double> noisy = result.noisy[static_cast<std::size_t>(quantity.channel)][0];
     if (what.noise_fraction >= 0) {
-      double const sd = what.noise_fraction * population_sd(clean);
+      double const sd = what.noise_fraction * std::sqrt(population_variance(clean));
       Stream stream(noise_key.at(series, static_cast<std::uint64_t>(quantity.channel)));
       for (std::size_t i = 0; i < clean.size(); ++i) noisy[i] = clean[i] + sd * stream.normal();
       comments += fmt::format("# noise sd of {}: {}{}\n", quantity.name, shortest(sd), unit_suffix(quantity.unit));

@@ -18,15 +18,6 @@ Diagnostic conflict(std::string code, Span span, std::string label, Span other, 
   return result;
 }
 
-std::string quoted(Names const& names, std::string const& last) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i != 0) text += i + 1 == names.size() ? fmt::format(" {} ", last) : ", ";
-    text += fmt::format("`{}`", names[i]);
-  }
-  return text;
-}
-
 std::string guess_or(std::string const& text, Names const& known, std::string fallback) {
   std::string guess = did_you_mean(text, known);
   return guess.empty() ? std::move(fallback) : guess;
@@ -40,9 +31,9 @@ std::string choose(Names const& known, std::string const& what) {
 std::string positive_prior(Names const& names) {
   if (names.empty()) return "correct its numbers";
   return fmt::format(
-      "look at the prior{} of {} and at what is made of {}: `half_normal(sd = 1)` and `log_uniform(0.1, 10)` have positive "
+      "look at the {} of {} and at what is made of {}: `half_normal(sd = 1)` and `log_uniform(0.1, 10)` have positive "
       "values alone",
-      names.size() == 1 ? "" : "s", quoted(names), names.size() == 1 ? "it" : "them");
+      plural("prior", names.size()), quoted(names), names.size() == 1 ? "it" : "them");
 }
 
 std::string measure(Unit const& unit) {

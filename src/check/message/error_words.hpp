@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "check/message/errors.hpp"
+#include "core/text/words.hpp"
 
 namespace sysid::errors {
 
@@ -12,8 +13,6 @@ Diagnostic error(std::string code, Span span, std::string message, std::string h
 Diagnostic conflict(std::string code, Span span, std::string label, Span other, std::string other_label, std::string message,
                     std::string help = {});
 
-/// "`a`, `b` and `c`".
-std::string quoted(Names const& names, std::string const& last = "and");
 /// "did you mean ...", else the given fallback.
 std::string guess_or(std::string const& text, Names const& known, std::string fallback);
 /// "there are `a` and `b`".

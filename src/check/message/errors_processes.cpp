@@ -57,10 +57,9 @@ Diagnostic kernel_of_one_input(Span span, std::string const& kernel, std::size_t
                "say which: `periodic(day, amplitude = s, ...)`; a product of kernels reads several");
 }
 Diagnostic hyper_parameter_count(Span span, std::string const& name, std::size_t given, std::size_t wanted) {
-  return error(
-      "E3205", span,
-      fmt::format("{} value{} of `{}`, where {} {} needed", given, given == 1 ? "" : "s", name, wanted, wanted == 1 ? "is" : "are"),
-      "give one for each input, in their order, or one for all");
+  return error("E3205", span,
+               fmt::format("{} of `{}`, where {} {} needed", counted(given, "value"), name, wanted, wanted == 1 ? "is" : "are"),
+               "give one for each input, in their order, or one for all");
 }
 Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given, Unit const& wanted,
                                 Span input_place, std::optional<Unit> const& of_input) {
@@ -229,10 +228,9 @@ Diagnostic condition_moves(Span span, std::string const& name, std::string const
   return error("E3225", span, fmt::format("`{}` is a point, it cannot read {}", name, what), "use numbers and constants");
 }
 Diagnostic condition_count(Span span, std::string const& name, std::string const& process, std::size_t given, std::size_t wanted) {
-  return error(
-      "E3225", span,
-      fmt::format("a point of `{}` has {} coordinate{}, `{}` needs {}", name, given, given == 1 ? "" : "s", process, wanted),
-      "give one for each input, `zero_at = (0, 0)`; several points are a list of such lists");
+  return error("E3225", span,
+               fmt::format("a point of `{}` has {}, `{}` needs {}", name, counted(given, "coordinate"), process, wanted),
+               "give one for each input, `zero_at = (0, 0)`; several points are a list of such lists");
 }
 Diagnostic condition_without_derivative(Span span, std::string const& kernel) {
   return error("E3226", span, fmt::format("functions of `{}` have no derivative, which `flat_at` sets to zero", kernel),

@@ -105,7 +105,7 @@ Diagnostic model_argument_twice(Span second, Span first, std::string const& name
 }
 Diagnostic input_of_part_unbound(Span span, std::string const& part, Names const& inputs, std::string const& model) {
   return error("E2806", span,
-               fmt::format("part `{}` is left without its input{} {}", part, inputs.size() == 1 ? "" : "s", quoted(inputs)),
+               fmt::format("part `{}` is left without its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
                fmt::format("say what drives it: `{}({} = ...)`", model, inputs.front()));
 }
 Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) {

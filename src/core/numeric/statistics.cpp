@@ -1,11 +1,55 @@
-// Quantiles.
+// Sums in the order of the values; quantiles of sorted copies.
 #include "core/numeric/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace sysid {
+
+double mean(std::span<double const> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double squared_deviations(std::span<double const> values, double center) {
+  double sum = 0;
+  for (double const v : values) sum += (v - center) * (v - center);
+  return sum;
+}
+
+double sample_variance(std::span<double const> values) {
+  if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  return squared_deviations(values, mean(values)) / static_cast<double>(values.size() - 1);
+}
+
+double population_variance(std::span<double const> values) {
+  return squared_deviations(values, mean(values)) / static_cast<double>(values.size());
+}
+
+double corrected_mean(std::span<double const> values) {
+  double const rough = mean(values);
+  double rest = 0;
+  for (double const v : values) rest += v - rough;
+  return rough + rest / static_cast<double>(values.size());
+}
+
+double corrected_variance(std::span<double const> values) {
+  double const center = corrected_mean(values);
+  double sum = 0, rest = 0;
+  for (double const v : values) {
+    double const square = (v - center) * (v - center), next = sum + square;
+    rest += sum > square ? sum - next + square : square - next + sum;
+    sum = next;
+  }
+  return (sum + rest) / (static_cast<double>(values.size()) - 1);
+}
+
+std::vector<double> pooled(std::vector<std::vector<double>> const& chains) {
+  std::vector<double> all;
+  for (auto const& chain : chains) all.insert(all.end(), chain.begin(), chain.end());
+  return all;
+}
 
 double sorted_quantile(std::vector<double> const& sorted, double probability) {
   double const index = static_cast<double>(sorted.size() - 1) * probability;
@@ -30,6 +74,14 @@ double quantile(std::vector<double> draws, double probability) {
     return std::numeric_limits<double>::quiet_NaN();
   std::sort(draws.begin(), draws.end());
   return sorted_quantile(draws, probability);
+}
+
+double median(std::vector<double> draws) { return quantile(std::move(draws), 0.5); }
+
+double upper_median(std::vector<double> draws) {
+  auto const middle = draws.begin() + static_cast<std::ptrdiff_t>(draws.size() / 2);
+  std::nth_element(draws.begin(), middle, draws.end());
+  return *middle;
 }
 
 std::pair<double, double> finite_range(std::vector<double> const& values) {

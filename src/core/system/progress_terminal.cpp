@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/text/utf8.hpp"
 #include "core/text/wrapped.hpp"
 
 namespace sysid {
@@ -38,14 +39,6 @@ std::string format_rate(double rate) {
   if (rate >= 1e6) return fmt::format("{:.3g} million/s", rate / 1e6);
   if (rate >= 100) return fmt::format("{:.0f}/s", rate);
   return fmt::format("{:.2g}/s", rate);
-}
-
-/// Cut to `columns` characters of UTF-8.
-std::string cut(std::string const& text, int columns) {
-  int characters = 0;
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U && ++characters > columns) return text.substr(0, i);
-  return text;
 }
 
 }  // namespace
@@ -115,7 +108,7 @@ void TerminalProgress::advance(std::uint64_t done, std::string_view note) {
   shown_ = now;
   visible_ = true;
   if (means_.bar)
-    means_.write(fmt::format("\r\033[K{}", cut(status(now), means_.columns - 1)));
+    means_.write(fmt::format("\r\033[K{}", first_characters(status(now), means_.columns - 1)));
   else
     means_.write(status(now) + "\n");
 }

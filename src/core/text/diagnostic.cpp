@@ -10,6 +10,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid {
 
 namespace {
@@ -31,12 +33,6 @@ std::string_view word(Severity severity) {
   return "error";
 }
 
-/// Number of characters of UTF-8: what a text takes on the screen.
-int width(std::string_view text) {
-  return static_cast<int>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 /// ANSI colours, or nothing.
 struct Paint {
   bool on;
@@ -49,18 +45,10 @@ struct Paint {
   std::string gutter(std::string_view text) const { return (*this)("34", text); }
 };
 
-bool continues(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
-
-/// Not within a character.
-std::size_t boundary(std::string_view text, std::size_t at) {
-  while (at > 0 && at < text.size() && continues(text[at])) --at;
-  return std::min(at, text.size());
-}
-
 std::string shortened(std::string_view text) {
   if (text.size() <= longest_words) return std::string(text);
-  return fmt::format("{} ... {}", text.substr(0, boundary(text, longest_words / 2)),
-                     text.substr(boundary(text, text.size() - longest_words / 2)));
+  return fmt::format("{} ... {}", text.substr(0, character_begin(text, longest_words / 2)),
+                     text.substr(character_begin(text, text.size() - longest_words / 2)));
 }
 
 /// A line as shown: tabs become blanks, and `column[i]` is where byte first + i stands. Of a very long line the part around `mark`.
@@ -75,8 +63,8 @@ ShownLine shown(std::string_view line, std::size_t mark) {
   bool const cut = line.size() > longest_line;
   std::size_t const end = line.size();
   if (cut) {
-    out.first = boundary(line, mark > before_mark ? std::min(mark - before_mark, end) : 0);
-    line = line.substr(out.first, boundary(line, out.first + longest_line) - out.first);
+    out.first = character_begin(line, mark > before_mark ? std::min(mark - before_mark, end) : 0);
+    line = line.substr(out.first, character_begin(line, out.first + longest_line) - out.first);
   }
   bool const ends_early = out.first + line.size() < end;
   int column = 0;
@@ -85,8 +73,8 @@ ShownLine shown(std::string_view line, std::size_t mark) {
     column = 4;
   }
   for (char const byte : line) {
-    out.column.push_back(continues(byte) ? std::max(column - 1, 0) : column);
-    if (continues(byte)) {
+    out.column.push_back(continues_character(byte) ? std::max(column - 1, 0) : column);
+    if (continues_character(byte)) {
       out.text += byte;
     } else if (byte == '\t') {
       int const blanks = tab_width - column % tab_width;
@@ -145,7 +133,7 @@ std::vector<std::string> mark_rows(std::vector<Mark> marks, Severity severity, P
     }
     // Texts are placed from right to left, so a row is free when its leftmost piece begins behind this one.
     std::size_t row = 1;
-    while (row < rows.size() && !rows[row].empty() && mark.begin + width(mark.text) + 1 > rows[row].front().begin) ++row;
+    while (row < rows.size() && !rows[row].empty() && mark.begin + text_width(mark.text) + 1 > rows[row].front().begin) ++row;
     if (row == rows.size()) rows.emplace_back();
     rows[row].insert(rows[row].begin(), {mark.begin, mark.text, mark.primary});
   }
@@ -156,7 +144,7 @@ std::vector<std::string> mark_rows(std::vector<Mark> marks, Severity severity, P
     for (Piece const& piece : row) {
       text.append(static_cast<std::size_t>(std::max(piece.begin - column, 0)), ' ');
       text += piece.primary ? paint.severity(severity, piece.text) : paint("36", piece.text);
-      column = std::max(column, piece.begin) + width(piece.text);
+      column = std::max(column, piece.begin) + text_width(piece.text);
     }
     out.push_back(std::move(text));
   }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid {
 
 int decade(double x) {
@@ -104,11 +106,6 @@ std::string pretty_units(std::string_view words) {
 
 std::string probability_text(double probability) {
   return probability > 0 && probability < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", probability);
-}
-
-int text_width(std::string_view text) {
-  return static_cast<int>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
 std::string align_columns(std::vector<std::vector<std::string>> const& rows, int left) {

@@ -34,9 +34,6 @@ std::string pretty_powers(std::string_view words);
 /// Superscript digits: "⁻³".
 std::string superscript(int number);
 
-/// Number of characters of UTF-8.
-int text_width(std::string_view text);
-
 /// Columns of equal width, two blanks apart; `left`: how many of the first are aligned left, the rest right. No trailing blanks.
 std::string align_columns(std::vector<std::vector<std::string>> const& rows, int left);
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid {
 
 Span cover(Span a, Span b) { return {std::min(a.begin, b.begin), std::max(a.end, b.end)}; }
@@ -36,9 +38,8 @@ Place Source::place(std::uint32_t offset) const {
   auto const after = std::upper_bound(line_begins_.begin(), line_begins_.end(), offset);
   Place place{static_cast<int>(after - line_begins_.begin()) - static_cast<int>(file->first_line), 1,
               static_cast<int>(files_.rend() - file) - 1};
-  // Bytes 10xxxxxx continue a character.
-  for (std::uint32_t i = *(after - 1); i < offset; ++i)
-    if ((static_cast<unsigned char>(text_[i]) & 0xC0U) != 0x80U) ++place.column;
+  std::uint32_t const begin = *(after - 1);
+  place.column += text_width(std::string_view(text_).substr(begin, offset - begin));
   return place;
 }
 

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "core/text/utf8.hpp"
+
 namespace sysid {
 namespace {
 
@@ -21,11 +23,7 @@ std::string without_colour(std::string_view text) {
 }
 
 /// Characters on the screen: neither the bytes that continue one in UTF-8 nor what switches a colour ("ESC[1m").
-int shown_width(std::string_view text) {
-  std::string const plain = without_colour(text);
-  return static_cast<int>(
-      std::count_if(plain.begin(), plain.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-}
+int shown_width(std::string_view text) { return text_width(without_colour(text)); }
 
 /// Columns stand two spaces apart; sources have their margin, pictures are drawn with lines and dots (U+2500 to U+28FF).
 bool has_columns(std::string_view line) {

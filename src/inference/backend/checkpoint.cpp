@@ -4,59 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 
 namespace sysid::checkpoint {
-namespace {
 
+// Of what back ends store: another one is refused. 2: numbers are byte strings of CBOR.
+constexpr int format = 2;
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-/// Base64 without padding: the length of the text says how many bytes end it.
-std::string to_base64(std::span<unsigned char const> bytes) {
-  std::string text;
-  text.reserve((bytes.size() * 4 + 2) / 3);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::size_t const count = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k <= count; ++k) text += digits[word >> (18 - 6 * k) & 63U];
-  }
-  return text;
-}
-
-std::vector<unsigned char> from_base64(std::string const& text) {
-  std::array<int, 256> value;
-  value.fill(-1);
-  for (std::size_t i = 0; i < digits.size(); ++i) value[static_cast<unsigned char>(digits[i])] = static_cast<int>(i);
-  std::vector<unsigned char> bytes;
-  bytes.reserve(text.size() * 3 / 4);
-  unsigned word = 0;
-  int bits = 0;
-  for (char const c : text) {
-    int const digit = value[static_cast<unsigned char>(c)];
-    if (digit < 0) throw Mismatch("its numbers are damaged");
-    word = word << 6 | static_cast<unsigned>(digit);
-    bits += 6;
-    if (bits >= 8) {
-      bits -= 8;
-      bytes.push_back(static_cast<unsigned char>(word >> bits & 255U));
-    }
-  }
-  return bytes;
-}
-
-}  // namespace
-
 nlohmann::json encode(std::span<double const> values) {
-  return to_base64({reinterpret_cast<unsigned char const*>(values.data()), values.size_bytes()});
+  auto const* const bytes = reinterpret_cast<std::uint8_t const*>(values.data());
+  return nlohmann::json::binary({bytes, bytes + values.size_bytes()});
 }
 
 std::vector<double> decode(nlohmann::json const& stored) {
-  std::vector<unsigned char> const bytes = from_base64(stored.get<std::string>());
+  if (!stored.is_binary()) throw Mismatch("its numbers are damaged");
+  nlohmann::json::binary_t const& bytes = stored.get_binary();
   if (bytes.size() % sizeof(double) != 0) throw Mismatch("its numbers are cut short");
   std::vector<double> values(bytes.size() / sizeof(double));
   if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
@@ -142,7 +106,7 @@ nlohmann::json identity(std::string_view backend, Settings const& settings, std:
   for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);
   nlohmann::json parameters = nlohmann::json::array();
   for (ParameterInfo const& parameter : target.parameters()) parameters.push_back({parameter.name, parameter.unit});
-  return {{"format", 1}, {"backend", backend}, {"settings", values}, {"seed", seed}, {"parameters", parameters}};
+  return {{"format", format}, {"backend", backend}, {"settings", values}, {"seed", seed}, {"parameters", parameters}};
 }
 
 std::optional<Finding> refuse(nlohmann::json const& stored, nlohmann::json const& expected) {

@@ -1,5 +1,5 @@
-// The state of a run as JSON that comes back bit for bit: doubles travel as the base64 of their bytes, so infinities and last
-// digits survive.
+// The state of a run as a JSON value that CBOR brings back bit for bit: a block of doubles is one byte string of their
+// little-endian bytes, so infinities, NaN and last digits survive.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <span>
@@ -22,7 +22,9 @@ class Mismatch : public std::exception {
   std::string what_;
 };
 
+/// A byte string, which CBOR has and JSON as text has not.
 nlohmann::json encode(std::span<double const> values);
+/// Throws Mismatch for anything else, the text of an older format included.
 std::vector<double> decode(nlohmann::json const& stored);
 nlohmann::json encode(LaneArray const& values);
 /// Throws Mismatch unless the stored block is rows x width.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/words.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid::regression {
@@ -24,12 +25,9 @@ Eigen::MatrixXd unit_columns(Columns const& columns, std::vector<int> const& ter
 }  // namespace
 
 std::string names_of(Equation const& equation, std::vector<int> const& terms) {
-  std::string text;
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    if (k > 0) text += k + 1 == terms.size() ? " and " : ", ";
-    text += "`" + equation.terms[static_cast<std::size_t>(terms[k])].name + "`";
-  }
-  return text;
+  std::vector<std::string> names;
+  for (int const term : terms) names.push_back(equation.terms[static_cast<std::size_t>(term)].name);
+  return quoted(names);
 }
 
 Usable independent_terms(Equation const& equation, Columns const& columns) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/text/number.hpp"
+#include "core/text/utf8.hpp"
 #include "report/figure/figures.hpp"
 #include "report/figure/small_multiples.hpp"
 #include "report/text/summary_text.hpp"

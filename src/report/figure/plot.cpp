@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/text/number.hpp"
+#include "core/text/utf8.hpp"
 
 namespace sysid::plot {
 
@@ -27,7 +28,7 @@ std::string shortened(std::string_view text, double pixels) {
   // Where whole characters begin. The last ones stay: they are what numbered names differ in.
   std::vector<std::size_t> begins;
   for (std::size_t i = 0; i < name.size(); ++i)
-    if ((static_cast<unsigned char>(name[i]) & 0xC0U) != 0x80U) begins.push_back(i);
+    if (!continues_character(name[i])) begins.push_back(i);
   std::size_t const tail = begins.size() > 8 ? 3 : 0;
   std::size_t head = begins.size() > tail ? begins.size() - tail - 1 : 0;
   auto const left = [&] {

@@ -6,6 +6,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "diagnostics/verdict.hpp"
 #include "report/page/check_page.hpp"
 
@@ -17,7 +18,6 @@ constexpr int margin = 14;
 std::string number_with_unit(std::string const& number, std::string const& unit) {
   return unit.empty() ? number : number + " " + unit;
 }
-std::string count(int number, std::string const& noun) { return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s"); }
 
 // "  label       first line", further lines below it.
 std::string entry(std::string const& label, std::vector<std::string> const& lines) {
@@ -50,15 +50,14 @@ std::string model_text(ModelPage const& model) {
   std::string unknowns;
   for (std::string const& unknown : model.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + unknown;
   if (!model.unknowns.empty())  // a model that was accepted has as many equations, of elements and of parts, as unknowns
-    equations.push_back(fmt::format("{}{} for {}: {}",
-                                    model.equations.size() == model.unknowns.size() ? "" : "with all elements and parts: ",
-                                    count(static_cast<int>(model.unknowns.size()), "equation"),
-                                    count(static_cast<int>(model.unknowns.size()), "unknown"), unknowns));
-  out += entry(model.equations.size() == 1 ? "equation" : "equations", equations);
-  out += table(model.states.size() == 1 ? "state" : "states", rows_of(model.states), 3);
-  out += table(model.inputs.size() == 1 ? "input" : "inputs", rows_of(model.inputs), 3);
-  out += table(model.channels.size() == 1 ? "channel" : "channels", rows_of(model.channels), 3);
-  out += table(model.parameters.size() == 1 ? "parameter" : "parameters", rows_of(model.parameters), 3);
+    equations.push_back(
+        fmt::format("{}{} for {}: {}", model.equations.size() == model.unknowns.size() ? "" : "with all elements and parts: ",
+                    counted(model.unknowns.size(), "equation"), counted(model.unknowns.size(), "unknown"), unknowns));
+  out += entry(plural("equation", model.equations.size()), equations);
+  out += table(plural("state", model.states.size()), rows_of(model.states), 3);
+  out += table(plural("input", model.inputs.size()), rows_of(model.inputs), 3);
+  out += table(plural("channel", model.channels.size()), rows_of(model.channels), 3);
+  out += table(plural("parameter", model.parameters.size()), rows_of(model.parameters), 3);
   out += table("derived", rows_of(model.derived), 3);
   out += entry("unchecked", model.unchecked);
   return out;
@@ -67,8 +66,7 @@ std::string model_text(ModelPage const& model) {
 // How many terms each equation has, then those that all share, or each with its own.
 std::string equation_text(DictionaryPage::Equation const& equation, bool alone) {
   std::string const unit = equation.unit.empty() ? "" : fmt::format(" [{}]", equation.unit);
-  std::string out =
-      entry("target", {fmt::format("{}{}: {}", equation.target, unit, count(static_cast<int>(equation.terms.size()), "term"))});
+  std::string out = entry("target", {fmt::format("{}{}: {}", equation.target, unit, counted(equation.terms.size(), "term"))});
   return out + table(alone ? "terms" : "", rows_of(equation.terms), 3);
 }
 
@@ -163,7 +161,7 @@ std::string process_text(ProcessPage const& page) {
     std::string text = fmt::format("{}: {} of {} to {}, the middle one {}", line.name, line.what, significant(line.prior.low, 2),
                                    significant(line.prior.high, 2), number_with_unit(significant(line.prior.middle, 2), line.unit));
     if (line.inputs)
-      text += fmt::format("; {} over {}, spaced by {}", count(line.inputs->places, "place"),
+      text += fmt::format("; {} over {}, spaced by {}", counted(line.inputs->places, "place"),
                           number_with_unit(significant(line.inputs->range, 2), line.unit), significant(line.inputs->spacing, 2));
     else
       text += fmt::format("; sd of {} {}", page.channel, number_with_unit(significant(page.measured_sd, 2), page.unit));
@@ -211,8 +209,8 @@ std::string task_text(TaskPage const& task) {
 
 std::string dictionary_text(DictionaryPage const& page) {
   std::string out = fmt::format("dictionary {}{}\n", page.name, page.title.empty() ? "" : " \"" + page.title + "\"");
-  out += table(page.states.size() == 1 ? "state" : "states", rows_of(page.states), 3);
-  out += table(page.inputs.size() == 1 ? "input" : "inputs", rows_of(page.inputs), 3);
+  out += table(plural("state", page.states.size()), rows_of(page.states), 3);
+  out += table(plural("input", page.inputs.size()), rows_of(page.inputs), 3);
   for (DictionaryPage::Equation const& equation : page.equations) out += equation_text(equation, page.equations.size() == 1);
   return out + entry("left out", page.left_out);
 }
@@ -228,12 +226,12 @@ std::string check_text(CheckPage const& page) {
       serious += finding.severity == Severity::error;
       warnings += finding.severity == Severity::warning;
     }
-  out += fmt::format("{}: {}, {}, {}: ", page.file, count(static_cast<int>(page.models.size()), "model"),
-                     count(page.data_blocks, "data block"), count(static_cast<int>(page.tasks.size()), "task"));
+  out += fmt::format("{}: {}, {}, {}: ", page.file, counted(page.models.size(), "model"), counted(page.data_blocks, "data block"),
+                     counted(page.tasks.size(), "task"));
   std::vector<std::string> found;
-  if (page.errors > 0) found.push_back(count(page.errors, "error"));
-  if (serious > 0) found.push_back(count(serious, "serious finding"));
-  if (warnings > 0) found.push_back(count(warnings, "warning"));
+  if (page.errors > 0) found.push_back(counted(page.errors, "error"));
+  if (serious > 0) found.push_back(counted(serious, "serious finding"));
+  if (warnings > 0) found.push_back(counted(warnings, "warning"));
   bool const all = std::all_of(page.tasks.begin(), page.tasks.end(), [](TaskPage const& task) {
     return std::all_of(task.outlooks.begin(), task.outlooks.end(), [](Outlook const& each) { return each.left_out.empty(); });
   });

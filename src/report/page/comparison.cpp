@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "result/report.hpp"
 
 namespace sysid {
@@ -17,7 +18,7 @@ namespace {
 
 std::string checks_text(bool pass, int warnings) {
   if (!pass) return "doubtful";
-  return warnings == 0 ? "pass" : fmt::format("{} {}", warnings, warnings == 1 ? "warning" : "warnings");
+  return warnings == 0 ? "pass" : counted(warnings, "warning");
 }
 
 /// To a tenth, and never below zero by rounding alone.

@@ -1,5 +1,6 @@
 // The page around the sections: head, landmarks, contents.
 #include "report/page/html.hpp"
+#include "core/text/words.hpp"
 #include "diagnostics/verdict.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +47,7 @@ std::string all(std::vector<HtmlSection> const& sections, int level) {
 }
 
 /// "A run of 5 tasks".
-std::string run_title(std::size_t tasks) { return fmt::format("A run of {} task{}", tasks, tasks == 1 ? "" : "s"); }
+std::string run_title(std::size_t tasks) { return "A run of " + counted(tasks, "task"); }
 
 /// The models and predictions of a run side by side; empty where none can be compared.
 std::string together(RunReport const& run) {

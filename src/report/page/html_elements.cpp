@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/text/number.hpp"
+#include "core/text/utf8.hpp"
 #include "core/text/xml.hpp"
 #include "report/figure/gnuplot.hpp"
 #include "report/page/typeset.hpp"
@@ -182,7 +183,7 @@ std::string range_chart(double wide_low, double wide_high, double low, double hi
 
 std::string legible(std::string_view text) {
   auto const bytes = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U; };
-  auto const follows = [&](std::size_t at) { return (bytes(at) & 0xC0U) == 0x80U; };
+  auto const follows = [&](std::size_t at) { return at < text.size() && continues_character(text[at]); };
   std::string out;
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "diagnostics/chain_checks.hpp"
 #include "diagnostics/contraction.hpp"
 #include "diagnostics/residual_tests.hpp"
@@ -224,12 +225,11 @@ std::string ledger_words(Report const& report) {
 
 std::string mode_words(Report const& report) {
   std::size_t const count = report.modes.size();
-  std::string places;
-  for (std::size_t m = 0; m < count; ++m)
-    places += fmt::format("{}{}", m == 0 ? "" : m + 1 == count ? " and " : ", ", report.modes[m].hits);
+  std::vector<std::string> places;
+  for (Mode const& mode : report.modes) places.push_back(std::to_string(mode.hits));
   bool const counted = std::any_of(report.modes.begin(), report.modes.end(), [](Mode const& each) { return each.hits > 0; });
   std::string out = fmt::format("The search found {}{}. ", count == 1 ? "one mode" : fmt::format("{} modes", count),
-                                counted ? fmt::format(", where {} of its local searches ended", places) : "");
+                                counted ? fmt::format(", where {} of its local searches ended", listed(places)) : "");
   if (grade(report) == Severity::error) {
     bool const near = std::any_of(report.findings.begin(), report.findings.end(),
                                   [](Finding const& each) { return each.code == "searched_near"; });

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
 #include "report/text/report_text.hpp"
@@ -20,7 +21,7 @@ std::string draws_line(Draws const& draws) {
   if (draws.chains.empty()) return "";
   if (draws.total() == 1) return "one point, the optimum";
   std::size_t const chains = draws.chains.size();
-  return fmt::format("{} chain{} of {} draws", chains, chains == 1 ? "" : "s", draws.chains[0].values.size());
+  return fmt::format("{} of {} draws", counted(chains, "chain"), draws.chains[0].values.size());
 }
 
 std::string summary_table(Report const& report) {

@@ -1,5 +1,5 @@
 // SHA-256 against the vectors NIST publishes for FIPS 180-4.
-#include "data/digest.hpp"
+#include "core/system/digest.hpp"
 
 #include <doctest/doctest.h>
 

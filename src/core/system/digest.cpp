@@ -1,5 +1,5 @@
 // SHA-256 after FIPS 180-4, section 6.2; names as printed there.
-#include "data/digest.hpp"
+#include "core/system/digest.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,37 @@
+#include "core/text/words.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace sysid;
+
+TEST_CASE("names are listed with a word before the last") {
+  CHECK(listed({}).empty());
+  CHECK(listed({"m"}) == "m");
+  CHECK(listed({"m", "c"}) == "m and c");
+  CHECK(listed({"m", "c", "k"}) == "m, c and k");
+  CHECK(listed({"m", "c", "k"}, "or") == "m, c or k");
+  CHECK(quoted({}).empty());
+  CHECK(quoted({"m", "c", "k"}) == "`m`, `c` and `k`");
+  CHECK(quoted({"m", "c"}, "or") == "`m` or `c`");
+}
+
+TEST_CASE("of many names the first are listed, and how many follow") {
+  CHECK(first_listed({}, 2).empty());
+  CHECK(first_listed({"m", "c"}, 2) == "m, c");
+  CHECK(first_listed({"m", "c", "k", "d"}, 2) == "m, c and 2 more");
+}
+
+TEST_CASE("one thing is singular, none and many are plural") {
+  CHECK(counted(0, "row") == "0 rows");
+  CHECK(counted(1, "row") == "1 row");
+  CHECK(counted(std::size_t{2}, "row") == "2 rows");
+  CHECK(plural("input", 1) == "input");
+  CHECK(plural("input", 2) == "inputs");
+}
+
+TEST_CASE("blanks at both ends go, those inside stay") {
+  CHECK(trimmed("") == "");
+  CHECK(trimmed(" \t\r\n") == "");
+  CHECK(trimmed(" a b\n") == "a b");
+  CHECK(trimmed(" a\n", " ") == "a\n");
+}
