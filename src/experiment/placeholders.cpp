@@ -63,7 +63,9 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
   for (std::size_t const row : suspect.rows)
     if (named.size() < most_named) named.push_back(data.experiment.first_row + static_cast<int>(row));
   std::size_t const more = suspect.rows.size() - named.size();
-  return {Severity::warning, "looks_missing",
+  return {FindingCode::looks_missing,
+          Severity::warning,
+          {column.column, data.use.name},
           fmt::format("column `{}` of {} is {:.12g}{} in {} {}{}, far from all its other numbers: a missing value?", column.column,
                       data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit,
                       suspect.rows.size() == 1 ? "row" : "rows", fmt::join(named, ", "),
