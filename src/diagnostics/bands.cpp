@@ -53,15 +53,16 @@ Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajector
 
 Findings leave_out_noise(Model const& model, Prediction& prediction) {
   std::vector<std::string> const names = derived_from_noise(model);
-  std::string gone;
+  std::vector<std::string> gone;
   std::erase_if(prediction.quantities, [&](PredictedQuantity const& each) {
     bool const reads = each.measured.empty() && std::find(names.begin(), names.end(), each.name) != names.end();
-    if (reads) gone += (gone.empty() ? "`" : ", `") + each.name + "`";
+    if (reads) gone.push_back(each.name);
     return reads;
   });
   if (gone.empty()) return {};
-  return {{Severity::note, "reads_noise",
-           fmt::format("{} left out: a selection by distance says nothing about the noise that is read there", gone), ""}};
+  std::string const quoted = fmt::format("`{}`", fmt::join(gone, "`, `"));
+  return {{FindingCode::reads_noise, Severity::note, std::move(gone),
+           fmt::format("{} left out: a selection by distance says nothing about the noise that is read there", quoted), ""}};
 }
 
 Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several) {
@@ -74,7 +75,9 @@ Findings band_findings(Prediction const& prediction, int failed, int failed_else
     Severity severity = failure_severity(static_cast<std::uint64_t>(left_out), static_cast<std::uint64_t>(widest.draws));
     if (severity == Severity::error && !measured) severity = Severity::warning;  // the others are what they are
     findings.push_back(
-        {severity, "undefined_in_band",
+        {FindingCode::undefined_in_band,
+         severity,
+         {quantity.name},
          fmt::format("{}{} has no value somewhere along {} of {} trajectories, and its band is that of the others", quantity.name,
                      several ? " on " + prediction.experiment : std::string(), left_out, widest.draws),
          "look for a root or a logarithm of what may be negative, or a division by what may be zero"});

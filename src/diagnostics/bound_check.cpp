@@ -48,7 +48,9 @@ Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& dr
     ParameterInfo const& info = parameters[p];
     BoundCheck const check = check_bounds(values, info.lower, info.upper);
     if (!check.at_lower && !check.at_upper) continue;
-    findings.push_back({Severity::warning, "piles_up_at_bound",
+    findings.push_back({FindingCode::piles_up_at_bound,
+                        Severity::warning,
+                        {info.name},
                         fmt::format("the posterior of {} piles up at the {} bound of its prior, {:.4g}{}", info.name,
                                     check.at_lower ? "lower" : "upper", check.at_lower ? info.lower : info.upper,
                                     info.unit.empty() ? "" : " " + info.unit),

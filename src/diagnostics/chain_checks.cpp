@@ -15,16 +15,26 @@ namespace {
 
 constexpr std::size_t names_shown = 4;
 
-/// "a (1.20), b (1.10) and 3 more" of the parameters that fail, the worst first; empty when none does.
-std::string worst(std::vector<Summary> const& summaries, std::function<double(Summary const&)> const& badness,
-                  std::function<std::string(Summary const&)> const& show, double bar) {
+/// The parameters that fail, the worst first, and "a (1.20), b (1.10) and 3 more" of them.
+struct Worst {
+  std::vector<std::string> names;
+  std::string text;
+  bool empty() const { return names.empty(); }
+};
+Worst worst(std::vector<Summary> const& summaries, std::function<double(Summary const&)> const& badness,
+            std::function<std::string(Summary const&)> const& show, double bar) {
   std::vector<Summary const*> bad;
   for (Summary const& s : summaries)
     if (badness(s) > bar) bad.push_back(&s);
   std::stable_sort(bad.begin(), bad.end(), [&](Summary const* a, Summary const* b) { return badness(*a) > badness(*b); });
-  std::vector<std::string> named;
-  for (Summary const* s : bad) named.push_back(fmt::format("{} ({})", s->name, show(*s)));
-  return first_listed(named, names_shown);
+  Worst found;
+  std::vector<std::string> shown;
+  for (Summary const* each : bad) {
+    found.names.push_back(each->name);
+    shown.push_back(fmt::format("{} ({})", each->name, show(*each)));
+  }
+  found.text = first_listed(shown, names_shown);
+  return found;
 }
 
 std::string chain_list(std::vector<std::size_t> const& chains) {
@@ -46,7 +56,9 @@ void check_motion(ChainReport const& report, Findings& findings) {
   if (!stuck.empty()) {
     double most = 0;
     for (std::size_t const c : stuck) most = std::max(most, report.acceptance_rate[c]);
-    findings.push_back({Severity::error, "chain_did_not_move",
+    findings.push_back({FindingCode::chain_did_not_move,
+                        Severity::error,
+                        {},
                         fmt::format("the chain did not move: {} accepted {} of the proposed moves{}", chain_list(stuck),
                                     most == 0           ? "none"
                                     : stuck.size() == 1 ? percent(most)
@@ -59,7 +71,9 @@ void check_motion(ChainReport const& report, Findings& findings) {
     std::uint64_t least = least_distinct;
     for (std::size_t const c : poor) least = std::min(least, report.distinct_states[c]);
     findings.push_back(
-        {Severity::error, "few_distinct_states",
+        {FindingCode::few_distinct_states,
+         Severity::error,
+         {},
          fmt::format("{} visited only {} distinct states after burn-in, too few to describe a posterior", chain_list(poor), least),
          "run longer chains (samples)"});
   }
@@ -68,45 +82,45 @@ void check_motion(ChainReport const& report, Findings& findings) {
 void check_agreement(ChainReport const& report, Findings& findings) {
   auto const rhat_of = [](Summary const& s) { return s.rhat; };
   auto const show = [](Summary const& s) { return fmt::format("{:.3f}", s.rhat); };
-  std::string const bad = worst(report.summaries, rhat_of, show, rhat_bar);
+  Worst const bad = worst(report.summaries, rhat_of, show, rhat_bar);
   if (bad.empty()) return;
   bool const loud = !worst(report.summaries, rhat_of, show, rhat_loud).empty();
-  findings.push_back({Severity::error, loud ? "chains_disagree" : "chains_not_quite_agreed",
-                      loud
-                          ? fmt::format("the chains disagree, each tells another story: R-hat of {} is far above {}", bad, rhat_bar)
-                          : fmt::format("the chains have not quite agreed yet: R-hat of {} is above {}", bad, rhat_bar),
-                      loud ? "do not use the means and widths; run longer, and look for a second solution or parameters that the "
-                             "data cannot tell apart"
-                           : "run longer chains (samples)"});
+  findings.push_back(
+      {loud ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
+       loud ? fmt::format("the chains disagree, each tells another story: R-hat of {} is far above {}", bad.text, rhat_bar)
+            : fmt::format("the chains have not quite agreed yet: R-hat of {} is above {}", bad.text, rhat_bar),
+       loud ? "do not use the means and widths; run longer, and look for a second solution or parameters that the "
+              "data cannot tell apart"
+            : "run longer chains (samples)"});
 }
 
 void check_size(ChainReport const& report, Findings& findings) {
-  auto const check = [&](std::string const& code, std::string const& what, std::function<double(Summary const&)> const& ess) {
+  auto const check = [&](FindingCode code, std::string const& what, std::function<double(Summary const&)> const& ess) {
     auto const shortfall = [&](Summary const& s) { return ess_bar / ess(s); };
-    std::string const bad = worst(
+    Worst const bad = worst(
         report.summaries, shortfall, [&](Summary const& s) { return fmt::format("{:.0f}", ess(s)); }, 1);
     if (bad.empty()) return;
     double most = 1;
     for (Summary const& s : report.summaries)
       if (shortfall(s) > most) most = shortfall(s);
     findings.push_back(
-        {Severity::error, code,
-         fmt::format("too few independent draws for the {}: effective sample size of {}, below {}", what, bad, ess_bar),
+        {code, Severity::error, bad.names,
+         fmt::format("too few independent draws for the {}: effective sample size of {}, below {}", what, bad.text, ess_bar),
          fmt::format("run chains about {:.2g} times as long (samples), or more of them (chains)", std::ceil(10 * most) / 10)});
   };
-  check("ess_bulk_low", "means", [](Summary const& s) { return s.ess_bulk; });
-  check("ess_tail_low", "5 and 95 % limits", [](Summary const& s) { return s.ess_tail; });
+  check(FindingCode::ess_bulk_low, "means", [](Summary const& s) { return s.ess_bulk; });
+  check(FindingCode::ess_tail_low, "5 and 95 % limits", [](Summary const& s) { return s.ess_tail; });
 }
 
 void check_defined(ChainReport const& report, Findings& findings) {
   auto const undefined = [](Summary const& s) {
     return std::isnan(s.rhat) || std::isnan(s.ess_bulk) || std::isnan(s.ess_tail) ? 1.0 : 0.0;
   };
-  std::string const bad = worst(
+  Worst const bad = worst(
       report.summaries, undefined, [](Summary const& s) { return fmt::format("mean {:.4g}", s.mean); }, 0.5);
   if (bad.empty()) return;
-  findings.push_back({Severity::error, "no_diagnostics",
-                      fmt::format("convergence cannot be judged, as all draws are equal, too few or not finite: {}", bad),
+  findings.push_back({FindingCode::no_diagnostics, Severity::error, bad.names,
+                      fmt::format("convergence cannot be judged, as all draws are equal, too few or not finite: {}", bad.text),
                       "run longer chains (samples), and look at the failures the run counted"});
 }
 
@@ -119,7 +133,7 @@ Findings check_chains(ChainReport const& report) {
   check_motion(report, findings);
   if (!findings.empty()) return findings;
   check_agreement(report, findings);
-  if (!findings.empty() && findings.front().code == "chains_disagree") return findings;
+  if (!findings.empty() && findings.front().code == FindingCode::chains_disagree) return findings;
   check_size(report, findings);
   if (findings.empty()) check_defined(report, findings);
   return findings;

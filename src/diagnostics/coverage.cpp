@@ -38,18 +38,19 @@ bool misses(double coverage, double samples) {
 }  // namespace
 
 std::string prediction_verdict(Report const& report, bool missed) {
-  auto const has = [&](char const* code, Severity severity) {
+  auto const has = [&](FindingCode code, Severity severity) {
     return std::any_of(report.findings.begin(), report.findings.end(),
                        [&](Finding const& each) { return each.code == code && each.severity == severity; });
   };
-  if (has("from_doubtful_fit", Severity::error))
+  if (has(FindingCode::from_doubtful_fit, Severity::error))
     return "do not use these bands: the fit that they are drawn from has failed its checks";
-  if (has("worse_than_the_mean", Severity::error)) return "do not use these bands: the mean of the record predicts better";
+  if (has(FindingCode::worse_than_the_mean, Severity::error))
+    return "do not use these bands: the mean of the record predicts better";
   if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
   if (report.ledger.failed() > 0) return "use with care: some trajectories do not stay finite";
-  if (has("worse_than_the_mean", Severity::warning)) return "use with care: the mean of the record predicts better";
+  if (has(FindingCode::worse_than_the_mean, Severity::warning)) return "use with care: the mean of the record predicts better";
   if (missed) return "use with care: the data lie outside their bands";
-  if (has("from_doubtful_fit", Severity::warning)) return "use with care, as the fit that this is drawn from";
+  if (has(FindingCode::from_doubtful_fit, Severity::warning)) return "use with care, as the fit that this is drawn from";
   auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
                                       [](Finding const& each) { return each.severity == Severity::warning; });
   if (warnings > 0) return with_care(warnings);
@@ -67,12 +68,16 @@ void add_source(std::filesystem::path const& fit, Report& report) {
   }
   std::string const name = summary.value("task", "");
   if (!failed.empty())
-    report.findings.push_back({Severity::error, "from_doubtful_fit",
+    report.findings.push_back({FindingCode::from_doubtful_fit,
+                               Severity::error,
+                               {name},
                                fmt::format("`{}`, whose draws these are, has failed its checks: {}", name, fmt::join(failed, ", ")),
                                "its verdict says what to do; then predict again"});
   else if (!doubtful.empty())
     report.findings.push_back(
-        {Severity::warning, "from_doubtful_fit",
+        {FindingCode::from_doubtful_fit,
+         Severity::warning,
+         {name},
          fmt::format("`{}`, whose draws these are, is to be used with care: {}", name, fmt::join(doubtful, ", ")),
          "its verdict says what there is to look at"});
 }
@@ -83,14 +88,16 @@ bool add_coverage(Report& report, bool fed_back) {
     for (Score const& score : line.scores)
       if (score.name == "nmse" && score.value > as_bad_as_the_mean(measured_samples(report, line)))
         report.findings.push_back(worse_than_the_mean(
-            score.value > useless_nmse ? Severity::error : Severity::warning, line.what(), score.value,
-            "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"));
+            score.value > useless_nmse ? Severity::error : Severity::warning, {line.channel, line.experiment}, line.what(),
+            score.value, "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"));
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores) {
       if (score.name != "coverage_95" || !misses(score.value, static_cast<double>(measured_samples(report, line)))) continue;
       any = true;
       report.findings.push_back(
-          {Severity::warning, "coverage_low",
+          {FindingCode::coverage_low,
+           Severity::warning,
+           {line.channel, line.experiment},
            fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
            fed_back
                ? "a free run leaves out the noise that feeds back into later samples: its bands are those of the parameters and "

@@ -19,7 +19,9 @@ Findings drift_findings(Source const& source, Model const& model, Trajectory::Re
     for (double const drift : result.drift[i])
       if (drift > largest) largest = drift;
     findings.push_back(
-        {largest > tolerable_drift ? Severity::warning : Severity::note, "constraint_drift",
+        {FindingCode::constraint_drift,
+         largest > tolerable_drift ? Severity::warning : Severity::note,
+         {record},
          fmt::format("`{}` was differentiated to solve the model; on {} it is violated by at most {:.2g} of its terms",
                      source.text(model.invariants[i].span), record, largest),
          largest > tolerable_drift ? "integrate more accurately: more `substeps`, or a smaller `relative`" : ""});

@@ -33,16 +33,20 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
   });
   if (member == model.parameters.end()) return {};
   if (draws.total() == 1)
-    return {{Severity::warning, "optimum_of_hierarchy",
+    return {{FindingCode::optimum_of_hierarchy,
+             Severity::warning,
+             {member->name},
              fmt::format("the density may grow without bound as the spread of `{}` vanishes: an optimum says little about it",
                          member->name),
              "sample it with mh"}};
   bool const unmixed = std::any_of(found.begin(), found.end(), [](Finding const& each) {
-    return each.code == "chains_disagree" || each.code == "chains_not_quite_agreed" || each.code == "ess_bulk_low" ||
-           each.code == "ess_tail_low";
+    return each.code == FindingCode::chains_disagree || each.code == FindingCode::chains_not_quite_agreed ||
+           each.code == FindingCode::ess_bulk_low || each.code == FindingCode::ess_tail_low;
   });
   if (!unmixed) return {};
-  return {{Severity::note, "hierarchy_narrows",
+  return {{FindingCode::hierarchy_narrows,
+           Severity::note,
+           {member->name},
            fmt::format("the spread of `{}` is estimated: where it is small the posterior narrows, and chains pass slowly",
                        member->name),
            fmt::format("write `{}` by standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
@@ -63,12 +67,16 @@ Findings check_use(Model const& model, StartRule const& start) {
     if (!model.parameters[p].prior || model.parameters[p].coefficient || !idle) continue;
     std::string const& name = model.parameters[p].name;
     if (roles_elsewhere[p] == ParameterRole::response)
-      findings.push_back({Severity::warning, "unused_parameter",
+      findings.push_back({FindingCode::unused_parameter,
+                          Severity::warning,
+                          {name},
                           fmt::format("{} enters initial values alone, which `start = {}` replaces: its posterior is its prior",
                                       name, start_text(start)),
                           "leave the start to the model, `start = record`, or leave the parameter out"});
     else
-      findings.push_back({Severity::warning, "unused_parameter",
+      findings.push_back({FindingCode::unused_parameter,
+                          Severity::warning,
+                          {name},
                           fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", name),
                           "remove it, or use it in an equation"});
   }
@@ -94,7 +102,9 @@ Findings check_input_timing(ModelTarget const& target, Aim aim, Mode const& mode
       }
       if (best_gain <= gain_at_least || best_gain <= gain_per_sample * static_cast<double>(scored)) continue;
       findings.push_back(
-          {Severity::warning, "input_timing",
+          {FindingCode::input_timing,
+           Severity::warning,
+           {model.inputs[i].name, target.experiments()[at].name},
            fmt::format("input {}{} half a sample {} would fit much better (log posterior up by {:.0f} over {} samples)",
                        model.inputs[i].name, on_experiment(target, e), best_shift > 0 ? "later" : "earlier", best_gain, scored),
            "check the rule between input samples (hold zero_order, linear, cubic, band_limited) and the delay of the recording"});

@@ -11,8 +11,8 @@ std::string times_apart(double ratio) {
   return fmt::format("{} times {}", significant(ratio > 1 ? ratio : 1 / ratio, 2), ratio > 1 ? "larger" : "smaller");
 }
 
-Finding prior_far_from_data(std::string message) {
-  return {Severity::warning, "prior_far_from_data", std::move(message),
+Finding prior_far_from_data(std::vector<std::string> names, std::string message) {
+  return {FindingCode::prior_far_from_data, Severity::warning, std::move(names), std::move(message),
           "look at the units of the data columns, and at priors that are wide or misplaced"};
 }
 

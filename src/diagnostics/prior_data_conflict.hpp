@@ -16,6 +16,6 @@ inline constexpr double many_failures = 0.2;
 std::string times_apart(double ratio);
 
 /// prior_far_from_data with what was found.
-Finding prior_far_from_data(std::string message);
+Finding prior_far_from_data(std::vector<std::string> names, std::string message);
 
 }  // namespace sysid

@@ -83,6 +83,7 @@ struct ScoredChannel {
   Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
   Experiment const& data() const { return target.experiments()[static_cast<std::size_t>(experiment)]; }
   std::string name() const { return described().name + on_experiment(target, experiment); }
+  std::vector<std::string> names() const { return {described().name, data().name}; }
   bool noise_is_estimated() const {
     return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(), [&](NodeId argument) {
       return model().graph.depends(argument, [&](Node const& node) {
@@ -156,10 +157,10 @@ void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
   constexpr char const* look = "look at units, signs and columns, at the initial values and the priors, then at the model";
   double const left = unexplained(of, spikes(of));
   if (left > as_bad_as_the_mean(of.observed.size()))
-    findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.name(), left,
-                                           fmt::format("the fit explains nothing of this channel: {}", look)));
+    findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.names(),
+                                           of.name(), left, fmt::format("the fit explains nothing of this channel: {}", look)));
   else if (coloured && left > little)
-    findings.push_back({left > less_than_half ? Severity::error : Severity::warning, "explains_little",
+    findings.push_back({FindingCode::explains_little, left > less_than_half ? Severity::error : Severity::warning, of.names(),
                         fmt::format("the fit explains {:.2g} % of the variance of {}, and what it leaves is not noise",
                                     std::max(0.0, 100 - left), of.name()),
                         look});
@@ -175,7 +176,7 @@ void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
       named.push_back(
           fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(of.sized.values[place])));
   if (places.size() > most_named) named.push_back("...");
-  findings.push_back({Severity::warning, "samples_far_off",
+  findings.push_back({FindingCode::samples_far_off, Severity::warning, of.names(),
                       fmt::format("{} of {} {} far from all others ({})", counted(places.size(), "sample"), of.name(),
                                   places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
                       "look at these rows: leave out what is no measurement (an empty cell), or state noise with heavy "
@@ -196,7 +197,7 @@ void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Find
     help = "the stated noise is too large: estimate it";
   if (with_outliers) help = "a few samples far off make the noise look larger: look at these first";
   findings.push_back(
-      {Severity::error, "noise_size",
+      {FindingCode::noise_size, Severity::error, of.names(),
        fmt::format("residuals of {} are not of the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
                    of.name(), size.per_sample, size.low, size.high),
        help});
@@ -207,7 +208,7 @@ void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals,
                   Findings& findings) {
   line.scores.push_back({"whiteness_p", white.p_value});
   if (white.fires())
-    findings.push_back({Severity::warning, "residuals_not_white",
+    findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
                         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
                                     white.outside, white.correlation.size()),
                         "the model misses dynamics or the noise is coloured: posterior widths are too small"});
@@ -220,7 +221,9 @@ void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals,
         {"input_correlation_p" + (inputs.size() > 1 ? "(" + inputs[i].name + ")" : std::string()), crossed.p_value});
     if (crossed.fires())
       findings.push_back(
-          {Severity::warning, "input_in_residuals",
+          {FindingCode::input_in_residuals,
+           Severity::warning,
+           {inputs[i].name, of.described().name, of.data().name},
            fmt::format("past values of input {} still show in the residuals of {} ({} of {} lags outside the 99 % band)",
                        inputs[i].name, of.name(), crossed.outside, crossed.correlation.size()),
            "the model misses part of the response to the input"});
@@ -286,7 +289,7 @@ void name_held(Report const& report, Findings& findings) {
   constexpr std::size_t most_named = 6;
   if (held.empty() || held.size() > most_named) return;
   for (Finding& each : findings)
-    if (each.code == "explains_little" || each.code == "worse_than_the_mean")
+    if (each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean)
       each.help +=
           fmt::format("; {} {} as wide as the prior: is it right?", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
 }
@@ -304,7 +307,9 @@ Findings check_priors(Report const& report) {
       if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95)) continue;
       std::string const unit = prior.unit.empty() ? "" : " " + prior.unit;
       findings.push_back(
-          {Severity::warning, "prior_contradicted",
+          {FindingCode::prior_contradicted,
+           Severity::warning,
+           {prior.name},
            fmt::format("{} is at {}{}, and its prior leaves one part in 2000 to what is {} {}{}", prior.name, significant(place, 4),
                        unit, below ? "below" : "above", significant(below ? *prior.lowest : *prior.highest, 4), unit),
            "data and prior say different things, and the posterior is a compromise: widen the prior, or find what "
@@ -313,8 +318,9 @@ Findings check_priors(Report const& report) {
   return findings;
 }
 
-Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help) {
-  return {severity, "worse_than_the_mean",
+Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,
+                            std::string help) {
+  return {FindingCode::worse_than_the_mean, severity, std::move(names),
           fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
                       channel, nmse),
           std::move(help)};

@@ -29,7 +29,8 @@ void name_held(Report const& report, Findings& findings);
 Findings check_priors(Report const& report);
 
 /// `worse_than_the_mean` of a channel, with what to do.
-Finding worse_than_the_mean(Severity severity, std::string const& channel, double nmse, std::string help);
+Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,
+                            std::string help);
 
 /// nmse [%] from which a model is none of its record, whatever its residuals: the error is larger than what there was to explain.
 inline constexpr double useless_nmse = 200;

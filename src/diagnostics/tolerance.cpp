@@ -63,8 +63,9 @@ std::vector<Mode> reached(std::vector<Mode> const& coarser, std::vector<Mode> co
 std::string move_text(double move) { return move > 5 ? "many sds" : fmt::format("about {:.2g} sd", move); }
 
 // chosen: by the guard itself, so that there is nothing to leave out.
-Finding shaped(SolverSettings const& solver, bool chosen, std::string const& what) {
-  return {Severity::error, "integration_step",
+// names: the parameters that move.
+Finding shaped(SolverSettings const& solver, bool chosen, std::vector<std::string> names, std::string const& what) {
+  return {FindingCode::integration_step, Severity::error, std::move(names),
           fmt::format("the integration {} shapes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
                       solver.finer_words(), what),
           chosen ? fmt::format("fit again with `{}` or finer", solver.finer().option())
@@ -215,16 +216,17 @@ Findings check_modes(Target const& fine, Aim aim, std::vector<Mode> const& modes
     ParameterInfo const& parameter = fine.parameters()[p];
     std::string const unit = parameter.unit.empty() ? "" : " " + parameter.unit;
     if (!std::isfinite(move.size))
-      findings.push_back(shaped(solver, false, "the simulation fails at the optimum"));
+      findings.push_back(shaped(solver, false, {}, "the simulation fails at the optimum"));
     else if (2 * move.value >= move.size)
-      findings.push_back(shaped(solver, false, fmt::format("{} moves by {}", parameter.name, move_text(move.value))));
+      findings.push_back(
+          shaped(solver, false, {parameter.name}, fmt::format("{} moves by {}", parameter.name, move_text(move.value))));
     else
-      findings.push_back(shaped(solver, false,
+      findings.push_back(shaped(solver, false, {parameter.name},
                                 fmt::format("the sd of {} is {:.2g}{} in place of {:.2g}{}", parameter.name, refined[m].sd[p], unit,
                                             weighty[m].sd[p], unit)));
   }
   if (std::size_t const apart = merged(refined).size(); apart < refined.size())
-    findings.push_back(shaped(solver, false, fmt::format("the {} modes that were found are {}", refined.size(), apart)));
+    findings.push_back(shaped(solver, false, {}, fmt::format("the {} modes that were found are {}", refined.size(), apart)));
   return findings;
 }
 
@@ -260,7 +262,8 @@ ToleranceCheck check_tolerance(Target const& coarse, Target const& fine, Draws c
 
 Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver, bool chosen) {
   if (check.move <= tolerable_move) return {};
-  return {shaped(solver, chosen, fmt::format("the mean of {} moves by {}", check.parameter, move_text(check.move)))};
+  return {
+      shaped(solver, chosen, {check.parameter}, fmt::format("the mean of {} moves by {}", check.parameter, move_text(check.move)))};
 }
 
 }  // namespace sysid

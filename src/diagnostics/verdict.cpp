@@ -11,12 +11,15 @@ namespace sysid {
 namespace {
 
 // What the other checks say of a part of a run says little of the run.
-bool is_end(Finding const& finding) { return finding.code == "interrupted"; }
+bool is_end(Finding const& finding) { return finding.code == FindingCode::interrupted; }
 
 }  // namespace
 
 Finding interrupted_finding(std::string const& what) {
-  return {Severity::error, "interrupted", "the run was interrupted: " + what,
+  return {FindingCode::interrupted,
+          Severity::error,
+          {},
+          "the run was interrupted: " + what,
           "go on with --resume; it ends with the bytes of an unbroken run"};
 }
 
@@ -52,13 +55,14 @@ Verdict judge(Findings const& findings) {
     char const* const mark = finding.severity == Severity::error     ? "failed"
                              : finding.severity == Severity::warning ? "warning"
                                                                      : "note";
-    verdict.text += fmt::format("\n  {}[{}]: {}", mark, finding.code, finding.message);
+    verdict.text += fmt::format("\n  {}[{}]: {}", mark, word(finding.code), finding.message);
     if (!finding.help.empty()) verdict.text += fmt::format("\n    what to do: {}", finding.help);
   }
   if (findings.empty()) return verdict;
   bool const alike =
       std::all_of(findings.begin(), findings.end(), [&](Finding const& each) { return each.code == findings.front().code; });
-  verdict.text += fmt::format("\n  more: sysid explain {}", alike ? findings.front().code : "CODE, for each word in brackets");
+  verdict.text +=
+      fmt::format("\n  more: sysid explain {}", alike ? word(findings.front().code) : "CODE, for each word in brackets");
   return verdict;
 }
 

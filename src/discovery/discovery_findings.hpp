@@ -5,7 +5,7 @@
 
 namespace sysid {
 
-/// equation: named where there are several, else empty.
-Finding finding_of(regression::Concern const& concern, std::string const& equation);
+/// equation: named where there are several, else empty. names: the terms or the channel of the concern.
+Finding finding_of(regression::Concern const& concern, std::string const& equation, std::vector<std::string> names);
 
 }  // namespace sysid

@@ -33,7 +33,7 @@ std::optional<Finding> given_up(JudgedReport const& judged) {
   for (JudgedStructure const& each : judged.structures)
     if (each.given_up) names.push_back(each.terms);
   if (names.empty()) return std::nullopt;
-  return Finding{Severity::warning, "not_refitted",
+  return Finding{FindingCode::not_refitted, Severity::warning, names,
                  fmt::format("{} given up: implicit equations are simulated one after the other, and {} more of that than is spent "
                              "on a judgement",
                              quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
@@ -41,13 +41,15 @@ std::optional<Finding> given_up(JudgedReport const& judged) {
 }
 
 std::optional<Finding> idle_terms(JudgedStructure const& best) {
-  std::vector<std::string> idle;
+  std::vector<std::string> idle, names;
   for (JudgedCoefficient const& each : best.coefficients)
-    if (!each.of_target && std::abs(each.value) < idle_sds * each.sd)
+    if (!each.of_target && std::abs(each.value) < idle_sds * each.sd) {
+      names.push_back(each.term);
       idle.push_back(fmt::format("`{}`{}", each.term, best.equations.size() > 1 ? " of " + each.target : ""));
+    }
   if (idle.empty()) return std::nullopt;
   bool const one = idle.size() == 1;
-  return Finding{Severity::warning, "term_idle",
+  return Finding{FindingCode::term_idle, Severity::warning, std::move(names),
                  fmt::format("by the motion the {} of {} {} less than two sds from zero", one ? "coefficient" : "coefficients",
                              fmt::join(idle, ", "), one ? "is" : "are"),
                  fmt::format("leave {0} out of the dictionary, or take a record in which {1} more", one ? "it" : "them",
@@ -68,10 +70,16 @@ std::optional<Finding> lost_free_run(JudgedReport const& judged) {
   if (noise > telling_percent)
     message += fmt::format("; the noise of what it is compared with is {} % of that sd", significant(noise, 3));
   if (far && *far < foretold_percent)
-    return Finding{Severity::note, "free_run_lost", std::move(message),
+    return Finding{FindingCode::free_run_lost,
+                   Severity::note,
+                   {judged.aside},
+                   std::move(message),
                    "expected of a chaotic motion, which is foretold for a while only"};
   return Finding{
-      Severity::warning, "free_run_lost", std::move(message),
+      FindingCode::free_run_lost,
+      Severity::warning,
+      {judged.aside},
+      std::move(message),
       "not even one dominant period is foretold to half the sd: do not extrapolate, and look for what the equation lacks"};
 }
 
@@ -79,7 +87,9 @@ void add_overestimated_noise(JudgedStructure const& best, Findings& findings) {
   for (JudgedChannel const& each : best.channels)
     if (each.residual < small_residual * each.noise)
       findings.push_back(
-          {Severity::note, "noise_overestimated",
+          {FindingCode::noise_overestimated,
+           Severity::note,
+           {each.channel},
            fmt::format(
                "what the simulated motion leaves of `{}` is {} times the noise that the regression took: its sds are too large",
                each.channel, significant(each.residual / each.noise, 3)),
@@ -92,7 +102,7 @@ void add_overestimated_noise(JudgedStructure const& best, Findings& findings) {
 void temper_by_simulation(JudgedReport const& judged, Findings& of_regression) {
   if (!explains_motion(judged)) return;
   for (Finding& each : of_regression) {
-    if (each.code != "unexplained_residual") continue;
+    if (each.code != FindingCode::unexplained_residual) continue;
     each.severity = Severity::note;
     each.message += fmt::format("; but simulated, the motion is explained to {} times the noise",
                                 significant(judged.structures.front().residual_over_noise, 3));
@@ -103,13 +113,13 @@ void temper_by_simulation(JudgedReport const& judged, Findings& of_regression) {
 Findings judged_findings(JudgedReport const& judged) {
   Findings findings;
   JudgedStructure const& best = judged.structures.front();
-  auto const add = [&](Severity severity, char const* code, std::string message, char const* help) {
-    findings.push_back({severity, code, std::move(message), help});
+  auto const add = [&](FindingCode code, Severity severity, std::vector<std::string> names, std::string message, char const* help) {
+    findings.push_back({code, severity, std::move(names), std::move(message), help});
   };
   auto const regression = std::find_if(judged.structures.begin(), judged.structures.end(),
                                        [](JudgedStructure const& each) { return each.of_regression == 1; });
   if (regression != judged.structures.begin())
-    add(Severity::warning, "simulation_prefers",
+    add(FindingCode::simulation_prefers, Severity::warning, {best.terms, regression->terms},
         fmt::format("simulation ranks `{}` first, the regression `{}`, which {}", best.terms, regression->terms,
                     regression->failure.empty()
                         ? fmt::format("has a probability of {} by the motion", probability_text(regression->probability))
@@ -119,22 +129,23 @@ Findings judged_findings(JudgedReport const& judged) {
   if (costly) findings.push_back(*costly);
   if (!best.failure.empty()) {
     if (costly) return findings;
-    add(Severity::warning, "not_refitted", fmt::format("no structure could be judged by simulation: {}", best.failure),
+    add(FindingCode::not_refitted, Severity::warning, {},
+        fmt::format("no structure could be judged by simulation: {}", best.failure),
         "the coefficients are those of the regression: look at the record's length and step, and at terms that diverge");
     return findings;
   }
   if (auto idle = idle_terms(best)) findings.push_back(std::move(*idle));
   if (!judged.whole)
-    add(Severity::note, "followed_in_parts",
+    add(FindingCode::followed_in_parts, Severity::note, {},
         fmt::format("the record is followed for {} at a time, each from a start of its own", significant(judged.longest, 3) + " s"),
         "expected of a chaotic motion; else a term or an input is missing");
   if (best.residual_over_noise > tolerable_residual)
-    add(Severity::warning, "motion_unexplained",
+    add(FindingCode::motion_unexplained, Severity::warning, {},
         fmt::format("the residual of the simulated motion is {} times the measurement noise",
                     significant(best.residual_over_noise, 3)),
         "look for an input that was not recorded, a state that is missing, or add terms");
   if (best.bounded < best.draws)
-    add(Severity::warning, "draws_not_bounded",
+    add(FindingCode::draws_not_bounded, Severity::warning, {},
         fmt::format("{} of {} draws of the coefficients do not stay within ten times the range of the record in a free run",
                     best.draws - best.bounded, best.draws),
         "a term may destabilise where the record hardly goes: leave it out, or take a record of larger amplitude");

@@ -63,7 +63,9 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
   constexpr std::size_t most_named = 5;
   std::vector<std::string> rows;
   for (std::size_t const row : suspect.rows) rows.push_back(std::to_string(data.experiment.first_row + static_cast<int>(row)));
-  return {Severity::warning, "looks_missing",
+  return {FindingCode::looks_missing,
+          Severity::warning,
+          {column.column, data.use.name},
           fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
                       data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit, plural("row", rows.size()),
                       first_listed(rows, most_named)),

@@ -2,6 +2,7 @@
 #include "inference/optimum.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +15,9 @@
 namespace sysid::optimum {
 namespace {
 
-/// Names of parameters whose optimum lies within a thousandth of the prior's width (or of a positive lower bound) of a bound.
-std::string parameters_at_bound(Target const& target, Mode const& mode) {
-  std::string names;
+/// Parameters whose optimum lies within a thousandth of the prior's width (or of a positive lower bound) of a bound.
+std::vector<std::size_t> parameters_at_bound(Target const& target, Mode const& mode) {
+  std::vector<std::size_t> found;
   auto const parameters = target.parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     double const width = parameters[p].upper - parameters[p].lower;
@@ -24,10 +25,9 @@ std::string parameters_at_bound(Target const& target, Mode const& mode) {
     // Logarithmic coordinates end at the lower bound relative to it, not to the width.
     double const below = mode.declared[p] - parameters[p].lower, above = parameters[p].upper - mode.declared[p];
     double const unit = parameters[p].lower > 0 ? std::min(width, parameters[p].lower) : width;
-    if (below < 1e-3 * unit || above < 1e-3 * width)
-      names += fmt::format("{}{} = {:.4g}", names.empty() ? "" : ", ", parameters[p].name, mode.declared[p]);
+    if (below < 1e-3 * unit || above < 1e-3 * width) found.push_back(p);
   }
-  return names;
+  return found;
 }
 
 void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {
@@ -61,13 +61,18 @@ FitResult run(std::string_view backend, Target const& target, Aim aim, Settings 
   Mode const& best = result.modes.front();
   result.findings = std::move(found.findings);
   result.search_told = true;
-  std::string const bound = parameters_at_bound(target, best);
-  if (!bound.empty()) {
+  std::vector<std::string> names, bound;
+  for (std::size_t const p : parameters_at_bound(target, best)) {
+    names.push_back(target.parameters()[p].name);
+    bound.push_back(fmt::format("{} = {:.4g}", names.back(), best.declared[p]));
+  }
+  if (!names.empty()) {
     // Coordinates end there at infinity: of course they are flat.
-    std::erase_if(result.findings, [](Finding const& each) { return each.code == "flat_direction"; });
-    result.findings.push_back({Severity::warning, "at_bound",
-                               fmt::format("the optimum lies at a bound of the prior: {}; its widths mean little", bound),
-                               "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
+    std::erase_if(result.findings, [](Finding const& each) { return each.code == FindingCode::flat_direction; });
+    result.findings.push_back(
+        {FindingCode::at_bound, Severity::warning, std::move(names),
+         fmt::format("the optimum lies at a bound of the prior: {}; its widths mean little", fmt::join(bound, ", ")),
+         "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
   }
   write_draw(target, best, context, result);
   // One draw has no spread: the standard deviations are those of the Laplace approximation.

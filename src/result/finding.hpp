@@ -1,18 +1,24 @@
 // What a run has to say about its own result, as a value: back ends and checks find, verdict.cpp words the whole, the report shows.
+// Decisions go by code, severity and names, never by the sentences.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "core/text/diagnostic.hpp"
+#include "result/finding_table.hpp"
 
 namespace sysid {
 
 /// error: a diagnostic fails, the numbers are not to be used; warning: usable, but look; note: for the record.
 struct Finding {
-  Severity severity = Severity::note;
-  std::string code;     // one word for programs: "chain_did_not_move"
-  std::string message;  // one sentence in plain words, lower case, no full stop, naming parameters and numbers
-  std::string help;     // what to do; may be empty
+  /// severity: one of those in the table's row.
+  Finding(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help);
+
+  FindingCode code;
+  Severity severity;
+  std::vector<std::string> names;  // what it concerns: parameters, channels, experiments, models, tasks, terms; may be empty
+  std::string message;             // one sentence in plain words, lower case, no full stop, naming parameters and numbers
+  std::string help;                // what to do; may be empty
   friend bool operator==(Finding const&, Finding const&) = default;
 };
 

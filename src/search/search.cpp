@@ -110,15 +110,15 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
   }
   if (known) return std::nullopt;
   if (names.size() == 1)
-    return Finding{Severity::warning, "flat_direction",
+    return Finding{FindingCode::flat_direction, Severity::warning, names,
                    fmt::format("the data leave {} undetermined: its width is the prior's", names.front()),
                    "fix it to a value, give it a narrower prior, or measure what tells it"};
   if (moves.empty())
-    return Finding{Severity::warning, "flat_direction",
+    return Finding{FindingCode::flat_direction, Severity::warning, names,
                    fmt::format("the data leave a combination of {} undetermined: its width is the prior's", listed(names)),
                    "fix an amplitude or a length, or measure what tells the functions apart"};
   return Finding{
-      Severity::warning, "flat_direction",
+      FindingCode::flat_direction, Severity::warning, names,
       fmt::format("the data leave a combination of {} undetermined: moving {} together changes next to nothing, and its width is "
                   "the prior's",
                   listed(names), listed(moves)),
@@ -130,7 +130,9 @@ void add_findings(Objective const& objective, SearchResult& result) {
   for (std::size_t i = 1; i < modes.size() && objective.aim != Aim::likelihood; ++i) {
     if (modes[i].share <= notable_share) continue;
     result.findings.push_back(
-        {Severity::warning, "second_mode",
+        {FindingCode::second_mode,
+         Severity::warning,
+         {},
          fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
                      describe(objective.target, modes[i])),
          "look at both solutions: add data or prior knowledge that tells them apart, or run more chains and report both"});
@@ -331,7 +333,9 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
 Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
   std::string const places = failed_places(ledger);
   return {
-      Severity::error, "no_finite_start",
+      FindingCode::no_finite_start,
+      Severity::error,
+      {},
       fmt::format("the likelihood is finite at none of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
       "look at this part of the equations, narrow the priors towards values for which the model can be solved, or let the solver "
       "choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff"};

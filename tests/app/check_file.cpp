@@ -88,8 +88,8 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
           for (Finding const& finding : each.findings) {
             // True of rivals, told as notes: with n = 4 and a negative beta the slope of z grows as its fourth power, so a fifth of
             // the prior is beyond what can be simulated; with n = 1 beta is small beside A/z, so little of it shows.
-            bool const true_of_rival = (each.candidate == "bouc_wen(n = 4)" && finding.code == "prior_fails") ||
-                                       (each.candidate == "bouc_wen(n = 1)" && finding.code == "barely_narrowed");
+            bool const true_of_rival = (each.candidate == "bouc_wen(n = 4)" && finding.code == FindingCode::prior_fails) ||
+                                       (each.candidate == "bouc_wen(n = 1)" && finding.code == FindingCode::barely_narrowed);
             if (!true_of_rival || finding.severity != Severity::note)
               FAIL_CHECK(page.name << " " << each.candidate << ": " << finding.message);
           }

@@ -13,9 +13,9 @@ using namespace sysid;
 
 namespace {
 
-Finding const* find(Outlook const& outlook, std::string const& code) {
+Finding const* find(Outlook const& outlook, std::string_view code) {
   for (Finding const& each : outlook.findings)
-    if (each.code == code) return &each;
+    if (word(each.code) == code) return &each;
   return nullptr;
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("the integrator of a selection is judged by what it does to distances"
       with(duffing_selection("", task + ", solver = heun\n"), "log_uniform(1e3, 1e5)", "log_uniform(2e5, 1e6)");
   Outlook const heun = outlook(checked(models / "duffing/one.sysid", fast), "which", "duffing");
   REQUIRE_FALSE(heun.findings.empty());
-  CHECK(heun.findings.back().code == "integration_step");
+  CHECK(heun.findings.back().code == FindingCode::integration_step);
   CHECK(heun.findings.back().message.find("with heun(substeps = 1) the solver shapes the distances") == 0);
   // Noise that is stated says where distances end: an sd of 1e-8 m is far below what half a step changes.
   std::string const quiet =

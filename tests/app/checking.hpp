@@ -41,7 +41,7 @@ inline std::vector<std::string> messages(CheckResult const& result, std::string 
   std::vector<std::string> out;
   for (TaskPage const& page : result.page.tasks)
     for (Finding const& finding : page.all_findings())
-      if (finding.code == code) out.push_back(finding.message);
+      if (word(finding.code) == code) out.push_back(finding.message);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "answer.hpp"
+#include "result/finding.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -39,26 +40,16 @@ std::set<std::string> codes_in_sources() {
   return codes;
 }
 
-// Words that the sources give to findings: behind a severity, or where one asks for another.
-std::set<std::string> findings_in_sources() {
+std::set<std::string> codes_of_findings() {
   std::set<std::string> codes;
-  std::regex const code(
-      "(?:(?:Severity::(?:error|warning|note)|severity),\\s*|code == |loud \\? |: |check\\()\"([a-z]+_[a-z_]+|interrupted)\"");
-  for (char const* folder :
-       {"src/app", "src/diagnostics", "src/discovery", "src/experiment", "src/inference", "src/mechanics", "src/search"})
-    for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / folder)) {
-      if (entry.path().extension() != ".cpp") continue;
-      std::string const text = content(entry.path());
-      for (std::sregex_iterator match(text.begin(), text.end(), code), end; match != end; ++match) codes.insert((*match)[1]);
-    }
+  for (FindingRow const& row : finding_table()) codes.emplace(row.word);
   return codes;
 }
 
 }  // namespace
 
-TEST_CASE("every code of the sources has one section, and every section a code of the sources") {
-  std::set<std::string> const codes = codes_in_sources(), findings = findings_in_sources();
-  CHECK(findings.size() > 25);
+TEST_CASE("every code of the sources and every finding of the table has one section, and every section one of them") {
+  std::set<std::string> const codes = codes_in_sources(), findings = codes_of_findings();
   std::set<std::string> explained;
   for (ErrorSection const& section : error_sections()) {
     CAPTURE(section.code);
@@ -70,12 +61,31 @@ TEST_CASE("every code of the sources has one section, and every section a code o
     for (std::string const& code : *all) CHECK_MESSAGE(explained.contains(code), code);
 }
 
+TEST_CASE("the sections about findings stand in the order of the table, which finds its codes by their words") {
+  std::vector<std::string> sections, rows;
+  for (ErrorSection const& section : error_sections())
+    if (section.of_finding()) sections.push_back(section.code);
+  for (FindingRow const& row : finding_table()) {
+    rows.emplace_back(row.word);
+    CHECK(finding_code(row.word) == row.code);
+    CHECK(word(row.code) == row.word);
+  }
+  CHECK(sections == rows);
+  CHECK_FALSE(finding_code("no_such_finding"));
+}
+
+TEST_CASE("a finding has a severity of its row") {
+  CHECK_NOTHROW(Finding(FindingCode::explains_little, Severity::error, {}, "m", ""));
+  CHECK_NOTHROW(Finding(FindingCode::explains_little, Severity::warning, {}, "m", ""));
+  CHECK_THROWS_AS(Finding(FindingCode::explains_little, Severity::note, {}, "m", ""), InternalError);
+}
+
 TEST_CASE("the page about the verdict names every finding") {
   std::string const methods = content(std::filesystem::path(SYSID_SOURCE_DIR) / "docs" / "methods" / "verdict.md");
   std::size_t const begin = methods.find("## Findings and exit codes");
   REQUIRE(begin != std::string::npos);
   std::string const table = methods.substr(begin, methods.find("\n## ", begin + 1) - begin);
-  for (std::string const& code : findings_in_sources()) CHECK_MESSAGE(table.find("`" + code + "`") != std::string::npos, code);
+  for (std::string const& code : codes_of_findings()) CHECK_MESSAGE(table.find("`" + code + "`") != std::string::npos, code);
 }
 
 TEST_CASE("the bad example of a section gives its code, once and alone, and the mended twin gives nothing") {

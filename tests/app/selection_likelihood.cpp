@@ -149,7 +149,7 @@ TEST_CASE("each model whose probabilities disagree is named, the largest differe
   add("f", 0, 4);
   Findings const findings = compare_probabilities(result, {0.1, 0.5, 0.24, 0.15, 0.01, std::nullopt});
   REQUIRE(findings.size() == 1);
-  CHECK(findings.front().code == "probabilities_disagree");
+  CHECK(findings.front().code == FindingCode::probabilities_disagree);
   // 0.15/0.02, 0.6/0.2, 0.45/0.2 of what is tolerable; c differs by 0.01, e is left 0.01 though it died, of f nothing was found.
   CHECK(findings.front().message ==
         "`d` has probability 0.00 by the particles and 0.15 by the likelihood, it died in population 3; "

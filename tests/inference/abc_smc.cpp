@@ -38,7 +38,7 @@ SelectionResult run(SelectionTarget const& toy, Settings const& settings, std::u
 }
 
 bool has(Findings const& findings, std::string const& code) {
-  return std::any_of(findings.begin(), findings.end(), [&](Finding const& f) { return f.code == code; });
+  return std::any_of(findings.begin(), findings.end(), [&](Finding const& f) { return word(f.code) == code; });
 }
 
 }  // namespace
@@ -192,7 +192,7 @@ TEST_CASE("degenerate cases end in words") {
     Toy const toy({{"far", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return 5.0; }}});
     SelectionResult const result = run(toy, with({{"first_threshold", 1.0}, {"simulations", 20000.0}}));
     REQUIRE(result.failure);
-    CHECK(result.failure->code == "no_population");
+    CHECK(result.failure->code == FindingCode::no_population);
     CHECK(result.failure->message.find("0 of 1000") != std::string::npos);
     CHECK(result.failure->message.find("within the first threshold 1 after 20000 simulations: `simulations = 20000`") !=
           std::string::npos);

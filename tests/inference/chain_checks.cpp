@@ -41,7 +41,7 @@ TEST_CASE("a chain that accepts almost nothing did not move, and that is all tha
   fixed.adaptive = false;
   Findings const findings = check_chains(fixed);
   REQUIRE(findings.size() == 1);
-  CHECK(findings[0].code == "chain_did_not_move");
+  CHECK(findings[0].code == FindingCode::chain_did_not_move);
   CHECK(findings[0].severity == Severity::error);
   CHECK(findings[0].message.find("chain 4 accepted 0.01 %") != std::string::npos);
   CHECK(findings[0].help.find("proposal = adaptive") != std::string::npos);
@@ -54,17 +54,17 @@ TEST_CASE("a chain with few distinct states is named with their number") {
   poor.distinct_states[1] = 37;
   Findings const findings = check_chains(poor);
   REQUIRE(findings.size() == 1);
-  CHECK(findings[0].code == "few_distinct_states");
+  CHECK(findings[0].code == FindingCode::few_distinct_states);
   CHECK(findings[0].message.find("chain 2 visited only 37") != std::string::npos);
 }
 
 TEST_CASE("chains that disagree a little fail quietly, a lot loudly") {
   Findings const little = check_chains(report(chains(4, 5000, 0, 0.4)));
   REQUIRE_FALSE(little.empty());  // the variance of the half-chains' means is 0.034, so R-hat is near 1.017
-  CHECK(little[0].code == "chains_not_quite_agreed");
+  CHECK(little[0].code == FindingCode::chains_not_quite_agreed);
   Findings const much = check_chains(report(chains(4, 2000, 0, 3)));
   REQUIRE(much.size() == 1);
-  CHECK(much[0].code == "chains_disagree");
+  CHECK(much[0].code == FindingCode::chains_disagree);
   CHECK(much[0].message.find("k (") != std::string::npos);
 }
 
@@ -72,12 +72,13 @@ TEST_CASE("too few independent draws are reported with how much longer to run") 
   // AR(1) with 0.98: 4 x 6000 (1 - 0.98)/(1 + 0.98) = 242 effective draws for the mean.
   Findings const findings = check_chains(report(chains(4, 6000, 0.98)));
   bool low = false;
-  for (Finding const& f : findings) low = low || (f.code == "ess_bulk_low" && f.help.find("times as long") != std::string::npos);
+  for (Finding const& f : findings)
+    low = low || (f.code == FindingCode::ess_bulk_low && f.help.find("times as long") != std::string::npos);
   CHECK(low);
 }
 
 TEST_CASE("draws that are all equal cannot be judged, which is a failure too") {
   Findings const findings = check_chains(report(ChainValues(4, std::vector<double>(2000, 1.0))));
   REQUIRE(findings.size() == 1);
-  CHECK(findings[0].code == "no_diagnostics");
+  CHECK(findings[0].code == FindingCode::no_diagnostics);
 }

@@ -89,7 +89,7 @@ bool same_draws(FitResult const& a, FitResult const& b) {
 
 std::vector<std::string> codes(FitResult const& result) {
   std::vector<std::string> all;
-  for (Finding const& f : result.findings) all.push_back(f.code);
+  for (Finding const& f : result.findings) all.emplace_back(word(f.code));
   return all;
 }
 
@@ -300,7 +300,7 @@ TEST_CASE("a checkpoint of another run is refused with its reason") {
   saved["theta"] = "?";
   Bench damaged(9);
   damaged.context.resume = std::make_shared<nlohmann::json const>(saved);
-  CHECK(mh::run(known.target, chosen(600, 200), damaged.context).failure->code == "checkpoint_mismatch");
+  CHECK(mh::run(known.target, chosen(600, 200), damaged.context).failure->code == FindingCode::checkpoint_mismatch);
 }
 
 TEST_CASE("a prior without any solvable point is a failure with its classes, not a crash") {
@@ -308,11 +308,11 @@ TEST_CASE("a prior without any solvable point is a failure with its classes, not
                           [](std::vector<double> const&, std::vector<double>& rows) { rows[0] = infinity; });
   FitResult const result = fit(target, chosen(100, 10));
   REQUIRE(result.failure);
-  CHECK(result.failure->code == "no_finite_start");
+  CHECK(result.failure->code == FindingCode::no_finite_start);
   CHECK(result.failure->message.find("the test's residual") != std::string::npos);
   Settings settings = chosen(100, 10);
   settings.set("start", std::string("prior"));
-  CHECK(fit(target, settings).failure->code == "no_finite_start");
+  CHECK(fit(target, settings).failure->code == FindingCode::no_finite_start);
 }
 
 TEST_CASE("settings that leave no draws are refused") {

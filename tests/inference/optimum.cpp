@@ -70,7 +70,7 @@ TEST_CASE("modes that a search has found are not searched for again") {
   Bench first, second;
   SearchResult const found = search(target, Aim::declared_posterior, first.context);
   second.context.modes = found.modes;
-  second.context.mode_findings = {{Severity::warning, "of_the_search", "", ""}};
+  second.context.mode_findings = {{FindingCode::flat_direction, Severity::warning, {}, "", ""}};
   auto const before = target.solves;
   FitResult const result = optimum::run_map(target, Settings{}, second.context);
   CHECK(target.solves == before + 1);  // its log likelihood
@@ -96,7 +96,7 @@ TEST_CASE("an optimum at a bound of the prior is reported, one inside is not") {
   FitResult const result =
       optimum::run_ml(normal_sample(sample, {Prior::uniform, 0.01, 0.5 / variance()}), Settings{}, bench.context);
   REQUIRE(result.findings.size() == 1);
-  CHECK(result.findings[0].code == "at_bound");
+  CHECK(result.findings[0].code == FindingCode::at_bound);
   CHECK(result.findings[0].message.find("precision") != std::string::npos);
   CHECK(result.draws.chains[0].values[0][1] == doctest::Approx(0.5 / variance()).epsilon(1e-4));
   CHECK(

@@ -71,7 +71,7 @@ TEST_CASE("modes are weighed by the mass below them, not by their height") {
   CHECK(result.modes[0].share == doctest::Approx(wide / (wide + narrow + small)).epsilon(2e-3));
   CHECK(result.modes[1].share == doctest::Approx(narrow / (wide + narrow + small)).epsilon(6e-3));
   REQUIRE(result.findings.size() == 1);
-  CHECK(result.findings[0].code == "second_mode");
+  CHECK(result.findings[0].code == FindingCode::second_mode);
   CHECK(result.findings[0].message.find("x = 10") != std::string::npos);
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("a combination that the data leave alone is reported") {
   Bench likelihood, posterior;
   SearchResult const flat = search(target, Aim::likelihood, likelihood.context);
   REQUIRE(flat.findings.size() == 1);
-  CHECK(flat.findings[0].code == "flat_direction");
+  CHECK(flat.findings[0].code == FindingCode::flat_direction);
   CHECK(flat.findings[0].message.find("a combination of a and b") != std::string::npos);
   // The direction is (1, -1): a tenth of a prior width of each, in opposite senses.
   REQUIRE(flat.modes[0].flat.size() == 2);
@@ -129,7 +129,7 @@ TEST_CASE("a sum that alone is measured is reported for bounded priors, too, whe
   Bench bench;
   SearchResult const result = search(target, Aim::likelihood, bench.context);
   CHECK(std::any_of(result.findings.begin(), result.findings.end(),
-                    [](Finding const& each) { return each.code == "flat_direction"; }));
+                    [](Finding const& each) { return each.code == FindingCode::flat_direction; }));
 }
 
 TEST_CASE("a parameter that the data leave alone is named by itself") {
@@ -164,7 +164,7 @@ TEST_CASE("an optimum is the highest mode, and a lower one that holds more is re
   double const wide = 0.75 * std::exp(-0.5 * 400 / 904) / std::sqrt(904.0), narrow = 0.25 * std::exp(-0.5 * 100 / 900) / 30;
   CHECK(result.modes[1].share == doctest::Approx(wide / (wide + narrow)).epsilon(5e-3));
   REQUIRE(result.findings.size() == 1);
-  CHECK(result.findings[0].code == "second_mode");
+  CHECK(result.findings[0].code == FindingCode::second_mode);
 }
 
 TEST_CASE("progress counts simulations up to those of a usual search") {

@@ -129,7 +129,8 @@ Report duffing(int draws) {
        "1..500",
        "5994471abb01112afcc18159f6cc74b4f511b99806da59b3caf5a9c173cacfc5",
        {"rows 1..500 of 1500", "input x = force [N], held between samples (zero_order)", "measure displacement = y_noisy [mm]"}});
-  report.findings.push_back({Severity::note, "step", "no posterior mean moves by more than 0.01 sd at half the step", ""});
+  report.findings.push_back(
+      {FindingCode::selection_ended, Severity::note, {}, "no posterior mean moves by more than 0.01 sd at half the step", ""});
   report.fit = {{"bench.train", "displacement", "mm", {{"nmse", 0.0104}, {"chi_squared_per_sample", 1.01}}}};
   Mode mode;
   mode.declared = truth;

@@ -91,7 +91,7 @@ TEST_CASE("pages keep the rules whatever is in them") {
   std::string const bytes(raw, sizeof raw - 1);  // a zero byte among them
   hostile.task = hostile.what = hostile.model_title = hostile.model_text = hostile.command = bytes;
   hostile.equations = {bytes};
-  hostile.findings.push_back({Severity::error, bytes, bytes, bytes});
+  hostile.findings.push_back({FindingCode::noise_size, Severity::error, {bytes}, bytes, bytes});
   hostile.summary[0].name = hostile.priors[0].name = hostile.summary[0].unit = bytes;
   hostile.data[0].notes = {bytes};
   hostile.tables.push_back({bytes, bytes, {bytes, bytes}, {{bytes, bytes}}});
@@ -177,7 +177,7 @@ TEST_CASE("sentences follow the values and never contradict the checks") {
   CHECK(says({{"chi_squared_per_sample", 0.6}}, "noise accounts for them"));
   report.noise = {"sigma"};
   CHECK(says({{"chi_squared_per_sample", 0.6}}, "was fitted to them, so that this says nothing of the model"));
-  report.findings = {{Severity::error, "noise_size", "m", ""}};
+  report.findings = {{FindingCode::noise_size, Severity::error, {}, "m", ""}};
   CHECK(says({{"chi_squared_per_sample", 0.6}}, "smaller than the model says"));
   CHECK(says({{"chi_squared_per_sample", 3}}, "larger than the model says"));
   CHECK(report_html(report, {}).find("narrow every parameter") == std::string::npos);  // nothing is learnt from what failed
@@ -217,7 +217,7 @@ TEST_CASE("the page shows model, data, result, failures and how to repeat it") {
 TEST_CASE("the user's text cannot become markup") {
   Report report = example::duffing(20);
   report.task = "<b>x</b>";
-  report.findings.push_back({Severity::warning, "c", "a < b", "<i>"});
+  report.findings.push_back({FindingCode::at_bound, Severity::warning, {}, "a < b", "<i>"});
   std::string const page = report_html(report, {});
   CHECK(page.find("<b>x</b>") == std::string::npos);
   CHECK(page.find("&lt;b&gt;x&lt;/b&gt;") != std::string::npos);
@@ -228,9 +228,9 @@ TEST_CASE("the user's text cannot become markup") {
 TEST_CASE("the verdict box takes the colour of the worst finding") {
   Report report = example::duffing(20);
   CHECK(report_html(report, {}).find("class=\"part verdict good\"") != std::string::npos);
-  report.findings.push_back({Severity::warning, "c", "m", ""});
+  report.findings.push_back({FindingCode::at_bound, Severity::warning, {}, "m", ""});
   CHECK(report_html(report, {}).find("class=\"part verdict doubtful\"") != std::string::npos);
-  report.findings.push_back({Severity::error, "c", "m", ""});
+  report.findings.push_back({FindingCode::noise_size, Severity::error, {}, "m", ""});
   CHECK(report_html(report, {}).find("class=\"part verdict bad\"") != std::string::npos);
 }
 
@@ -247,11 +247,11 @@ TEST_CASE("what is said of modes is no more than a search can see, least of all 
   report.modes[0].hits = 3;
   auto const says = [&](char const* words) { return report_html(report, {}).find(words) != std::string::npos; };
   CHECK(says("The search found one mode, where 3 of its local searches ended. It saw no other values"));
-  report.findings = {{Severity::error, "residuals", "m", ""}};
+  report.findings = {{FindingCode::noise_size, Severity::error, {}, "m", ""}};
   CHECK(says("The search found one mode, where 3 of its local searches ended. A check failed: a better mode may lie"));
   CHECK_FALSE(says("no other values"));
   CHECK_FALSE(says("search = everywhere"));
-  report.findings.push_back({Severity::note, "searched_near", "m", ""});
+  report.findings.push_back({FindingCode::searched_near, Severity::note, {}, "m", ""});
   CHECK(says("<code>search = everywhere</code>"));
   report.modes.resize(2, report.modes[0]);
   CHECK(says("The search found 2 modes, where 3 and 3 of its local searches ended."));

@@ -37,7 +37,7 @@ TEST_CASE("the summary holds each parameter with unit and diagnostics, exactly")
 
 TEST_CASE("a failed diagnostic fails the verdict") {
   Report report = example::duffing(20);
-  report.findings.push_back({Severity::error, "rhat", "the chains disagree on m", "run longer"});
+  report.findings.push_back({FindingCode::chains_disagree, Severity::error, {}, "the chains disagree on m", "run longer"});
   auto const json = nlohmann::json::parse(summary_json(report));
   CHECK(json["verdict"]["pass"] == false);
 }

@@ -12,7 +12,7 @@ TEST_CASE("the terminal shows aligned columns under the user's names, failures a
   report.summary = {{"m", "kg", 1.00045, 1, 0.00063, 0.0006, 0.9994, 1.0015, 1.001, 734, 890, 2.3e-5},
                     {"k3", "N/m^3", 4.986e9, 4.98e9, 3.27e7, 3e7, 4.932e9, 5.04e9, 1.002, 701.4, 650, 1.2e6}};
   report.predictions.clear();
-  report.findings = {{Severity::warning, "modes", "a second mode holds 2 %", "look at the starts"}};
+  report.findings = {{FindingCode::second_mode, Severity::warning, {}, "a second mode holds 2 %", "look at the starts"}};
   CHECK(terminal_summary(report) ==
         "posterior: fit duffing to bench.train with mh\n"
         "4 chains of 20 draws, seed 1\n"
@@ -26,9 +26,9 @@ TEST_CASE("the terminal shows aligned columns under the user's names, failures a
         "  3 x non-finite: k3*y^3 at duffing.sysid:12 (first at t = 0.01250 s)\n"
         "\n"
         "verdict: use with care: one thing to look at\n"
-        "  warning[modes]: a second mode holds 2 %\n"
+        "  warning[second_mode]: a second mode holds 2 %\n"
         "    what to do: look at the starts\n"
-        "  more: sysid explain modes\n");
+        "  more: sysid explain second_mode\n");
 }
 
 TEST_CASE("each channel of each experiment has one line of scores, with the unit of its rmse and each score once") {

@@ -45,7 +45,7 @@ Findings check_prior_size(Session& session, FitTask const& what, std::vector<Exp
   Outlook page;
   LookedAt const look(session, what, data, page);
   describe_prior(look, draw_prior(look));
-  std::erase_if(page.findings, [](Finding const& each) { return each.code != "prior_far_from_data"; });
+  std::erase_if(page.findings, [](Finding const& each) { return each.code != FindingCode::prior_far_from_data; });
   return page.findings;
 }
 

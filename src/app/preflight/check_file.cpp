@@ -47,7 +47,9 @@ void check_bands(TaskPage& page) {
     for (CoveragePage::Input const& input : coverage.inputs)
       if (input.rule == rule_name(InputRule::band_limited) && input.high > band_limited_reach_of_rate * coverage.rate)
         page.findings.push_back(
-            {Severity::warning, "input_band",
+            {FindingCode::input_band,
+             Severity::warning,
+             {input.name, coverage.name},
              fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `band_limited` is exact to 0.45 of "
                          "it only",
                          input.name, coverage.name, input.high, input.high / coverage.rate),
@@ -113,7 +115,7 @@ void tell_once(std::vector<TaskPage>& pages) {
   Findings told;
   for (TaskPage& page : pages)
     std::erase_if(page.findings, [&](Finding const& each) {
-      if (each.code != "looks_missing") return false;
+      if (each.code != FindingCode::looks_missing) return false;
       if (std::find(told.begin(), told.end(), each) != told.end()) return true;
       told.push_back(each);
       return false;

@@ -51,9 +51,9 @@ class Description {
 
  private:
   // Which candidate is probable does not hang on parameters that the data leave open, so a candidate's weigh a step less.
-  void add(Severity severity, std::string code, std::string message, std::string help) {
+  void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) {
     if (!page_.candidate.empty()) severity = severity == Severity::error ? Severity::warning : Severity::note;
-    page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
+    page_.findings.push_back({code, severity, std::move(names), std::move(message), std::move(help)});
   }
 
   // An unknown function is one line, whatever the number of its coefficients.
@@ -86,7 +86,11 @@ class Description {
       std::string const text = words(direction, asked_, channels_);
       page_.information->null_directions.push_back(text);
       for (NullDirection::Part const& part : direction.parts) null_[static_cast<std::size_t>(part.parameter)] = true;
-      add(Severity::error, "not_identifiable", fmt::format("{} (at {} of {} prior draws)", text, space.draws, space.draws),
+      std::vector<std::string> names;
+      for (NullDirection::Part const& part : direction.parts)
+        names.push_back(asked_[static_cast<std::size_t>(part.parameter)].name);
+      add(FindingCode::not_identifiable, Severity::error, std::move(names),
+          fmt::format("{} (at {} of {} prior draws)", text, space.draws, space.draws),
           direction.kind == NullDirection::Kind::no_influence
               ? "fix it to a value (`=` in place of `~`), measure what it acts on, or excite it"
               : "fix one of them to a known value (`=` in place of `~`), or measure what tells them apart");
@@ -111,7 +115,7 @@ class Description {
     if (null_[i]) line.instead = "not determined";
     bool const vague = !line.relative || line.prior_width > informed;
     if (!null_[i] && vague && least > barely_narrowed)
-      add(Severity::warning, "barely_narrowed",
+      add(FindingCode::barely_narrowed, Severity::warning, {line.name},
           fmt::format("the data will hardly narrow {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} prior draws)",
                       line.name, 100 * least, 100 * most, locals_.size(), locals_.size()),
           "its posterior will be its prior: state what is known of it, or fix it");
@@ -121,7 +125,7 @@ class Description {
     if (coordinate.role == ParameterRole::noise) return "from the residuals";
     if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
     if (coordinate.role == ParameterRole::none) return "used nowhere";  // the checker has warned of it
-    add(Severity::error, "not_identifiable",
+    add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},
         fmt::format("only derived quantities read {}: the data say nothing of it", coordinate.words.name),
         "fix it to a value (`=` in place of `~`), or use it in an equation");
     return "read by derived quantities alone";
@@ -162,7 +166,9 @@ class Description {
       page_.information->ridges.push_back(fmt::format("{}, yet both are narrowed: {}", pair, size));
       return;
     }
-    add(Severity::warning, "nearly_confounded", fmt::format("{}: {}{}", pair, combination, size),
+    add(FindingCode::nearly_confounded, Severity::warning,
+        {asked_[static_cast<std::size_t>(i)].name, asked_[static_cast<std::size_t>(j)].name},
+        fmt::format("{}: {}{}", pair, combination, size),
         "fix one of them, or record what tells them apart; what depends on their combination alone is well known");
   }
 

@@ -39,10 +39,11 @@ void judge_failures(LookedAt const& look) {
   double const share = static_cast<double>(page.failed) / page.draws;
   double const lost = static_cast<double>(page.failed_as_stated - page.failed) / page.draws;
   if (page.failed == page.draws)
-    look.add(Severity::error, "prior_fails", fmt::format("the simulation fails at every one of {} prior draws", page.draws),
+    look.add(FindingCode::prior_fails, Severity::error, {},
+             fmt::format("the simulation fails at every one of {} prior draws", page.draws),
              "look at the priors, the units of the input and the equation at the place named");
   else if (share > many_failures)
-    look.add(!look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, "prior_fails",
+    look.add(FindingCode::prior_fails, !look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
              fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
                          look.candidate()
                              ? fmt::format(": they cost the candidate a factor of {:.2g} in probability, if all else is equal",
@@ -50,7 +51,7 @@ void judge_failures(LookedAt const& look) {
                              : ""),
              "narrow the priors, or look at the equation at the place named");
   if (!look.settles() && lost > many_failures)
-    look.add(Severity::warning, "integration_step",
+    look.add(FindingCode::integration_step, Severity::warning, {},
              fmt::format("with {} {:.0f} % of the prior draws leave the range of numbers that adaptive steps follow",
                          look.what.solver.text(), 100 * lost),
              fmt::format("{}: take shorter steps, or `solver = dopri5` or `cvode`",
@@ -68,7 +69,7 @@ void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double a
         fmt::format("{:.0f} % of the prior draws predict a range of {} more than {} times larger or smaller than the one measured",
                     100 * apart, line.name, wild);
   if (size.empty()) return;
-  look.page.findings.push_back(prior_far_from_data(size));
+  look.page.findings.push_back(prior_far_from_data({line.name}, size));
 }
 
 double range(auto const& value, int first, int end) {

@@ -80,7 +80,7 @@ class Look {
     out.draws = draws;
     out.failed = draws - static_cast<int>(drawn.size());
     if (out.failed > many_failures * draws)
-      add(out.failed == draws ? Severity::error : Severity::warning, "prior_fails",
+      add(FindingCode::prior_fails, out.failed == draws ? Severity::error : Severity::warning, {declared.name},
           fmt::format("{} of {} prior draws leave no likelihood of {}: {}", out.failed, draws, declared.name,
                       model_->model().integrated() ? "the simulation fails, or a hyper-parameter is not positive"
                                                    : "a hyper-parameter or the noise is not positive"),
@@ -110,7 +110,7 @@ class Look {
     for (double const each : noise) shown.push_back(width(declared, each));
     line.prior = spread_of(shown);
     out.lines.push_back(std::move(line));
-    far_from_data("the noise of " + declared.name, noise, measured, declared.name);
+    far_from_data(nullptr, noise, measured, declared.name);
   }
 
   /// Of one channel at prior draws, where there is one.
@@ -152,7 +152,7 @@ class Look {
     for (double const each : drawn) shown.push_back(width(quantity, each));
     ProcessPage::Line line{process.name, std::string(row.name), quantity.unit_text(), spread_of(shown), {}};
     if (amplitude) {
-      far_from_data(fmt::format("`{}`", process.name), drawn, measured, out.channel);
+      far_from_data(&process, drawn, measured, out.channel);
     } else {
       Places const places(first.observations.inputs.col(column + input));
       line.name += " in " + quantity.name;
@@ -169,36 +169,40 @@ class Look {
 
   void lengths(Process const& process, Quantity const& input, std::vector<double> const& drawn, Places const& places) {
     if (places.distinct.size() < 2)
-      return add(Severity::warning, "length_and_inputs",
+      return add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
                  fmt::format("{} of `{}` is constant along the data: nothing tells its length", input.name, process.name),
                  "leave it out of the function, or add a record along which it changes");
     double const spacing = places.spacing(), range = places.range();
     if (double const part = share(drawn, [&](double length) { return length < spacing; }); part >= most)
-      add(Severity::warning, "length_and_inputs",
+      add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
           fmt::format(
               "{:.0f} % of the prior draws have a length of `{}` in {} below the spacing of its inputs: the function is another "
               "noise there",
               100 * part, process.name, input.name),
           "look at the unit of the input, and at the prior of the length");
     else if (double const flat = share(drawn, [&](double length) { return length > nearly_straight * range; }); flat >= most)
-      add(Severity::warning, "length_and_inputs",
+      add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
           fmt::format("{:.0f} % of the prior draws have a length of `{}` in {} of more than {} times the range of its inputs: the "
                       "function is nearly straight there",
                       100 * flat, process.name, input.name, nearly_straight),
           "look at the unit of the input, and at the prior of the length");
   }
 
-  void far_from_data(std::string const& what, std::vector<double> const& drawn, double measured, std::string const& channel) {
+  /// process: nothing where it is the noise of the channel.
+  void far_from_data(Process const* process, std::vector<double> const& drawn, double measured, std::string const& channel) {
     if (!(measured > 0)) return;
     double const ratio = quantile(drawn, 0.5) / measured;
-    bool const is_noise = what.starts_with("the");
-    if (ratio > wild || (!is_noise && ratio < 1 / wild))
-      page_.findings.push_back(prior_far_from_data(
-          fmt::format("half of the prior draws give {} a width {} than the sd of {}", what, times_apart(ratio), channel)));
+    if (ratio <= wild && (process == nullptr || ratio >= 1 / wild)) return;
+    std::vector<std::string> names{channel};
+    if (process != nullptr) names.push_back(process->name);
+    std::string const what = process != nullptr ? fmt::format("`{}`", process->name) : "the noise of " + channel;
+    page_.findings.push_back(prior_far_from_data(
+        std::move(names),
+        fmt::format("half of the prior draws give {} a width {} than the sd of {}", what, times_apart(ratio), channel)));
   }
 
-  void add(Severity severity, std::string code, std::string message, std::string help) {
-    page_.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
+  void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) {
+    page_.findings.push_back({code, severity, std::move(names), std::move(message), std::move(help)});
   }
 
   Outlook& page_;

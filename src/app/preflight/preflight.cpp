@@ -98,8 +98,9 @@ LookedAt::LookedAt(Session& session, FitTask const& what, std::vector<Experiment
                      session.options.execution, pool);
 }
 
-void LookedAt::add(Severity severity, std::string code, std::string message, std::string help) const {
-  page.findings.push_back({severity, std::move(code), std::move(message), std::move(help)});
+void LookedAt::add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message,
+                   std::string help) const {
+  page.findings.push_back({code, severity, std::move(names), std::move(message), std::move(help)});
 }
 
 std::vector<std::pair<int, int>> LookedAt::responses() const {

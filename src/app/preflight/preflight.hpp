@@ -46,7 +46,7 @@ class LookedAt {
   bool candidate() const { return !page.candidate.empty(); }
   /// Whether the task makes the solver finer until it settles the result: fits do, selections take theirs as it is.
   bool settles() const { return what.settle && !candidate(); }
-  void add(Severity severity, std::string code, std::string message, std::string help) const;
+  void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) const;
   /// Rows [first, end) of the predictions: one channel of one experiment each.
   std::vector<std::pair<int, int>> responses() const;
 };

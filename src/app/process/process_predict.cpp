@@ -35,7 +35,9 @@ class ProcessPredict {
         seed_);
     if (trajectories_.fitted().draws.total() == 1)
       report.findings.push_back(
-          {Severity::note, "optimum_alone",
+          {FindingCode::optimum_alone,
+           Severity::note,
+           {fit_task_.name},
            fmt::format("`{}` is an optimum, not a posterior: the bands hold what the process leaves open, not "
                        "how well its hyper-parameters are known",
                        fit_task_.name),
@@ -62,7 +64,9 @@ class ProcessPredict {
     report.predictions.push_back(bands_along(forecast.quantities(), result, data.experiment, trajectories_.model()));
     report.ledger.merge(result.ledger);
     if (result.failed() > 0)
-      report.findings.push_back({failure_severity(result.ledger.failed(), result.ledger.solves()), "failed_predictions",
+      report.findings.push_back({FindingCode::failed_predictions,
+                                 failure_severity(result.ledger.failed(), result.ledger.solves()),
+                                 {data.experiment.name},
                                  fmt::format("{} of {} trajectories{} are left out of the bands", result.failed(),
                                              result.ledger.solves(), several ? " on " + data.experiment.name : ""),
                                  "the free run leaves the range of numbers, or the covariance cannot be decomposed"});
@@ -75,7 +79,9 @@ class ProcessPredict {
     std::vector<double> declared;
     for (int p = 0; p < draws.rows(); ++p) declared.push_back(draws(p, 0));
     for (auto const& each : forecast.reach(fitted_parameters(trajectories_.space(), declared), own.view().columns(0, 1)))
-      report.findings.push_back({Severity::warning, "far_outside",
+      report.findings.push_back({FindingCode::far_outside,
+                                 Severity::warning,
+                                 {each.process, each.input},
                                  fmt::format("`{}` of `{}` lies up to {:.2g} times the width of its fitted range outside it{}",
                                              each.input, each.process, each.widths, where),
                                  "there the process returns to the white part, and its band tells the kernel's prior, not data"});

@@ -21,33 +21,37 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
   ProcessChannel const& layout = target.model().channels()[c];
   Eigen::MatrixXd const& inputs = regression.observations.inputs;
   std::vector<int> columns;
-  std::vector<std::string> names;
+  std::vector<std::pair<std::string, std::string>> names;  // of the process and its input
   for (Process const& process : target.model().model().processes)
     for (Quantity const& input : process.inputs)
       if (process.channel == static_cast<int>(c)) {
         columns.push_back(static_cast<int>(columns.size()));
-        names.push_back(fmt::format("`{}` of `{}`", input.name, process.name));
+        names.emplace_back(process.name, input.name);
       }
   if (int const repeated = gaussian_process::repeated_inputs(inputs, columns); repeated > 0)
-    findings.push_back({Severity::note, "duplicate_inputs",
+    findings.push_back({FindingCode::duplicate_inputs,
+                        Severity::note,
+                        {target.model().model().channels[c].name},
                         fmt::format("{} of {} samples of {} repeat the inputs of another one: what differs there is noise",
                                     repeated, inputs.rows(), target.model().model().channels[c].name),
                         ""});
   auto const hyper_parameters = layout.covariance.hyper_parameters();
-  std::string last;
+  std::pair<std::string, std::string> last;
   for (std::size_t k = 0; k < hyper_parameters.size(); ++k) {
     if (hyper_parameters[k].name != "length" || hyper_parameters[k].column < 0) continue;
     auto const column = inputs.col(hyper_parameters[k].column);
     double const range = column.maxCoeff() - column.minCoeff();
-    std::string const& name = names[static_cast<std::size_t>(hyper_parameters[k].column)];
+    auto const& name = names[static_cast<std::size_t>(hyper_parameters[k].column)];
     bool const scaled = layout.covariance.terms()[static_cast<std::size_t>(hyper_parameters[k].term)].row->name != "periodic";
     if (!scaled || range <= 0 || regression.parameters[k] <= far * range || name == last) continue;
     last = name;
     findings.push_back(
-        {Severity::note, "length_beyond_range",
-         fmt::format("the length-scale of {} is {:.2g} times the range that was fitted: along it the process "
+        {FindingCode::length_beyond_range,
+         Severity::note,
+         {name.first, name.second},
+         fmt::format("the length-scale of `{}` of `{}` is {:.2g} times the range that was fitted: along it the process "
                      "is constant or a line, and how long the length is its prior says",
-                     name, regression.parameters[k] / range),
+                     name.second, name.first, regression.parameters[k] / range),
          "where leaving the input out makes the fit no worse it is constant; else put the line into the white part"});
   }
 }

@@ -150,7 +150,9 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
     SolverSettings const& stated = candidates[k].fit->solver;
     if (posterior.move && *posterior.move > tolerable_offset) {
       std::string const finer = posterior.solver == stated ? stated.finer().option() : posterior.solver.option();
-      findings.push_back({Severity::warning, "integration_step",
+      findings.push_back({FindingCode::integration_step,
+                          Severity::warning,
+                          {candidates[k].what->name},
                           fmt::format("with {}, which its particles have, parameters of `{}` lie off by about {} of what the noise "
                                       "leaves open",
                                       stated.text(), candidates[k].what->name,
@@ -163,7 +165,10 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
             ? fmt::format("with a finer solver than {} the likelihood of `{}` is not finite at any mode near its particles",
                           posterior.solver.text(), candidates[k].what->name)
             : fmt::format("even {} does not settle the likelihood of `{}`", posterior.solver.text(), candidates[k].what->name);
-    findings.push_back({Severity::warning, "step_not_settled", what,
+    findings.push_back({FindingCode::step_not_settled,
+                        Severity::warning,
+                        {candidates[k].what->name},
+                        what,
                         "where the model is stiff, take `solver = cvode`; it may be chaotic on this record"});
   }
   return findings;

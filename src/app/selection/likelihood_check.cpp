@@ -84,14 +84,16 @@ Findings compare_probabilities(SelectionResult const& result, std::vector<std::o
   if (differences.empty()) return {};
   std::stable_sort(differences.begin(), differences.end(), [](auto const& a, auto const& b) { return a.size > b.size; });
   std::string each;
+  std::vector<std::string> names;
   for (Difference const& difference : differences) {
     SelectedModel const& model = result.models[difference.model];
+    names.push_back(model.name);
     each += fmt::format("{}`{}` has probability {:.2f} by the particles and {:.2f} by the likelihood", each.empty() ? "" : "; ",
                         model.name, model.probability, *by_likelihood[difference.model]);
     if (model.died_in > 0) each += fmt::format(", it died in population {}", model.died_in);
   }
   return {
-      {Severity::warning, "probabilities_disagree", each,
+      {FindingCode::probabilities_disagree, Severity::warning, std::move(names), each,
        "the threshold is what the data may differ by: stop at a smaller change, take more `particles`, or believe the likelihood "
        "where its noise is the right one"}};
 }

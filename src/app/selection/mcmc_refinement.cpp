@@ -31,7 +31,11 @@ Polish polish_candidates(Session& session, std::vector<Candidate> const& candida
     SelectedModel const& model = selection.result.models[k];
     if (model.probability < worth_a_look) continue;
     auto const missed = [&](std::string const& why) {
-      polish.findings.push_back({Severity::warning, "not_polished", fmt::format("`{}` was not polished: {}", model.name, why), ""});
+      polish.findings.push_back({FindingCode::not_polished,
+                                 Severity::warning,
+                                 {model.name},
+                                 fmt::format("`{}` was not polished: {}", model.name, why),
+                                 ""});
     };
     if (candidates[k].space->dimension() == 0) continue;  // one point, which is known
     if (posteriors[k].modes.empty()) {
@@ -58,6 +62,7 @@ Polish polish_candidates(Session& session, std::vector<Candidate> const& candida
     selection.polished_draws[k] = std::move(chains.draws);
     for (Finding finding : chains.findings) {
       if (finding.severity == Severity::note) continue;
+      finding.names.insert(finding.names.begin(), model.name);
       finding.message = fmt::format("polishing `{}`: {}", model.name, finding.message);
       polish.findings.push_back(std::move(finding));
     }

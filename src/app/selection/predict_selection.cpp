@@ -82,7 +82,9 @@ class PredictSelection {
     bool const several = what_.candidate_experiments[lead].size() > 1;
     Severity const severity = failure_severity(all.ledger.failed(), all.ledger.solves());
     if (all.failed() > 0)
-      report.findings.push_back({severity, "failed_predictions",
+      report.findings.push_back({FindingCode::failed_predictions,
+                                 severity,
+                                 {experiment.name},
                                  fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands",
                                              all.failed(), what_.draws, several ? " on " + experiment.name : ""),
                                  "the posterior reaches where a model diverges on this input"});
@@ -99,16 +101,20 @@ class PredictSelection {
   /// Once, with the first experiment.
   void say_of_models(std::size_t e, Report& report) const {
     if (e != 0) return;
-    std::vector<std::string> shares;
+    std::vector<std::string> shares, names;
     for (std::size_t k = 0; k < trajectories_.counts().size(); ++k)
-      if (int const count = trajectories_.counts()[k]; count > 0)
-        shares.push_back(fmt::format("{} of `{}`", count,
-                                     session_.file.candidates[static_cast<std::size_t>(select_.candidates)].models[k].name));
+      if (int const count = trajectories_.counts()[k]; count > 0) {
+        names.push_back(session_.file.candidates[static_cast<std::size_t>(select_.candidates)].models[k].name);
+        shares.push_back(fmt::format("{} of `{}`", count, names.back()));
+      }
     if (shares.size() > 1)
-      report.findings.push_back(
-          {Severity::note, "averaged_over_models", fmt::format("trajectories: {}", fmt::join(shares, ", ")), ""});
-    report.findings.push_back({Severity::note, "without_noise",
-                               "the bands are of the response alone: a selection by distance says nothing about the noise", ""});
+      report.findings.push_back({FindingCode::averaged_over_models, Severity::note, std::move(names),
+                                 fmt::format("trajectories: {}", fmt::join(shares, ", ")), ""});
+    report.findings.push_back({FindingCode::without_noise,
+                               Severity::note,
+                               {},
+                               "the bands are of the response alone: a selection by distance says nothing about the noise",
+                               ""});
   }
 
   /// Channels of another model join by name, in the leading model's unit; what it does not have stays as it is.

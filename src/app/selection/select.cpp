@@ -78,7 +78,7 @@ class Select {
     SelectionResult result = selector.run(target, what_.settings, context);
     if (result.failure)
       throw UserError({Severity::error,
-                       result.failure->code == "no_population" ? "E6518" : "E6206",
+                       result.failure->code == FindingCode::no_population ? "E6518" : "E6206",
                        result.failure->message,
                        Label{task_.span, {}},
                        {},
@@ -190,11 +190,13 @@ class Select {
     if (interrupted)
       report.findings.push_back(interrupted_finding("this is what it had by then"));
     else if (!selection.result.ran_out)
-      report.findings.push_back({Severity::note, "selection_ended", selection.result.stopped_by, ""});
+      report.findings.push_back({FindingCode::selection_ended, Severity::note, {}, selection.result.stopped_by, ""});
     bool const spread = std::any_of(selection.result.models.begin(), selection.result.models.end(),
                                     [](SelectedModel const& each) { return each.died_in == 0 && !each.parameters.empty(); });
     if (spread)
-      report.findings.push_back({Severity::note, "width_of_threshold",
+      report.findings.push_back({FindingCode::width_of_threshold,
+                                 Severity::note,
+                                 {},
                                  "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
                                  "after an early stop, smaller after a late one",
                                  polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});

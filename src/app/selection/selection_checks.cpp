@@ -65,7 +65,7 @@ void confirm_deaths(SelectionReport& selection, Findings& findings) {
     if (!model.by_chance || !by_likelihood || by_likelihood->probability > tolerable_loss) continue;
     model.by_chance = false;
     std::erase_if(findings, [&](Finding const& each) {
-      return each.code == "model_lost_by_chance" && each.message.starts_with("`" + model.name + "`");
+      return each.code == FindingCode::model_lost_by_chance && each.names == std::vector{model.name};
     });
   }
 }
@@ -105,7 +105,9 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
   selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", lowest->noise);
   double const threshold = selection.result.threshold;
   if (!std::isfinite(threshold) || threshold <= far_above_floor * lowest->distance) return {};
-  return {{Severity::warning, "threshold_above_noise",
+  return {{FindingCode::threshold_above_noise,
+           Severity::warning,
+           {},
            fmt::format("the final threshold {} is {} times what {} leaves of the distance, {}", significant(threshold, 4),
                        significant(threshold / lowest->distance, 2), selection.floor_words, significant(lowest->distance, 4)),
            "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or "
@@ -116,7 +118,10 @@ FitCheck check_candidate(Session const& session, Candidate const& candidate, Can
   if (posterior.modes.empty() || posterior.given_up) return {};
   FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.options.execution),
                                    posterior.modes.front().declared);
-  for (Finding& finding : check.findings) finding.message = fmt::format("`{}`: {}", candidate.what->name, finding.message);
+  for (Finding& finding : check.findings) {
+    finding.names.insert(finding.names.begin(), candidate.what->name);
+    finding.message = fmt::format("`{}`: {}", candidate.what->name, finding.message);
+  }
   return check;
 }
 
@@ -135,7 +140,10 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
       : result.threshold == 0
           ? fmt::format("distances move by {:.2g} from a threshold of 0: they are the integrator's", median)
           : fmt::format("distances move by {:.2g} of the threshold: part of them is the integrator's", median / result.threshold);
-  return {{Severity::warning, "step_not_settled", fmt::format("with {} {}", solver.finer_words(), what),
+  return {{FindingCode::step_not_settled,
+           Severity::warning,
+           {selected.name},
+           fmt::format("with {} {}", solver.finer_words(), what),
            "take a finer solver, `substeps = 4` or `solver = dopri5`"}};
 }
 

@@ -18,7 +18,7 @@
 namespace sysid {
 
 Diagnostic no_result(Task const& task, Finding const& failure) {
-  std::string const code = failure.code == "no_finite_start" ? "E5002" : "E6206";
+  std::string const code = failure.code == FindingCode::no_finite_start ? "E5002" : "E6206";
   return {Severity::error, code, failure.message, Label{task.span, {}}, {}, failure.help};
 }
 
@@ -39,7 +39,9 @@ Findings failure_findings(Ledger const& sampling) {
   Severity const severity = failure_severity(sampling.failed(), sampling.solves());
   if (severity == Severity::note) return {};
   double const share = static_cast<double>(sampling.failed()) / static_cast<double>(sampling.solves());
-  return {{severity, "failed_solves",
+  return {{FindingCode::failed_solves,
+           severity,
+           {},
            fmt::format("{:.1f} % of the solves while sampling failed, first in {}", 100 * share, sampling.failures().front().where),
            "the posterior reaches where the model diverges: narrow the prior or look at the equation there"}};
 }

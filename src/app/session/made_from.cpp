@@ -44,7 +44,9 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   if (source.empty()) return std::nullopt;
   auto const now = digest_of(std::filesystem::absolute(folder).lexically_normal() / ".." / source);
   if (!now || *now == digest) return std::nullopt;
-  return Finding{Severity::warning, "made_from_earlier",
+  return Finding{FindingCode::made_from_earlier,
+                 Severity::warning,
+                 {source},
                  fmt::format("this was made from an earlier `{}` than the one that lies beside it", source),
                  "make it again: `sysid predict FILE --force`"};
 }

@@ -61,7 +61,9 @@ SearchResult search_near(Session& session, int earlier, Target const& target, Ai
   SearchResult result = search_from(target, aim, starts, context);
   std::string const& name = session.file.tasks[static_cast<std::size_t>(earlier)].name;
   if (!result.modes.empty())
-    result.findings.push_back({Severity::note, "searched_near",
+    result.findings.push_back({FindingCode::searched_near,
+                               Severity::note,
+                               {name},
                                fmt::format("the search began at `{}` alone: a mode elsewhere would not have been met", name),
                                "fit once more without `search = near(...)` before the numbers are used"});
   return result;

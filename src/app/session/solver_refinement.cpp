@@ -13,8 +13,14 @@ namespace {
 Finding not_settled(SettledSolver const& settled) {
   std::string const help = "where the model is stiff, fit it with `solver = cvode`; it may be chaotic on this record";
   if (!settled.given_up)
-    return {Severity::error, "step_not_settled", fmt::format("even {} do not settle the result", accuracy(settled.solver)), help};
-  return {Severity::error, "step_not_settled",
+    return {FindingCode::step_not_settled,
+            Severity::error,
+            {},
+            fmt::format("even {} do not settle the result", accuracy(settled.solver)),
+            help};
+  return {FindingCode::step_not_settled,
+          Severity::error,
+          {},
           fmt::format("{} do not settle the result, and finer ones were not tried: with {} {}, hardly less than before",
                       accuracy(settled.solver), settled.solver.finer_words(), moved(settled.moves.back())),
           help};
@@ -34,7 +40,7 @@ bool settle(Session& session, Task const& task, MakeTarget const& make, Aim aim,
   preparation.moves = settled.moves;
   // What looked like several may have been the solver's.
   if (std::count_if(preparation.modes.begin(), preparation.modes.end(), [](Mode const& each) { return each.share > 0.01; }) < 2)
-    std::erase_if(preparation.findings, [](Finding const& each) { return each.code == "second_mode"; });
+    std::erase_if(preparation.findings, [](Finding const& each) { return each.code == FindingCode::second_mode; });
   if (settled.solver != stated)
     session.notices << fmt::format("{}: {} (with {}, {} with {})\n", task.name, accuracy(settled.solver), accuracy(stated),
                                    moved(preparation.moves.front()), stated.finer_words());

@@ -228,18 +228,22 @@ class Discover {
   }
 
   void add_findings(regression::Discovery const& found, Findings& findings) const {
-    for (regression::FoundEquation const& equation : found.equations)
+    for (std::size_t e = 0; e < found.equations.size(); ++e) {
+      regression::FoundEquation const& equation = found.equations[e];
       for (regression::Concern const& concern : equation.concerns) {
-        Finding finding = finding_of(concern, found.equations.size() > 1 ? equation.name : "");
+        std::vector<std::string> names;
+        for (int const term : concern.terms) names.push_back(dictionary_.equations[e].terms[static_cast<std::size_t>(term)].text);
+        Finding finding = finding_of(concern, found.equations.size() > 1 ? equation.name : "", std::move(names));
         if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));
       }
+    }
   }
 
   // Written are structures that the program takes, one after the other: one may be no model that can be simulated.
   void add_source(FoundSource const& source, std::vector<FoundStructure> const& structures, DiscoveryReport& discovery,
                   Findings& findings) const {
     std::vector<FoundStructure> written;
-    std::vector<std::string> left_out;
+    std::vector<std::string> left_out, names;
     for (FoundStructure const& each : structures) {
       written.push_back(each);
       std::string text = source.text(written);
@@ -250,15 +254,16 @@ class Discover {
         continue;
       }
       written.pop_back();
-      left_out.push_back(fmt::format("`{}` ({})", structure_text(dictionary_, each), diagnostics.all().front().message));
+      names.push_back(structure_text(dictionary_, each));
+      left_out.push_back(fmt::format("`{}` ({})", names.back(), diagnostics.all().front().message));
     }
     if (left_out.empty()) return;
     std::string const help = "a model needs as many equations as states, each with a derivative in it";
     if (written.empty())
-      findings.push_back(
-          {Severity::warning, "equation_no_model", "what was found is no model that can be simulated: " + left_out.front(), help});
+      findings.push_back({FindingCode::equation_no_model, Severity::warning, std::move(names),
+                          "what was found is no model that can be simulated: " + left_out.front(), help});
     else
-      findings.push_back({Severity::warning, "candidates_left_out",
+      findings.push_back({FindingCode::candidates_left_out, Severity::warning, std::move(names),
                           fmt::format("`found.sysid` holds {} of {} structures; no model that can be simulated: {}", written.size(),
                                       structures.size(), fmt::join(left_out, ", ")),
                           help});

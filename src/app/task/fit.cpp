@@ -154,7 +154,7 @@ class Fit {
       report.fit = std::move(check.lines);
       add(check.findings);
       bool const explains = std::none_of(check.findings.begin(), check.findings.end(), [](Finding const& each) {
-        return each.code == "worse_than_the_mean" || each.code == "explains_little";
+        return each.code == FindingCode::worse_than_the_mean || each.code == FindingCode::explains_little;
       });
       if (explains && !preparation_.modes.empty() && model_.dynamics == Dynamics::continuous)
         add(check_input_timing(*target_, backend_.aim, preparation_.modes.front(), seed_, extra));

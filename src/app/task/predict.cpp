@@ -47,7 +47,9 @@ class Predict {
         seed_);
     if (trajectories_.fitted().draws.total() == 1)
       report.findings.push_back(
-          {Severity::note, "optimum_alone",
+          {FindingCode::optimum_alone,
+           Severity::note,
+           {fit_task_.name},
            fmt::format("`{}` is an optimum, not a posterior: the bands leave out how well parameters are known", fit_task_.name),
            "fit with mh for bands that hold it"});
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
@@ -73,7 +75,9 @@ class Predict {
     Experiment const& experiment = data_[static_cast<std::size_t>(e)].experiment;
     if (auto const drawn = trajectories_.drawn_from_prior(e); !drawn.empty())
       report.findings.push_back(
-          {Severity::note, "new_experiment",
+          {FindingCode::new_experiment,
+           Severity::note,
+           {data_[static_cast<std::size_t>(e)].use.name},
            fmt::format("`{}` was not fitted: {} {} drawn from the prior given the shared parameters",
                        data_[static_cast<std::size_t>(e)].use.name, fmt::join(drawn, ", "), drawn.size() == 1 ? "is" : "are"),
            ""});
@@ -92,7 +96,9 @@ class Predict {
     Severity const severity = failure_severity(result.ledger.failed(), result.ledger.solves());
     if (result.failed() > 0)
       report.findings.push_back(
-          {severity, "failed_predictions",
+          {FindingCode::failed_predictions,
+           severity,
+           {experiment.name},
            fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands", result.failed(),
                        trajectories_.wanted(), data_.size() > 1 ? " on " + experiment.name : ""),
            "the posterior reaches where the model diverges on this input"});

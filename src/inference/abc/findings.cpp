@@ -26,7 +26,9 @@ void add_deaths(SelectionResult const& result, Findings& findings) {
         t == 0 ? std::string()
                : fmt::format(", after {} particles in the population before", result.populations[t - 1].models[m].particles);
     findings.push_back(
-        {Severity::warning, "model_lost_by_chance",
+        {FindingCode::model_lost_by_chance,
+         Severity::warning,
+         {model.name},
          fmt::format("`{}` died in population {} where chance may have killed it: none of {} proposals was accepted{}", model.name,
                      model.died_in, result.populations[t].models[m].proposed, before),
          "take more `particles`, or repeat with other seeds: its probability is not known to be none"});
@@ -40,7 +42,9 @@ void add_failures(SelectionResult const& result, Findings& findings) {
     auto const& record = first.models[m];
     double const lost = static_cast<double>(record.failed) / static_cast<double>(std::max<std::uint64_t>(1, record.proposed));
     if (lost <= many_failures) continue;
-    findings.push_back({Severity::warning, "failed_solves",
+    findings.push_back({FindingCode::failed_solves,
+                        Severity::warning,
+                        {result.models[m].name},
                         fmt::format("{} of the {} draws of the priors of `{}` did not stay finite, so its priors end there",
                                     record.failed == record.proposed ? "all" : fmt::format("{}", record.failed), record.proposed,
                                     result.models[m].name),
@@ -50,7 +54,7 @@ void add_failures(SelectionResult const& result, Findings& findings) {
 
 /// The threshold cannot fall: so many particles are at this very distance. Those of models without parameters have no other.
 std::optional<Finding> equal_distances(SelectionResult const& result) {
-  std::string fixed;
+  std::vector<std::string> names;
   bool others = false, elsewhere = false;
   for (SelectedModel const& model : result.models) {
     if (model.died_in > 0) continue;
@@ -58,16 +62,19 @@ std::optional<Finding> equal_distances(SelectionResult const& result) {
     if (!model.parameters.empty())
       (here ? others : elsewhere) = true;
     else if (here)
-      fixed += fmt::format("{}`{}`", fixed.empty() ? "" : ", ", model.name);
+      names.push_back(model.name);
   }
   if (!others && !elsewhere) return std::nullopt;  // nothing could lie at another distance
-  if (others || fixed.empty())
+  if (others || names.empty())
     return Finding{
-        Severity::warning, "distances_equal",
+        FindingCode::distances_equal,
+        Severity::warning,
+        {},
         fmt::format("the threshold cannot fall below {:.6g}: so many particles have this very distance", result.threshold),
         "look whether the simulation reads the parameters at all"};
+  std::string const fixed = fmt::format("`{}`", fmt::join(names, "`, `"));
   return Finding{
-      Severity::warning, "distances_equal",
+      FindingCode::distances_equal, Severity::warning, std::move(names),
       fmt::format("the threshold cannot fall below {:.6g}: all particles of {} have this very distance, for no parameter "
                   "takes part in the simulation",
                   result.threshold, fixed),
@@ -93,7 +100,9 @@ Finding no_population(PopulationRecord const& record, double threshold, int part
     help = "raise the first threshold, or look at priors, units and the input rule with `sysid check`";
   else if (record.failed > 0)
     help = "the priors lie where the models do not stay finite: narrow them, or take a finer solver";
-  return {Severity::error, "no_population",
+  return {FindingCode::no_population,
+          Severity::error,
+          {},
           fmt::format("{} of {} draws from the priors {} after {} simulations{}: {}", record.accepted, particles, what,
                       record.simulated, failed, stopped_by),
           help};
@@ -105,7 +114,9 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
   PopulationRecord const& last = result.populations.back();
   if (last.ess < small_ess)
     findings.push_back(
-        {Severity::warning, "few_effective_particles",
+        {FindingCode::few_effective_particles,
+         Severity::warning,
+         {},
          fmt::format("the last population's weights are worth {:.0f} equal particles of {}", last.ess, last.accepted),
          "take more `particles`"});
   bool const equal = result.populations.size() > 1 && result.threshold == result.next_threshold &&
@@ -121,7 +132,9 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
     if (auto finding = equal_distances(result)) findings.push_back(std::move(*finding));
   add_failures(result, findings);
   if (result.ran_out || !std::isfinite(result.threshold))
-    findings.push_back({Severity::warning, "budget_spent",
+    findings.push_back({FindingCode::budget_spent,
+                        Severity::warning,
+                        {},
                         fmt::format("the run did not come to its end: {}{}", result.stopped_by,
                                     std::isfinite(result.threshold) ? "" : "; its one population is of draws of the priors"),
                         "allow more, take fewer `particles`, or stop at a larger `target` or `relative_change`"});

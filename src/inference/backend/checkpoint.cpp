@@ -89,15 +89,18 @@ Mode decode_mode(nlohmann::json const& stored) {
 
 nlohmann::json encode(Findings const& findings) {
   nlohmann::json stored = nlohmann::json::array();
-  for (Finding const& f : findings) stored.push_back({static_cast<int>(f.severity), f.code, f.message, f.help});
+  for (Finding const& f : findings) stored.push_back({word(f.code), static_cast<int>(f.severity), f.names, f.message, f.help});
   return stored;
 }
 
 Findings decode_findings(nlohmann::json const& stored) {
   Findings findings;
-  for (auto const& f : stored)
-    findings.push_back({static_cast<Severity>(f.at(0).get<int>()), f.at(1).get<std::string>(), f.at(2).get<std::string>(),
-                        f.at(3).get<std::string>()});
+  for (auto const& f : stored) {
+    auto const code = finding_code(f.at(0).get<std::string>());
+    if (!code) throw nlohmann::json::other_error::create(501, "a finding without a row", &f);
+    findings.push_back({*code, static_cast<Severity>(f.at(1).get<int>()), f.at(2).get<std::vector<std::string>>(),
+                        f.at(3).get<std::string>(), f.at(4).get<std::string>()});
+  }
   return findings;
 }
 
@@ -119,7 +122,10 @@ std::optional<Finding> refuse(nlohmann::json const& stored, nlohmann::json const
 }
 
 Finding unusable(std::string const& why) {
-  return {Severity::error, "checkpoint_mismatch", fmt::format("the checkpoint cannot be resumed: {}", why),
+  return {FindingCode::checkpoint_mismatch,
+          Severity::error,
+          {},
+          fmt::format("the checkpoint cannot be resumed: {}", why),
           "run the task anew, without --resume, or restore the file and settings it was started with"};
 }
 

@@ -285,8 +285,11 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
   result.findings = state->findings;
   result.search_told = plan.global;
   if (plan.stride != 1)
-    result.findings.push_back({Severity::note, "diagnostics_on_thinned",
-                               "the run is too long to keep every iteration: diagnostics are of the thinned draws", ""});
+    result.findings.push_back({FindingCode::diagnostics_on_thinned,
+                               Severity::note,
+                               {},
+                               "the run is too long to keep every iteration: diagnostics are of the thinned draws",
+                               ""});
   if (result.draws.total() > 0) {
     result.summaries = summarise(result);
     for (Finding& finding : check_chains({result.summaries, result.acceptance_rate, result.distinct_states, plan.adaptive}))

@@ -124,7 +124,8 @@ std::string summary_json(Report const& report) {
   out["findings"] = Json::array();
   for (Finding const& finding : report.findings)
     out["findings"].push_back({{"severity", severity_word(finding.severity)},
-                               {"code", finding.code},
+                               {"code", word(finding.code)},
+                               {"names", finding.names},
                                {"message", finding.message},
                                {"help", finding.help}});
   out["fit"] = fit(report);

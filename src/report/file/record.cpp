@@ -43,6 +43,23 @@ struct adl_serializer<sysid::SettingValue> {
   }
 };
 
+template <>
+struct adl_serializer<sysid::Finding> {
+  static void to_json(json& out, sysid::Finding const& value) {
+    out = {{"severity", value.severity},
+           {"code", sysid::word(value.code)},
+           {"names", value.names},
+           {"message", value.message},
+           {"help", value.help}};
+  }
+  static sysid::Finding from_json(json const& stored) {
+    auto const code = sysid::finding_code(stored.at("code").get<std::string>());
+    if (!code) throw json::other_error::create(501, "a finding without a row", &stored);
+    return {*code, stored.at("severity").get<sysid::Severity>(), stored.at("names").get<std::vector<std::string>>(),
+            stored.at("message").get<std::string>(), stored.at("help").get<std::string>()};
+  }
+};
+
 }  // namespace nlohmann
 
 namespace sysid {
@@ -56,7 +73,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, s
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, severity, code, message, help)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, name, unit, mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail, mcse_mean,
                                    coefficient)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Mode, declared, sd, log_density, log_mass, share, hits)

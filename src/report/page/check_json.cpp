@@ -105,7 +105,8 @@ Json findings_array(Findings const& findings) {
     out.push_back({{"severity", finding.severity == Severity::error     ? "error"
                                 : finding.severity == Severity::warning ? "warning"
                                                                         : "note"},
-                   {"code", finding.code},
+                   {"code", word(finding.code)},
+                   {"names", finding.names},
                    {"message", finding.message},
                    {"help", finding.help}});
   return out;

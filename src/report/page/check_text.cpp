@@ -185,7 +185,7 @@ std::string findings_text(Findings const& findings) {
       char const* const mark = severity == Severity::error ? "serious" : severity == Severity::warning ? "warning" : "note";
       out += entry(mark, {finding.message});
       if (!finding.help.empty()) out += entry("", {"what to do: " + finding.help});
-      out += entry("", {"more: sysid explain " + finding.code});
+      out += entry("", {fmt::format("more: sysid explain {}", word(finding.code))});
     }
   return out;
 }

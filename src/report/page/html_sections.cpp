@@ -30,7 +30,7 @@ std::string verdict_html(Report const& report) {
                                                             : "Note:",
                     marked(finding.message),
                     finding.help.empty() ? "" : fmt::format(". <span class=\"help\">What to do: {}</span>", marked(finding.help)),
-                    code(finding.code));
+                    code(word(finding.code)));
   return out + "</ul>\n<p class=\"note\">More about a word in this type: <code>sysid explain</code> and the word.</p>\n";
 }
 

@@ -139,7 +139,7 @@ std::string score_words(Report const& report, std::vector<FitLine> const& lines,
                [&](Worst const& each) {
                  return size_words(each,
                                    std::any_of(report.findings.begin(), report.findings.end(),
-                                               [](Finding const& finding) { return finding.code == "noise_size"; }),
+                                               [](Finding const& finding) { return finding.code == FindingCode::noise_size; }),
                                    !report.noise.empty());
                });
   if (score == "whiteness_p")
@@ -232,7 +232,7 @@ std::string mode_words(Report const& report) {
                                 counted ? fmt::format(", where {} of its local searches ended", listed(places)) : "");
   if (grade(report) == Severity::error) {
     bool const near = std::any_of(report.findings.begin(), report.findings.end(),
-                                  [](Finding const& each) { return each.code == "searched_near"; });
+                                  [](Finding const& each) { return each.code == FindingCode::searched_near; });
     return out + fmt::format(
                      "A check failed: a better mode may lie where no search went. Search {}with wider priors, or again with "
                      "another seed.",
