@@ -435,7 +435,7 @@ TEST_CASE("every axis of the pairs has two numbers, also where they are long") {
   for (std::sregex_iterator at(script.begin(), script.end(), ticks), end; at != end; ++at) {
     std::string const list = (*at)[1];
     auto const numbers = std::distance(std::sregex_iterator(list.begin(), list.end(), number), std::sregex_iterator());
-    if (numbers == 0) continue;  // inner cells
+    if (numbers == 0) continue;  // inner panels
     ++axes;
     CHECK_MESSAGE(numbers >= 2, list);
   }
@@ -594,6 +594,6 @@ TEST_CASE("of characters each term of a discovery has one line, with its bar and
       CHECK(line.ends_with(j < 2 ? " 1.000 kept" : " " + probability_text(0.5 / j)));
     }
   }
-  // Two words of a label say more than "of": three cells stand in a row where they have room.
+  // Two words of a label say more than "of": three panels stand in a row where they have room.
   CHECK(coefficient_figure(discovery, 0).script.find("'coefficient of term0'") != std::string::npos);
 }

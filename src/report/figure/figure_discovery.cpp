@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
 #include "core/text/number.hpp"
 #include "core/text/utf8.hpp"
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
+#include "report/figure/named_bars.hpp"
 #include "report/figure/small_multiples.hpp"
 #include "report/text/summary_text.hpp"
 
@@ -32,71 +32,75 @@ bool has_density(DiscoveredTerm const& term) {
   return term.kept && term.fate != "known" && std::isfinite(term.coefficient) && std::isfinite(term.sd) && term.sd > 0;
 }
 
+/// The terms that were offered, those with the largest measure first.
+std::vector<DiscoveredTerm const*> by_measure(DiscoveredEquation const& equation) {
+  std::vector<DiscoveredTerm const*> out;
+  for (DiscoveredTerm const& term : equation.terms)
+    if (offered(term)) out.push_back(&term);
+  std::stable_sort(out.begin(), out.end(), [](auto const* a, auto const* b) { return a->measure > b->measure; });
+  return out;
+}
+
+std::string coefficient_label(DiscoveredTerm const& term) { return "coefficient of " + term.text; }
+
+Axis coefficient_axis(DiscoveredTerm const& term) {
+  return axis(term.coefficient - 3.5 * term.sd, term.coefficient + 3.5 * term.sd, 4);
+}
+
+/// Whether all labels fit under three panels side by side.
+bool labels_are_short(std::vector<DiscoveredTerm const*> const& terms) {
+  constexpr double room = column_width / 3.0;
+  return std::all_of(terms.begin(), terms.end(), [](DiscoveredTerm const* each) {
+    return text_pixels(axis_label(coefficient_label(*each), each->unit, coefficient_axis(*each))) <= room;
+  });
+}
+
+/// The normal density between two distances from the mean, in sds; 1 at the mean.
+Rows normal_curve(DiscoveredTerm const& term, Axis const& x, double from, double to) {
+  Rows rows;
+  for (int k = 0; k <= 80; ++k) {
+    double const z = from + (to - from) * k / 80;
+    rows.push_back({x.scaled(term.coefficient + z * term.sd), std::exp(-0.5 * z * z)});
+  }
+  return rows;
+}
+
+Plot coefficient_plot(DiscoveredTerm const& term, std::size_t index, Panel panel) {
+  Plot out{std::move(panel)};
+  Axis& x = out.panel.x;
+  x = coefficient_axis(term);
+  x.clear_edges(0.03);
+  out.panel.y = {0, 1.08, 0, {}};
+  out.panel.y_axis = false;
+  out.panel.x_label = axis_label(coefficient_label(term), term.unit, x);
+  auto const [mean, sd] = coefficient_text(x.origin_text.empty() ? x.scaled(term.coefficient) : term.coefficient,
+                                           x.origin_text.empty() ? x.scaled_width(term.sd) : term.sd);
+  out.panel.title = fmt::format("{} ± {}", pretty_number(mean), pretty_number(sd));
+  constexpr double ninety = 1.6449;  // sds to either side that hold 90 %
+  std::string const all = fmt::format("all{}", index), inner = fmt::format("inner{}", index);
+  out.tables = {{all, normal_curve(term, x, -3.5, 3.5)}, {inner, normal_curve(term, x, -ninety, ninety)}};
+  out.series = {area(all, noise_band), area(inner, response_band), line(all, 2, 1.6, model)};
+  return out;
+}
+
 }  // namespace
 
 Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation) {
   DiscoveredEquation const& found = discovery.equations[equation];
-  std::vector<std::size_t> order;
-  for (std::size_t j = 0; j < found.terms.size(); ++j)
-    if (offered(found.terms[j])) order.push_back(j);
+  std::vector<DiscoveredTerm const*> order = by_measure(found);
   std::size_t const all = order.size();
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return found.terms[a].measure > found.terms[b].measure; });
   order.resize(std::min(all, shown_terms));
-
-  double widest = 40, largest = 0;
-  for (std::size_t const j : order) {
-    widest = std::max(widest, text_pixels(found.terms[j].text));
-    largest = std::max(largest, found.terms[j].measure);
-  }
   bool const probability = discovery.measure != "contribution";
-  int const width = column_width, row = 18, height = 62 + row * static_cast<int>(order.size());
-  double const left = std::min(widest + 30, 180.0);
-  Figure out;
-  out.name = equation_name(discovery, "inclusion", equation);
-  out.title = fmt::format("Terms of {}", found.target);
-  // Of characters each term has one line, above those of the axis, its numbers and its label.
-  constexpr int lines_below = 3;
-  out.script = preamble(out.name, width, height, static_cast<int>(order.size()) + lines_below + 1);
-  Axis x = probability ? axis(0, 1, 5) : axis(0, largest, 5, 0);
-  Panel p = panel_at(left, width - 62.0, 44, height - 12.0, std::move(x), {0, static_cast<double>(order.size()), 0, {}});
-  p.x_label = axis_label(discovery.measure, "", p.x);
-  std::vector<std::vector<double>> kept, dropped;
-  std::string labels;
-  int longest = 0;
-  for (std::size_t r = 0; r < order.size(); ++r) {
-    DiscoveredTerm const& term = found.terms[order[r]];
-    double const y = static_cast<double>(order.size() - r) - 0.5, end = p.x.scaled(term.measure);
-    (term.kept ? kept : dropped).push_back({end / 2, y, 0, end, y - 0.34, y + 0.34});
-    std::string const name = shortened(term.text, left - 26);
-    longest = std::max(longest, text_width(name));
-    labels += fmt::format("set label {} {} at graph 0, first {:.6g} right offset -1,0 textcolor rgb '{}'\n", 100 + 2 * r,
-                          quote(name), y, term.kept ? ink : muted);
-    std::string const value = probability ? probability_text(term.measure) : significant(term.measure, 3);
-    // Characters have no colour to tell what was kept.
-    labels +=
-        fmt::format("set label {} (format eq 'text' ? ' {}{}' : '{}') at first {:.6g},{:.6g} left offset 1,0 textcolor rgb '{}'\n",
-                    101 + 2 * r, value, term.kept ? " kept" : "", value, end, y, muted);
+  NamedBars bars{equation_name(discovery, "inclusion", equation), {}, "", {}};
+  double largest = 0;
+  for (DiscoveredTerm const* term : order) {
+    largest = std::max(largest, term->measure);
+    bars.bars.push_back(
+        {term->text, probability ? probability_text(term->measure) : significant(term->measure, 3), term->measure, term->kept});
   }
-  std::string plots, lines;
-  auto const bars = [&](char const* name, std::vector<std::vector<double>> const& rows, std::string_view colour) {
-    if (rows.empty()) return;
-    out.script += data_block(name, rows);
-    plots += fmt::format("{}${} using 1:2:3:4:5:6 with boxxyerror fc rgb '{}' fs solid noborder", plots.empty() ? "plot " : ", ",
-                         name, colour);
-    lines += fmt::format("{}${} using 3:2:4:(0) with vectors nohead", lines.empty() ? "plot " : ", ", name);
-  };
-  bars("kept", kept, model);
-  bars("dropped", dropped, muted);
-  if (plots.empty()) plots = lines = "plot NaN";
-  p.y_axis = false;
-  out.script += panel(p, width, height) + labels;
-  // Margins of characters, so that names and values have room however few columns there are.
-  constexpr int value_width = 13;
-  out.script += fmt::format(
-      "if (format eq 'text') {{\nset lmargin {}\nset rmargin {}\nset bmargin {}\nset tmargin 0\n{}\n}} else {{\n{}\n}}\n"
-      "unset multiplot\n",
-      longest + 2, value_width, lines_below, lines, plots);
+  bars.x = probability ? axis(0, 1, 5) : axis(0, largest, 5, 0);
+  bars.x_label = axis_label(discovery.measure, "", bars.x);
+  Figure out{bars.name, fmt::format("Terms of {}", found.target), "", script(bars)};
   out.caption =
       fmt::format("The {} of each term of the dictionary in {}; those in colour were kept.", discovery.measure, found.target);
   out.caption += probability ? " Near 1 the data ask for the term, near 0 they speak against it; between, they do not decide."
@@ -113,54 +117,17 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
   std::vector<DiscoveredTerm const*> terms;
   for (DiscoveredTerm const& term : discovery.equations[equation].terms)
     if (has_density(term)) terms.push_back(&term);
-  std::size_t const count = std::min(terms.size(), shown_cells);
-  auto const label = [](DiscoveredTerm const& term) { return "coefficient of " + term.text; };
-  auto const axis_of = [](DiscoveredTerm const& term) {
-    return axis(term.coefficient - 3.5 * term.sd, term.coefficient + 3.5 * term.sd, 4);
-  };
-  constexpr double room = column_width / 3.0;
-  bool const short_labels = std::all_of(terms.begin(), terms.end(), [&](DiscoveredTerm const* each) {
-    return text_pixels(axis_label(label(*each), each->unit, axis_of(*each))) <= room;
-  });
-  Cells const cells(count, short_labels ? 3 : 2, 140);
-  Figure out;
-  out.name = equation_name(discovery, "coefficients", equation);
-  out.title = fmt::format("Coefficients of {}", discovery.equations[equation].target);
-  out.script = preamble(out.name, cells.width, cells.height);
-  for (std::size_t i = 0; i < count; ++i) {
-    DiscoveredTerm const& term = *terms[i];
-    Panel p = cells.cell(i, 14, 12, 46, 20);
-    p.x = axis_of(term);
-    p.x.clear_edges(0.03);
-    p.y = {0, 1.08, 0, {}};
-    p.y_axis = false;
-    p.x_label = axis_label(label(term), term.unit, p.x);
-    auto const [mean, sd] = coefficient_text(p.x.origin_text.empty() ? p.x.scaled(term.coefficient) : term.coefficient,
-                                             p.x.origin_text.empty() ? p.x.scaled_width(term.sd) : term.sd);
-    p.title = fmt::format("{} ± {}", pretty_number(mean), pretty_number(sd));
-    auto const curve = [&](double from, double to) {
-      std::vector<std::vector<double>> rows;
-      for (int k = 0; k <= 80; ++k) {
-        double const z = from + (to - from) * k / 80;
-        rows.push_back({p.x.scaled(term.coefficient + z * term.sd), std::exp(-0.5 * z * z)});
-      }
-      return rows;
-    };
-    constexpr double ninety = 1.6449;  // sds to either side that hold 90 %
-    out.script +=
-        data_block(fmt::format("all{}", i), curve(-3.5, 3.5)) + data_block(fmt::format("inner{}", i), curve(-ninety, ninety));
-    out.script += panel(p, cells.width, cells.height);
-    out.script += fmt::format(
-        "plot $all{0} using 1:2 with filledcurves y1=0 fc rgb '{1}' fs noborder, "
-        "$inner{0} using 1:2 with filledcurves y1=0 fc rgb '{2}' fs noborder, $all{0} using 1:2 with lines lw 1.6 lc rgb '{3}'\n",
-        i, noise_band, response_band, model);
-  }
-  out.script += "unset multiplot\n";
+  std::size_t const count = std::min(terms.size(), shown_multiples);
+  SmallMultiples const multiples(count, labels_are_short(terms) ? 3 : 2, 140);
+  Drawing drawing{equation_name(discovery, "coefficients", equation), multiples.width, multiples.height};
+  for (std::size_t i = 0; i < count; ++i)
+    drawing.plots.push_back(coefficient_plot(*terms[i], i, multiples.panel(i, {14, 12, 46, 20})));
+  Figure out{drawing.name, fmt::format("Coefficients of {}", discovery.equations[equation].target), "", script(drawing)};
   out.caption = fmt::format(
       "Posterior densities of the coefficients in {} given that these terms and no others stand there; the darker part holds 90 %, "
       "the "
       "numbers above are mean ± sd, in the unit of the axis.{}",
-      discovery.equations[equation].target, cells_left_out(terms.size()));
+      discovery.equations[equation].target, multiples_left_out(terms.size()));
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
 
 namespace sysid {
@@ -43,103 +44,136 @@ std::string figure_name(std::string_view what, Prediction const& prediction, Pre
   return identifier(fmt::format("{}_{}_{}", what, prediction.experiment, quantity.name));
 }
 
+/// The part of a quantity's series that is shown; empty where there is no such series.
+struct Excerpt {
+  std::vector<double> time, mean, lower, upper, noisy_lower, noisy_upper, measured;
+  bool has_noise, has_data, has_band;
+
+  Excerpt(Prediction const& prediction, PredictedQuantity const& quantity, Window w)
+      : time(cut(prediction.time, w)),
+        mean(cut(quantity.response.mean, w)),
+        lower(cut(quantity.response.lower, w)),
+        upper(cut(quantity.response.upper, w)),
+        noisy_lower(cut(quantity.noisy.lower, w)),
+        noisy_upper(cut(quantity.noisy.upper, w)),
+        measured(cut(quantity.measured, w)),
+        has_noise(!noisy_lower.empty()),
+        has_data(!measured.empty()),
+        has_band(has_noise || quantity.response.draws != 1) {  // an optimum is one trajectory
+    if (!prediction.rows)
+      for (double& t : time) t /= prediction.time_scale;
+  }
+
+  double point_size() const { return time.size() > 100 ? 0.24 : 0.5; }
+};
+
+std::vector<Key> keys_of(Excerpt const& of) {
+  std::vector<Key> keys;
+  if (of.has_data) keys.push_back({Key::points, data, "measured"});
+  keys.push_back({Key::line, model, of.has_band ? "mean" : "model"});
+  if (of.has_band) keys.push_back({Key::area, response_band, "95 % band"});
+  if (of.has_noise) keys.push_back({Key::area, noise_band, "with noise"});
+  return keys;
+}
+
+Axis value_axis(Excerpt const& of) {
+  std::pair<double, double> extent = finite_range(of.mean);
+  for (auto const* series : {&of.lower, &of.upper, &of.noisy_lower, &of.noisy_upper, &of.measured})
+    if (!series->empty()) extent = cover(extent, finite_range(*series));
+  return axis(extent.first, extent.second, 5, 0.04);
+}
+
+std::string time_label(Prediction const& prediction, Axis const& x) {
+  return axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x);
+}
+
+Rows fit_rows(Excerpt const& of, Axis const& x, Axis const& y) {
+  Rows rows;
+  for (std::size_t i = 0; i < of.time.size(); ++i) {
+    auto const at = [&](std::vector<double> const& series) { return series.empty() ? std::nan("") : y.scaled(series[i]); };
+    rows.push_back(
+        {x.scaled(of.time[i]), at(of.mean), at(of.lower), at(of.upper), at(of.noisy_lower), at(of.noisy_upper), at(of.measured)});
+  }
+  return rows;
+}
+
+/// The series along the record, in the panel.
+Plot fit_plot(Excerpt const& of, Panel panel) {
+  Plot out{std::move(panel)};
+  out.tables = {{"fit", fit_rows(of, out.panel.x, out.panel.y)}};
+  if (of.has_noise) out.series.push_back(band("fit", 5, 6, noise_band));
+  out.series.push_back(band("fit", 3, 4, response_band));
+  if (of.has_data) out.series.push_back(points("fit", 7, of.point_size(), data));
+  out.series.push_back(line("fit", 2, 1.4, model));
+  return out;
+}
+
+/// Measured minus mean, with the band about 0. The panel's ordinate is made here.
+Plot residual_plot(Excerpt const& of, std::string const& unit, Panel panel) {
+  Rows rows;
+  std::pair<double, double> extent(0, 0);
+  for (std::size_t i = 0; i < of.time.size(); ++i) {
+    double const low = (of.has_noise ? of.noisy_lower[i] : of.lower[i]) - of.mean[i];
+    double const high = (of.has_noise ? of.noisy_upper[i] : of.upper[i]) - of.mean[i];
+    rows.push_back({panel.x.scaled(of.time[i]), of.measured[i] - of.mean[i], low, high});
+    for (double const v : {of.measured[i] - of.mean[i], low, high})
+      if (std::isfinite(v)) extent = cover(extent, {v, v});
+  }
+  panel.y = axis(extent.first, extent.second, 3, 0.06);
+  panel.y_label = axis_label("residual", unit, panel.y);
+  panel.y_label_room = 136;
+  for (auto& row : rows)
+    for (std::size_t c = 1; c < row.size(); ++c) row[c] = panel.y.scaled(row[c]);
+  return {std::move(panel),
+          {{"residual", std::move(rows)}},
+          {band("residual", 3, 4, of.has_noise ? noise_band : response_band), level(0, model),
+           points("residual", 2, of.point_size(), data)}};
+}
+
+std::string caption_of(Excerpt const& of, std::string const& name) {
+  if (!of.has_data)
+    return fmt::format("The model's account of {}, which is not measured{}.", name, of.has_band ? ", with its 95 % band" : "");
+  return fmt::format(
+      "Measured and modelled {}. The residuals below should scatter without pattern; {}", name,
+      of.has_noise
+          ? "about one in twenty lies outside the light band, which includes the noise; the darker one is that of the response."
+      : of.has_band ? "the band is that of the response, without noise."
+                    : "one trajectory has no band.");
+}
+
+std::string samples_left_out(Prediction const& prediction, Window w) {
+  if (w.whole) return "";
+  auto const begin = prediction.scored.begin() + static_cast<std::ptrdiff_t>(w.first);
+  return fmt::format(" Shown are the first {} of {} scored samples.",
+                     std::count(begin, begin + static_cast<std::ptrdiff_t>(w.count), 1),
+                     std::count(prediction.scored.begin(), prediction.scored.end(), 1));
+}
+
 }  // namespace
 
 Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
   Window const w = window(prediction);
-  std::vector<double> time = cut(prediction.time, w);
-  std::vector<double> const mean = cut(quantity.response.mean, w), lower = cut(quantity.response.lower, w),
-                            upper = cut(quantity.response.upper, w), noisy_lower = cut(quantity.noisy.lower, w),
-                            noisy_upper = cut(quantity.noisy.upper, w), measured = cut(quantity.measured, w);
-  if (!prediction.rows)
-    for (double& t : time) t /= prediction.time_scale;
-  bool const has_noise = !noisy_lower.empty(), has_data = !measured.empty();
-  bool const has_band = has_noise || quantity.response.draws != 1;  // an optimum is one trajectory
-
-  double const point_size = time.size() > 100 ? 0.24 : 0.5;
-  std::vector<Key> keys;
-  if (has_data) keys.push_back({Key::points, data, "measured"});
-  keys.push_back({Key::line, model, has_band ? "mean" : "model"});
-  if (has_band) keys.push_back({Key::area, response_band, "95 % band"});
-  if (has_noise) keys.push_back({Key::area, noise_band, "with noise"});
-  int const width = column_width, left = 70, right = width - 14;
-  int const legend_rows = legend_height(keys, 10, right);
-  int const height = (has_data ? 330 : 200) + legend_rows;
-  Axis x = axis(time.front(), time.back(), 6);
+  Excerpt const of(prediction, quantity, w);
+  Legend legend{keys_of(of)};
+  legend.after_first_panel = true;
+  int const left = 70, right = column_width - 14, legend_rows = legend.height();
+  Drawing drawing{figure_name(of.has_data ? "fit" : "state", prediction, quantity), column_width,
+                  (of.has_data ? 330 : 200) + legend_rows, std::move(legend)};
+  Axis x = axis(of.time.front(), of.time.back(), 6);
   x.reach_ticks();
-  std::pair<double, double> extent = finite_range(mean);
-  for (auto const* series : {&lower, &upper, &noisy_lower, &noisy_upper, &measured})
-    if (!series->empty()) extent = cover(extent, finite_range(*series));
-  Axis const y = axis(extent.first, extent.second, 5, 0.04);
 
-  Figure out;
-  out.topic = Topic::fit;
-  out.name = figure_name(has_data ? "fit" : "state", prediction, quantity);
-  out.title = fmt::format("{} on {}", quantity.name, prediction.experiment);
-  out.script = preamble(out.name, width, height);
-  std::vector<std::vector<double>> rows, residual_rows;
-  std::pair<double, double> residual_extent(0, 0);
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    double const nan = std::nan("");
-    auto const at = [&](std::vector<double> const& series) { return series.empty() ? nan : y.scaled(series[i]); };
-    rows.push_back({x.scaled(time[i]), at(mean), at(lower), at(upper), at(noisy_lower), at(noisy_upper), at(measured)});
-    if (!has_data) continue;
-    double const low = has_noise ? noisy_lower[i] - mean[i] : lower[i] - mean[i];
-    double const high = has_noise ? noisy_upper[i] - mean[i] : upper[i] - mean[i];
-    residual_rows.push_back({x.scaled(time[i]), measured[i] - mean[i], low, high});
-    for (double const v : {measured[i] - mean[i], low, high})
-      if (std::isfinite(v)) residual_extent = cover(residual_extent, {v, v});
+  Panel top = panel_at(left, right, of.has_data ? 146.0 : 44.0, drawing.height - 12.0 - legend_rows, x, value_axis(of));
+  top.x_numbers = !of.has_data;
+  if (top.x_numbers) top.x_label = time_label(prediction, x);
+  top.y_label = axis_label(quantity.name, quantity.unit, top.y);
+  drawing.plots.push_back(fit_plot(of, std::move(top)));
+  if (of.has_data) {
+    Panel below = panel_at(left, right, 44, 128, x, {});
+    below.x_label = time_label(prediction, x);
+    drawing.plots.push_back(residual_plot(of, quantity.unit, std::move(below)));
   }
-  out.script += data_block("fit", rows);
-
-  Panel top = panel_at(left, right, has_data ? 146.0 : 44.0, height - 12.0 - legend_rows, x, y);
-  top.x_label = has_data ? "" : axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x);
-  top.x_numbers = !has_data;
-  top.y_label = axis_label(quantity.name, quantity.unit, y);
-  out.script += panel(top, width, height);
-  out.script += legend(keys, 10, top.right, height - 12.0, width, height);
-  out.script += "plot ";
-  if (has_noise) out.script += fmt::format("$fit using 1:5:6 with filledcurves fc rgb '{}' fs noborder, ", noise_band);
-  out.script += fmt::format("$fit using 1:3:4 with filledcurves fc rgb '{}' fs noborder, ", response_band);
-  if (has_data) out.script += fmt::format("$fit using 1:7 with points pt 7 ps {} lc rgb '{}', ", point_size, data);
-  out.script += fmt::format("$fit using 1:2 with lines lw 1.4 lc rgb '{}'\n", model);
-
-  out.script += end_legend();
-
-  if (has_data) {
-    Axis const r = axis(residual_extent.first, residual_extent.second, 3, 0.06);
-    for (auto& row : residual_rows)
-      for (std::size_t c = 1; c < row.size(); ++c) row[c] = r.scaled(row[c]);
-    out.script += data_block("residual", residual_rows);
-    Panel low = panel_at(top.left, top.right, 44, 128, x, r);
-    low.x_label = axis_label(prediction.rows ? "row" : "time", prediction.rows ? "" : prediction.time_unit, x);
-    low.y_label = axis_label("residual", quantity.unit, r);
-    low.y_label_room = 136;
-    out.script += panel(low, width, height);
-    out.script += fmt::format(
-        "plot $residual using 1:3:4 with filledcurves fc rgb '{}' fs noborder, "
-        "0 with lines lw 1 lc rgb '{}', $residual using 1:2 with points pt 7 ps {} lc rgb '{}'\n",
-        has_noise ? noise_band : response_band, model, point_size, data);
-  }
-  out.script += "unset multiplot\n";
-
-  if (has_data)
-    out.caption = fmt::format(
-        "Measured and modelled {}. The residuals below should scatter without pattern; {}", quantity.name,
-        has_noise
-            ? "about one in twenty lies outside the light band, which includes the noise; the darker one is that of the response."
-        : has_band ? "the band is that of the response, without noise."
-                   : "one trajectory has no band.");
-  else
-    out.caption =
-        fmt::format("The model's account of {}, which is not measured{}.", quantity.name, has_band ? ", with its 95 % band" : "");
-  if (!w.whole) {
-    auto const begin = prediction.scored.begin() + static_cast<std::ptrdiff_t>(w.first);
-    out.caption += fmt::format(" Shown are the first {} of {} scored samples.",
-                               std::count(begin, begin + static_cast<std::ptrdiff_t>(w.count), 1),
-                               std::count(prediction.scored.begin(), prediction.scored.end(), 1));
-  }
-  return out;
+  return {drawing.name, fmt::format("{} on {}", quantity.name, prediction.experiment),
+          caption_of(of, quantity.name) + samples_left_out(prediction, w), script(drawing), Topic::fit};
 }
 
 }  // namespace sysid

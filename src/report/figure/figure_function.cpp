@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
+#include "report/figure/small_multiples.hpp"
 
 namespace sysid {
 
@@ -13,9 +15,9 @@ namespace {
 
 /// How often the record reads the function along an input, as the outline of bars from the lower edge of the panel; empty where
 /// that is not known.
-std::vector<std::vector<double>> visit_strip(FunctionReport const& function, std::size_t input, Axis const& x, Axis const& y) {
+Rows visit_strip(FunctionReport const& function, std::size_t input, Axis const& x, Axis const& y) {
   constexpr double tallest = 0.12;  // of the panel
-  std::vector<std::vector<double>> out;
+  Rows out;
   if (input >= function.visits.size() || function.cuts[input].empty()) return out;
   std::vector<double> const& visits = function.visits[input];
   double const most = visits.empty() ? 0 : *std::max_element(visits.begin(), visits.end());
@@ -28,50 +30,55 @@ std::vector<std::vector<double>> visit_strip(FunctionReport const& function, std
   return out;
 }
 
+Axis value_axis(FunctionReport const& function) {
+  std::pair<double, double> values{0, 0};
+  for (auto const& cut : function.cuts)
+    for (FunctionPoint const& point : cut) values = cover(values, finite_range({point.q5, point.q95, point.mean}));
+  return axis(values.first, values.second, 4, 0.06);
+}
+
+/// Mean and band along an input, and below them where the record reads the function.
+void add_cut(Plot& plot, FunctionReport const& function, std::size_t input) {
+  Axis const &x = plot.panel.x, &y = plot.panel.y;
+  Table cut{fmt::format("cut{}", input), {}}, visits{fmt::format("visits{}", input), visit_strip(function, input, x, y)};
+  for (FunctionPoint const& point : function.cuts[input])
+    cut.rows.push_back({x.scaled(point.inputs[input]), y.scaled(point.mean), y.scaled(point.q5), y.scaled(point.q95)});
+  plot.series = {band(cut.name, 3, 4, response_band), line(cut.name, 2, 1.6, model)};
+  plot.tables.push_back(std::move(cut));
+  if (visits.rows.empty()) return;
+  plot.series.push_back(area(visits.name, muted, y.low));
+  plot.tables.push_back(std::move(visits));
+}
+
 }  // namespace
 
 Figure function_figure(FunctionReport const& function) {
-  constexpr int most_columns = 3, tall = 230;
-  int const count = static_cast<int>(function.cuts.size()), columns = std::min(count, most_columns);
-  int const width = column_width, height = tall * ((count + most_columns - 1) / most_columns);
-  Figure out;
-  out.name = "function_" + identifier(function.name);
-  out.title = fmt::format("The function {} that was found", function.name);
+  constexpr std::size_t most_columns = 3;
+  constexpr int tall = 230;
+  std::size_t const count = function.cuts.size(), columns = std::min(count, most_columns);
+  Drawing drawing{"function_" + identifier(function.name), column_width,
+                  tall * static_cast<int>((count + most_columns - 1) / most_columns)};
+  Axis const y = value_axis(function);
+  bool visited = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    auto const& cut = function.cuts[i];
+    std::size_t const column = i % columns;
+    double const top = drawing.height - 12.0 - tall * static_cast<int>(i / columns);
+    Plot plot{panel_beside(column, columns, 16, top - tall + 56, top,
+                           axis(cut.front().inputs[i], cut.back().inputs[i], count == 1 ? 6 : 3), y)};
+    plot.panel.x_label = axis_label(function.inputs[i].first, function.inputs[i].second, plot.panel.x);
+    plot.panel.y_numbers = column == 0;
+    if (column == 0) plot.panel.y_label = axis_label(function.name, function.unit, y);
+    add_cut(plot, function, i);
+    visited = visited || plot.tables.size() > 1;
+    drawing.plots.push_back(std::move(plot));
+  }
+  Figure out{drawing.name, fmt::format("The function {} that was found", function.name), "", script(drawing)};
   out.caption = fmt::format(
       "The function and the band that holds it with 90 %, given the draws of the other parameters, of an optimum their one "
       "value{}.",
       count == 1 ? "" : ", along each input with the others in the middle");
-  out.script = preamble(out.name, width, height);
-  std::pair<double, double> values{0, 0};
-  for (auto const& cut : function.cuts)
-    for (FunctionPoint const& point : cut) values = cover(values, finite_range({point.q5, point.q95, point.mean}));
-  Axis const y = axis(values.first, values.second, 4, 0.06);
-  for (int d = 0; d < count; ++d) {
-    auto const i = static_cast<std::size_t>(d);
-    auto const& cut = function.cuts[i];
-    Axis const x = axis(cut.front().inputs[i], cut.back().inputs[i], count == 1 ? 6 : 3);
-    int const column = d % columns;
-    double const step = (width - 70.0) / columns, left = 70 + column * step, top = height - 12.0 - tall * (d / columns);
-    Panel p = panel_at(left, column + 1 == columns ? width - 16.0 : left + step - 30, top - tall + 56, top, x, y);
-    p.x_label = axis_label(function.inputs[i].first, function.inputs[i].second, x);
-    if (column == 0) p.y_label = axis_label(function.name, function.unit, y);
-    p.y_numbers = column == 0;
-    std::vector<std::vector<double>> rows;
-    for (FunctionPoint const& point : cut)
-      rows.push_back({x.scaled(point.inputs[i]), y.scaled(point.mean), y.scaled(point.q5), y.scaled(point.q95)});
-    out.script += data_block(fmt::format("cut{}", d), rows);
-    auto const strip = visit_strip(function, i, x, y);
-    if (!strip.empty()) out.script += data_block(fmt::format("visits{}", d), strip);
-    out.script += panel(p, width, height);
-    out.script += fmt::format(
-        "plot $cut{0} using 1:3:4 with filledcurves fc rgb '{1}' fs noborder, $cut{0} using 1:2 with lines lw 1.6 lc rgb "
-        "'{2}'{3}\n",
-        d, response_band, model,
-        strip.empty() ? ""
-                      : fmt::format(", $visits{} using 1:2 with filledcurves y1={:.10g} fc rgb '{}' fs noborder", d, y.low, muted));
-  }
-  out.script += "unset multiplot\n";
-  if (out.script.find("$visits") != std::string::npos)
+  if (visited)
     out.caption +=
         " Bars along the bottom: how often the fitted rows read the function there; where there are none its prior speaks.";
   return out;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
+#include "report/figure/small_multiples.hpp"
 
 namespace sysid {
 
@@ -26,6 +28,88 @@ std::vector<PredictedInput const*> varying(Prediction const& prediction) {
   return out;
 }
 
+/// Scored rows, or all where none is; of many one in `stride`.
+struct ShownRows {
+  std::vector<std::size_t> rows;
+  std::size_t stride = 1;
+};
+
+ShownRows shown_of(Prediction const& prediction, bool curve) {
+  ShownRows out;
+  for (std::size_t i = 0; i < prediction.time.size(); ++i)
+    if (prediction.scored[i] != 0) out.rows.push_back(i);
+  if (out.rows.empty()) {
+    out.rows.resize(prediction.time.size());
+    std::iota(out.rows.begin(), out.rows.end(), std::size_t{0});
+  }
+  if (!curve) out.stride = (out.rows.size() + shown_rows - 1) / shown_rows;
+  if (out.stride == 1) return out;
+  std::vector<std::size_t> thinned;
+  for (std::size_t r = 0; r < out.rows.size(); r += out.stride) thinned.push_back(out.rows[r]);
+  out.rows = std::move(thinned);
+  return out;
+}
+
+/// How the model is shown. At one place of an input the others differ from row to row: then there is no curve, a bar for each row.
+struct Style {
+  bool curve, has_noise, has_band;
+
+  Style(Prediction const& prediction, PredictedQuantity const& quantity)
+      : curve(prediction.inputs.size() == 1),
+        has_noise(!quantity.noisy.lower.empty()),
+        has_band(has_noise || quantity.response.draws != 1) {}
+};
+
+Axis value_axis(PredictedQuantity const& quantity, Style const& style) {
+  Band const& band = style.has_noise ? quantity.noisy : quantity.response;
+  std::pair<double, double> extent = finite_range(quantity.measured);
+  for (auto const* series : {&band.lower, &band.upper, &quantity.response.mean})
+    if (!series->empty()) extent = cover(extent, finite_range(*series));
+  return axis(extent.first, extent.second, 5, 0.04);
+}
+
+std::vector<Key> keys_of(Style const& style) {
+  auto const [curve, has_noise, has_band] = style;
+  std::vector<Key> keys = {{Key::points, data, "measured"}, {curve ? Key::line : Key::points, model, has_band ? "mean" : "model"}};
+  if (curve && has_band) keys.push_back({Key::area, response_band, "95 % band"});
+  if (has_noise) keys.push_back({Key::area, noise_band, curve && has_band ? "with noise" : "95 % with noise"});
+  if (!curve && has_band && !has_noise) keys.push_back({Key::area, response_band, "95 % band"});
+  return keys;
+}
+
+/// All series over one input, its values rising.
+Rows rows_over(PredictedInput const& input, PredictedQuantity const& quantity, std::vector<std::size_t> order, Axis const& x,
+               Axis const& y) {
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return input.values[a] < input.values[b]; });
+  Rows rows;
+  for (std::size_t const i : order) {
+    auto const at = [&](std::vector<double> const& series) { return series.empty() ? std::nan("") : y.scaled(series[i]); };
+    rows.push_back({x.scaled(input.values[i]), at(quantity.response.mean), at(quantity.response.lower), at(quantity.response.upper),
+                    at(quantity.noisy.lower), at(quantity.noisy.upper), at(quantity.measured)});
+  }
+  return rows;
+}
+
+std::vector<Series> series_of(Style const& style, std::string const& table) {
+  std::vector<Series> out;
+  if (style.curve && style.has_noise) out.push_back(band(table, 5, 6, noise_band));
+  if (style.curve && style.has_band) out.push_back(band(table, 3, 4, response_band));
+  if (!style.curve && style.has_band)
+    out.push_back(style.has_noise ? upright_bars(table, 5, 6, noise_band) : upright_bars(table, 3, 4, response_band));
+  out.push_back(points(table, 7, 0.3, data));
+  out.push_back(style.curve ? line(table, 2, 1.6, model) : points(table, 2, 0.22, model));
+  return out;
+}
+
+std::string caption_of(Style const& style, std::string const& quantity, std::string const& over) {
+  std::string out = fmt::format("Measured and modelled {} over {}{}.", quantity, over,
+                                style.has_noise  ? ", with the band that holds 95 % of the measurements"
+                                : style.has_band ? ", with the 95 % band of the response"
+                                                 : "");
+  if (!style.curve) out += " At one place of an input the others differ from row to row, so that each row has a bar of its own.";
+  return out;
+}
+
 }  // namespace
 
 bool over_inputs(Prediction const& prediction, PredictedQuantity const& quantity) {
@@ -37,81 +121,29 @@ Figure input_figure(Prediction const& prediction, PredictedQuantity const& quant
   std::vector<PredictedInput const*> inputs = varying(prediction);
   std::size_t const all = inputs.size();
   inputs.resize(std::min(all, shown_inputs));
-  bool const curve = prediction.inputs.size() == 1, has_noise = !quantity.noisy.lower.empty();
-  Band const& band = has_noise ? quantity.noisy : quantity.response;
-  bool const has_band = has_noise || quantity.response.draws != 1;
+  Style const style(prediction, quantity);
+  ShownRows const shown = shown_of(prediction, style.curve);
+  Axis const y = value_axis(quantity, style);
 
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < prediction.time.size(); ++i)
-    if (prediction.scored[i] != 0) rows.push_back(i);
-  if (rows.empty()) {
-    rows.resize(prediction.time.size());
-    std::iota(rows.begin(), rows.end(), std::size_t{0});
-  }
-  std::size_t const scored = rows.size(), stride = curve ? 1 : (scored + shown_rows - 1) / shown_rows;
-  if (stride > 1) {
-    std::vector<std::size_t> thinned;
-    for (std::size_t r = 0; r < rows.size(); r += stride) thinned.push_back(rows[r]);
-    rows = std::move(thinned);
-  }
-
-  std::pair<double, double> extent = finite_range(quantity.measured);
-  for (auto const* series : {&band.lower, &band.upper, &quantity.response.mean})
-    if (!series->empty()) extent = cover(extent, finite_range(*series));
-  Axis const y = axis(extent.first, extent.second, 5, 0.04);
-  std::vector<Key> keys = {{Key::points, data, "measured"}, {curve ? Key::line : Key::points, model, has_band ? "mean" : "model"}};
-  if (curve && has_band) keys.push_back({Key::area, response_band, "95 % band"});
-  if (has_noise) keys.push_back({Key::area, noise_band, curve && has_band ? "with noise" : "95 % with noise"});
-  if (!curve && has_band && !has_noise) keys.push_back({Key::area, response_band, "95 % band"});
-  int const width = column_width, legend_rows = legend_height(keys, 10, width - 14), height = 246 + legend_rows;
-  Figure out;
-  out.topic = Topic::fit;
-  out.name = identifier(fmt::format("inputs_{}_{}", prediction.experiment, quantity.name));
-  out.title = fmt::format("{} over the input{}", quantity.name, all == 1 ? "" : "s");
-  out.script = preamble(out.name, width, height) + legend(keys, 10, width - 14.0, height - 12.0, width, height);
-  double const step = (width - 70.0) / static_cast<double>(inputs.size());
+  Legend legend{keys_of(style)};
+  int const legend_rows = legend.height(), height = 246 + legend_rows;
+  Drawing drawing{identifier(fmt::format("inputs_{}_{}", prediction.experiment, quantity.name)), column_width, height,
+                  std::move(legend)};
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     PredictedInput const& input = *inputs[k];
-    std::vector<std::size_t> order = rows;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return input.values[a] < input.values[b]; });
     auto const [low, high] = finite_range(input.values);
-    Axis const x = axis(low, high, inputs.size() == 1 ? 6 : 3, 0.02);
-    double const left = 70 + static_cast<double>(k) * step;
-    Panel p = panel_at(left, k + 1 == inputs.size() ? width - 14.0 : left + step - 30, 44, height - 12.0 - legend_rows, x, y);
-    p.x_label = axis_label(input.name, input.unit, x);
+    Panel p =
+        panel_beside(k, inputs.size(), 14, 44, height - 12.0 - legend_rows, axis(low, high, inputs.size() == 1 ? 6 : 3, 0.02), y);
+    p.x_label = axis_label(input.name, input.unit, p.x);
     p.y_numbers = k == 0;
     if (k == 0) p.y_label = axis_label(quantity.name, quantity.unit, y);
-    std::vector<std::vector<double>> table;
-    for (std::size_t const i : order) {
-      auto const at = [&](std::vector<double> const& series) { return series.empty() ? std::nan("") : y.scaled(series[i]); };
-      table.push_back({x.scaled(input.values[i]), at(quantity.response.mean), at(quantity.response.lower),
-                       at(quantity.response.upper), at(quantity.noisy.lower), at(quantity.noisy.upper), at(quantity.measured)});
-    }
-    std::string const name = fmt::format("input{}", k);
-    out.script += data_block(name, table) + panel(p, width, height);
-    std::string plots;
-    auto const add = [&](std::string const& what) {
-      plots += fmt::format("{}${} using {}", plots.empty() ? "plot " : ", ", name, what);
-    };
-    if (curve && has_noise) add(fmt::format("1:5:6 with filledcurves fc rgb '{}' fs noborder", noise_band));
-    if (curve && has_band) add(fmt::format("1:3:4 with filledcurves fc rgb '{}' fs noborder", response_band));
-    // What the other inputs do stands beside: no curve, a bar for each row.
-    if (!curve && has_band)
-      add(fmt::format("1:{}:(0):(${}-${}) with vectors nohead lw 2.4 lc rgb '{}'", has_noise ? 5 : 3, has_noise ? 6 : 4,
-                      has_noise ? 5 : 3, has_noise ? noise_band : response_band));
-    add(fmt::format("1:7 with points pt 7 ps 0.3 lc rgb '{}'", data));
-    add(curve ? fmt::format("1:2 with lines lw 1.6 lc rgb '{}'", model)
-              : fmt::format("1:2 with points pt 7 ps 0.22 lc rgb '{}'", model));
-    out.script += plots + '\n';
-    if (k == 0) out.script += end_legend();
+    std::string const table = fmt::format("input{}", k);
+    Rows rows = rows_over(input, quantity, shown.rows, p.x, y);
+    drawing.plots.push_back({std::move(p), {{table, std::move(rows)}}, series_of(style, table)});
   }
-  out.script += "unset multiplot\n";
-  out.caption = fmt::format("Measured and modelled {} over {}{}.", quantity.name, all == 1 ? inputs[0]->name : "each input",
-                            has_noise  ? ", with the band that holds 95 % of the measurements"
-                            : has_band ? ", with the 95 % band of the response"
-                                       : "");
-  if (!curve) out.caption += " At one place of an input the others differ from row to row, so that each row has a bar of its own.";
-  if (stride > 1) out.caption += fmt::format(" One row in {} is shown.", stride);
+  Figure out{drawing.name, fmt::format("{} over the input{}", quantity.name, all == 1 ? "" : "s"),
+             caption_of(style, quantity.name, all == 1 ? inputs[0]->name : "each input"), script(drawing), Topic::fit};
+  if (shown.stride > 1) out.caption += fmt::format(" One row in {} is shown.", shown.stride);
   if (all > inputs.size()) out.caption += fmt::format(" Shown are the first {} of {} inputs.", inputs.size(), all);
   return out;
 }

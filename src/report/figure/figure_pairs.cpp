@@ -8,6 +8,7 @@
 
 #include "core/text/number.hpp"
 #include "report/figure/axis.hpp"
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
 
 namespace sysid {
@@ -56,9 +57,9 @@ std::vector<std::size_t> shown_parameters(Draws const& draws, std::vector<std::v
   return out;
 }
 
-/// An axis of a cell so many pixels wide: the fewest ticks of which two have numbers that stay clear of the neighbouring cells',
+/// An axis of a panel so many pixels wide: the fewest ticks of which two have numbers that stay clear of the neighbouring panels',
 /// counted from the digits they share where the numbers are too long for that.
-Axis cell_axis(std::pair<double, double> extent, int pixels) {
+Axis panel_axis(std::pair<double, double> extent, int pixels) {
   Axis best;
   std::size_t most = 0;
   for (auto* const make : {&axis, &counted_axis})
@@ -76,101 +77,132 @@ Axis cell_axis(std::pair<double, double> extent, int pixels) {
   return best;
 }
 
-}  // namespace
+/// What is shown of each parameter: all its draws, and evenly thinned ones.
+struct Pairs {
+  std::vector<std::string> names, units;
+  std::vector<std::vector<double>> all, thinned;
+  std::vector<Axis> axes;
 
-Figure pair_figure(Draws const& draws) {
-  // Draws of all chains, evenly thinned.
+  std::size_t count() const { return names.size(); }
+  std::string label(std::size_t parameter) const { return axis_label(names[parameter], units[parameter], axes[parameter]); }
+};
+
+Pairs pairs_of(Draws const& draws) {
   std::vector<std::vector<double>> thinned(draws.names.size());
   std::size_t const stride = (static_cast<std::size_t>(draws.total()) + shown_draws - 1) / shown_draws;
   for (std::size_t i = 0; i < thinned.size(); ++i) {
     std::vector<double> const column = draws.column(i);
     for (std::size_t d = 0; d < column.size(); d += stride) thinned[i].push_back(column[d]);
   }
-  std::vector<std::size_t> const parameters = shown_parameters(draws, thinned);
-  std::size_t const count = parameters.size();
-  std::vector<std::vector<double>> all(count), shown(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    all[i] = draws.column(parameters[i]);
-    shown[i] = std::move(thinned[parameters[i]]);
+  Pairs out;
+  for (std::size_t const each : shown_parameters(draws, thinned)) {
+    out.names.push_back(draws.names[each]);
+    out.units.push_back(draws.units[each]);
+    out.all.push_back(draws.column(each));
+    out.thinned.push_back(std::move(thinned[each]));
   }
-  auto const label = [&](std::size_t i, Axis const& axis) {
-    return axis_label(draws.names[parameters[i]], draws.units[parameters[i]], axis);
-  };
+  return out;
+}
 
-  // Three stand in one column of print, more need the page.
-  int const left = 70, bottom = 48, width = std::max(column_width, left + 6 + 110 * static_cast<int>(count));
-  int const cell = (width - left - 6) / static_cast<int>(count);
-  int const tall = std::min(cell, 110);
-  int const height = bottom + tall * static_cast<int>(count) + 6;
-  Figure out{"pairs", "Pairs", "", preamble("pairs", width, height)};
-  std::vector<Axis> axes;
-  for (std::size_t i = 0; i < count; ++i) axes.push_back(cell_axis(finite_range(all[i]), cell - 8));
-  out.script += "set grid noxtics noytics\n";
-  for (std::size_t row = 0; row < count; ++row) {
-    for (std::size_t column = 0; column < count; ++column) {
-      Panel p;
-      p.left = left + static_cast<double>(column) * cell;
-      p.right = p.left + cell - 8;
-      p.top = height - 4.0 - static_cast<double>(row) * tall;
-      p.bottom = p.top - tall + 8;
-      p.x = axes[column];
-      if (column > row) {
-        double const r = correlation(all[row], all[column]);
-        out.script +=
-            fmt::format("set label 1 '{}' at screen {:.5f},{:.5f} center textcolor rgb '{}'\n",
-                        std::isfinite(r) ? fmt::format("{}{:.2f}", r <= -0.005 ? "−" : "", std::fabs(r)) : "-",
-                        (p.left + p.right) / 2 / width, (p.bottom + p.top) / 2 / height, std::fabs(r) >= 0.5 ? contrast : muted);
-        out.script +=
-            panel(p, width, height) + "unset border\nunset xtics\nunset ytics\nset xlabel ''\nplot NaN notitle\nunset label 1\n";
-        continue;
-      }
-      bool const last = row + 1 == count;
-      p.x_numbers = last;
-      p.x_label_room = cell - 6;
-      p.y_label_room = tall - 6;
-      p.x_label = last ? label(column, p.x) : "";
-      if (row == column) {
-        constexpr std::size_t bins = 24;
-        std::vector<double> counts(bins, 0);
-        double const low = axes[row].low, extent = axes[row].high - low;
-        for (double const v : all[row]) {
-          if (!std::isfinite(v)) continue;
-          ++counts[std::min(bins - 1, static_cast<std::size_t>((axes[row].scaled(v) - low) / extent * static_cast<double>(bins)))];
-        }
-        std::vector<std::vector<double>> outline;
-        for (std::size_t b = 0; b < bins; ++b)
-          for (std::size_t edge : {b, b + 1}) outline.push_back({low + extent * static_cast<double>(edge) / bins, counts[b]});
-        p.y = {0, 1.08 * std::max(1.0, *std::max_element(counts.begin(), counts.end())), 0, {}};
-        p.y_axis = false;
-        out.script += data_block(fmt::format("h{}", row), outline) + panel(p, width, height);
-        out.script += fmt::format(
-            "plot $h{0} using 1:2 with filledcurves y1=0 fc rgb '{1}' fs noborder, $h{0} using 1:2 with lines lw 1 lc rgb '{2}'\n",
-            row, response_band, model);
-        continue;
-      }
-      p.y = axes[row];
-      p.y_numbers = column == 0;
-      p.y_label_distance = 54;
-      p.y_label = column == 0 ? label(row, p.y) : "";
-      std::vector<std::vector<double>> points;
-      for (std::size_t d = 0; d < shown[row].size(); ++d)
-        points.push_back({axes[column].scaled(shown[column][d]), axes[row].scaled(shown[row][d])});
-      out.script += data_block(fmt::format("p{}_{}", row, column), points) + panel(p, width, height);
-      out.script += fmt::format("plot $p{}_{} using 1:2 with points pt 7 ps 0.18 lc rgb '{}'\n", row, column, model);
-    }
+/// Panels in a square. Three stand in one column of print, more need the page. Pixels.
+struct Square {
+  int count, left = 70, bottom = 48, edge = 6, gap = 8;
+  int width = std::max(column_width, left + edge + 110 * count);
+  int panel_width = (width - left - edge) / count, panel_height = std::min(panel_width, 110);
+  int height = bottom + panel_height * count + edge;
+
+  explicit Square(std::size_t panels) : count(static_cast<int>(panels)) {}
+  Panel panel(std::size_t row, std::size_t column, Axis const& x) const {
+    double const begin = left + static_cast<double>(column) * panel_width;
+    double const end = height - 4.0 - static_cast<double>(row) * panel_height;
+    return panel_at(begin, begin + panel_width - gap, end - panel_height + gap, end, x, {});
   }
-  out.script += "unset multiplot\n";
-  out.caption =
+};
+
+/// Labels stand along the left and the lower edge of the square.
+Panel labelled(Panel panel, Pairs const& of, Square const& square, std::size_t row, std::size_t column) {
+  bool const last = row + 1 == of.count();
+  panel.x_numbers = last;
+  panel.x_label_room = square.panel_width - square.edge;
+  panel.y_label_room = square.panel_height - square.edge;
+  if (last) panel.x_label = of.label(column);
+  return panel;
+}
+
+Plot correlation_plot(Pairs const& of, std::size_t row, std::size_t column, Panel panel) {
+  double const r = correlation(of.all[row], of.all[column]);
+  return {std::move(panel),
+          {},
+          {},
+          Note{std::isfinite(r) ? fmt::format("{}{:.2f}", r <= -0.005 ? "−" : "", std::fabs(r)) : "-",
+               std::fabs(r) >= 0.5 ? contrast : muted}};
+}
+
+Plot histogram_plot(Pairs const& of, std::size_t parameter, Panel panel) {
+  constexpr std::size_t bins = 24;
+  std::vector<double> counts(bins, 0);
+  Axis const& x = of.axes[parameter];
+  double const extent = x.high - x.low;
+  for (double const v : of.all[parameter]) {
+    if (!std::isfinite(v)) continue;
+    ++counts[std::min(bins - 1, static_cast<std::size_t>((x.scaled(v) - x.low) / extent * static_cast<double>(bins)))];
+  }
+  Table outline{fmt::format("h{}", parameter), {}};
+  for (std::size_t b = 0; b < bins; ++b)
+    for (std::size_t edge : {b, b + 1}) outline.rows.push_back({x.low + extent * static_cast<double>(edge) / bins, counts[b]});
+  panel.y = {0, 1.08 * std::max(1.0, *std::max_element(counts.begin(), counts.end())), 0, {}};
+  panel.y_axis = false;
+  std::vector<Series> series{area(outline.name, response_band), line(outline.name, 2, 1, model)};
+  return {std::move(panel), {std::move(outline)}, std::move(series)};
+}
+
+Plot cloud_plot(Pairs const& of, std::size_t row, std::size_t column, Panel panel) {
+  panel.y = of.axes[row];
+  panel.y_numbers = column == 0;
+  panel.y_label_distance = 54;
+  if (column == 0) panel.y_label = of.label(row);
+  Table cloud{fmt::format("p{}_{}", row, column), {}};
+  for (std::size_t d = 0; d < of.thinned[row].size(); ++d)
+    cloud.rows.push_back({of.axes[column].scaled(of.thinned[column][d]), of.axes[row].scaled(of.thinned[row][d])});
+  std::vector<Series> series{points(cloud.name, 2, 0.18, model)};
+  return {std::move(panel), {std::move(cloud)}, std::move(series)};
+}
+
+std::string caption_of(Draws const& draws, std::size_t count) {
+  std::string out =
       "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination the data "
       "determine "
       "where the two alone are not; separate clouds are several modes.";
   if (std::size_t const left_out = draws.names.size() - count; left_out > 0)
-    out.caption += fmt::format(" Shown are {} of {}, {}; {} {} left out.", count, draws.names.size(),
-                               static_cast<std::size_t>(draws.parameter_count) > count
-                                   ? "those with the strongest correlations among the parameters"
-                                   : "the first",
-                               left_out, left_out == 1 ? "is" : "are");
+    out += fmt::format(" Shown are {} of {}, {}; {} {} left out.", count, draws.names.size(),
+                       static_cast<std::size_t>(draws.parameter_count) > count
+                           ? "those with the strongest correlations among the parameters"
+                           : "the first",
+                       left_out, left_out == 1 ? "is" : "are");
   return out;
+}
+
+}  // namespace
+
+Figure pair_figure(Draws const& draws) {
+  Pairs of = pairs_of(draws);
+  Square const square(of.count());
+  for (std::vector<double> const& values : of.all)
+    of.axes.push_back(panel_axis(finite_range(values), square.panel_width - square.gap));
+  Drawing drawing{"pairs", square.width, square.height};
+  drawing.grid = false;
+  for (std::size_t row = 0; row < of.count(); ++row)
+    for (std::size_t column = 0; column < of.count(); ++column) {
+      Panel const bare = square.panel(row, column, of.axes[column]);
+      if (column > row) {
+        drawing.plots.push_back(correlation_plot(of, row, column, bare));
+        continue;
+      }
+      Panel panel = labelled(bare, of, square, row, column);
+      drawing.plots.push_back(row == column ? histogram_plot(of, row, std::move(panel))
+                                            : cloud_plot(of, row, column, std::move(panel)));
+    }
+  return {"pairs", "Pairs", caption_of(draws, of.count()), script(drawing)};
 }
 
 }  // namespace sysid

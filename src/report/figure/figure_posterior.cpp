@@ -1,11 +1,14 @@
-// Marginal posteriors, one cell per parameter: draws, their density, the prior, and the truth of made data.
+// Marginal posteriors, small multiples: draws, their density, the prior, and the truth of made data.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "core/numeric/not_finite.hpp"
 #include "core/text/number.hpp"
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
 #include "report/figure/marginal.hpp"
 #include "report/figure/small_multiples.hpp"
@@ -37,9 +40,151 @@ std::optional<double> truth_of(std::vector<DataInfo> const& data, std::string co
   return out;
 }
 
-std::vector<std::vector<double>> corners(std::vector<std::pair<double, double>> const& outline, Axis const& x, double peak) {
-  std::vector<std::vector<double>> out;
+/// One parameter: its draws and what they are compared with.
+struct Marginal {
+  Summary const& summary;
+  std::vector<double> draws;    // finite, sorted
+  PriorInfo const* prior;       // null: has no density
+  std::optional<double> truth;  // of made data
+  double low = 0, high = 1;     // of the draws that are shown
+  bool truth_is_near = false;   // to what is shown
+
+  bool tails_cut() const { return draws.front() < low || draws.back() > high; }
+};
+
+Marginal marginal_of(Report const& report, std::size_t column) {
+  Summary const& summary = report.summary[column];
+  auto const prior =
+      std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& info) { return info.name == summary.name; });
+  Marginal out{summary, finite_draws(report.draws, column), prior != report.priors.end() && prior->density ? &*prior : nullptr,
+               truth_of(report.data, summary.name)};
+  if (out.draws.empty()) return out;
+  std::tie(out.low, out.high) = shown_range(out.draws);
+  if (out.low == out.high) {  // a bar that can be seen
+    double const half = out.low == 0 ? 0.02 : 0.001 * std::fabs(out.low);
+    out.low -= half;
+    out.high += half;
+  }
+  double const extent = out.high - out.low;
+  out.truth_is_near = out.truth && *out.truth > out.low - extent && *out.truth < out.high + extent;
+  return out;
+}
+
+/// Where curves are computed.
+constexpr int curve_points = 121;
+double place(Axis const& x, int k) { return x.low + (x.high - x.low) * k / (curve_points - 1); }
+
+// Densities are drawn as parts of the highest bar: the figure has no axis for them, and 10^12 none for gnuplot.
+
+Rows histogram_rows(std::vector<std::pair<double, double>> const& outline, Axis const& x, double peak) {
+  Rows out;
   for (auto const& [at, density] : outline) out.push_back({x.scaled(at), density / peak});
+  return out;
+}
+
+Rows prior_rows(PriorInfo const& prior, Axis const& x, double peak) {
+  Rows out;
+  for (int k = 0; k < curve_points; ++k) out.push_back({place(x, k), prior.density(x.unscaled(place(x, k))) / peak});
+  return out;
+}
+
+/// The density of the draws at the places of a curve; empty where they do not vary. It ends where the prior does.
+std::vector<double> density_of(Marginal const& of, Axis const& x) {
+  auto const number = static_cast<double>(of.draws.size());
+  double const worth = std::isfinite(of.summary.ess_bulk) ? std::min(of.summary.ess_bulk, number) : number;
+  double const reach = 5 * kernel_width(of.draws, worth);
+  double const smallest = of.draws.front(), largest = of.draws.back();
+  double const lower = of.prior != nullptr ? support_end(of.prior->density, smallest, smallest - reach) : -infinity;
+  double const upper = of.prior != nullptr ? support_end(of.prior->density, largest, largest + reach) : infinity;
+  return kernel_density(of.draws, worth, x.unscaled(x.low), x.unscaled(x.high), curve_points,
+                        lower > smallest - reach ? lower : -infinity, upper < largest + reach ? upper : infinity);
+}
+
+constexpr Margins margins{14, 12, 46, 20};
+
+Plot plot_without_draws(Summary const& summary, Panel panel) {
+  panel.x = panel.y = axis(0, 1, 1);
+  panel.x.ticks.clear();
+  panel.y_axis = false;
+  panel.x_label = axis_label(summary.name, summary.unit);
+  panel.title = "no finite draw";
+  return {std::move(panel)};
+}
+
+/// Axes, label and title of a panel; the ordinate holds the histogram.
+Panel marginal_panel(Marginal const& of, Panel panel) {
+  std::pair<double, double> extent(of.low, of.high);
+  if (of.truth_is_near) extent = cover(extent, {*of.truth, *of.truth});
+  panel.x = axis(extent.first, extent.second, 4, 0.06);
+  panel.x.clear_edges(0.03);
+  panel.y = {0, 1.08, 0, {}};
+  panel.y_axis = false;
+  panel.x_label = axis_label(of.summary.name, of.summary.unit, panel.x);
+  Summary on_axis = of.summary;
+  on_axis.mean = panel.x.scaled(of.summary.mean);
+  on_axis.sd = panel.x.scaled_width(of.summary.sd);
+  panel.title = mean_and_sd(on_axis);
+  return panel;
+}
+
+/// `kinds` collects which curves the figure has, for its legend and caption.
+struct Kinds {
+  bool density = false, prior = false, truth = false;
+};
+
+Plot marginal_plot(Marginal const& of, std::size_t index, Panel const& at, Kinds& kinds) {
+  Plot out{marginal_panel(of, at)};
+  Axis const& x = out.panel.x;
+  auto const add = [&](char const* what, Rows rows, auto const& series) {
+    out.tables.push_back({fmt::format("{}{}", what, index), std::move(rows)});
+    out.series.push_back(series(out.tables.back().name));
+  };
+  Histogram const histogram(of.draws, of.low, of.high);
+  double const peak = histogram.peak();
+  add("all", histogram_rows(histogram.outline(-infinity, infinity), x, peak),
+      [](std::string const& table) { return area(table, noise_band); });
+  add("inner", histogram_rows(histogram.outline(of.summary.q5, of.summary.q95), x, peak),
+      [](std::string const& table) { return area(table, response_band); });
+  if (of.prior != nullptr) {
+    kinds.prior = true;
+    add("prior", prior_rows(*of.prior, x, peak), [](std::string const& table) { return dashed_line(table, 1.4, contrast); });
+  }
+  if (std::vector<double> const density = density_of(of, x); !density.empty()) {
+    kinds.density = true;
+    Rows rows;
+    for (int k = 0; k < curve_points; ++k) rows.push_back({place(x, k), density[static_cast<std::size_t>(k)] / peak});
+    out.panel.y.high = std::max(out.panel.y.high, 1.08 * *std::max_element(density.begin(), density.end()) / peak);
+    add("density", std::move(rows), [](std::string const& table) { return line(table, 2, 1.6, model); });
+  }
+  if (of.truth_is_near) {
+    kinds.truth = true;
+    add("truth", {{x.scaled(*of.truth), 0}, {x.scaled(*of.truth), out.panel.y.high}},
+        [](std::string const& table) { return line(table, 2, 1.4, ink); });
+  }
+  return out;
+}
+
+std::vector<Key> keys_of(Kinds const& kinds) {
+  std::vector<Key> keys = {{Key::area, response_band, "90 % of the draws"}};
+  if (kinds.density) keys.push_back({Key::line, model, "density"});
+  if (kinds.prior) keys.push_back({Key::dashes, contrast, "prior"});
+  if (kinds.truth) keys.push_back({Key::line, ink, "truth"});
+  return keys;
+}
+
+/// far: parameters whose truth lies outside what is shown; cut: parameters whose tails are not shown.
+std::string caption_of(Kinds const& kinds, std::string const& far, std::string const& cut, std::size_t parameters) {
+  std::string out =
+      "Marginal posteriors, as a histogram of the draws and as a smooth density; the darker part holds 90 %, the numbers "
+      "above are mean ± sd, in the unit of the axis.";
+  if (kinds.prior)
+    out +=
+        " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; one that stands against "
+        "an edge is cut by the prior.";
+  if (kinds.truth) out += " The upright line is the value that the data were made with.";
+  if (!far.empty()) out += fmt::format(" Made with values outside what is shown: {}.", far);
+  if (!cut.empty()) out += fmt::format(" Of {} the central 98 % are shown: the tails reach much farther.", cut);
+  out += multiples_left_out(parameters);
   return out;
 }
 
@@ -50,114 +195,27 @@ Figure posterior_figure(Report const& report) {
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < report.summary.size(); ++c)
     if (!report.summary[c].coefficient) columns.push_back(c);
-  std::size_t const count = std::min(columns.size(), shown_cells);
-  bool any_prior = false, any_truth = false, any_density = false;
-  std::string cut_names, far_names, plots;
-  int const above = 20;
-  Cells const cells(count, 3, 150, 0, above);
+  std::size_t const count = std::min(columns.size(), shown_multiples);
+  constexpr int above = 20;
+  SmallMultiples const multiples(count, 3, 150, 0, above);
+  Drawing drawing{"posterior", multiples.width, multiples.height};
+  Kinds kinds;
+  std::string cut, far;
   auto const add_name = [](std::string& list, std::string const& name) { list += (list.empty() ? "" : ", ") + name; };
   for (std::size_t i = 0; i < count; ++i) {
-    Summary const& summary = report.summary[columns[i]];
-    std::vector<double> const values = finite_draws(report.draws, columns[i]);
-    if (values.empty()) {
-      Panel p = cells.cell(i, 14, 12, 46, 20);
-      p.x = p.y = axis(0, 1, 1);
-      p.x.ticks.clear();
-      p.y_axis = false;
-      p.x_label = axis_label(summary.name, summary.unit);
-      p.title = "no finite draw";
-      plots += panel(p, cells.width, cells.height) + "plot NaN\n";
-      if (i == 0) plots += end_legend();
+    Marginal const of = marginal_of(report, columns[i]);
+    Panel const at = multiples.panel(i, margins);
+    if (of.draws.empty()) {
+      drawing.plots.push_back(plot_without_draws(of.summary, at));
       continue;
     }
-    auto [low, high] = shown_range(values);
-    if (low == high) {  // a bar that can be seen
-      double const half = low == 0 ? 0.02 : 0.001 * std::fabs(low);
-      low -= half;
-      high += half;
-    }
-    Histogram const histogram(values, low, high);
-    if (values.front() < low || values.back() > high) add_name(cut_names, summary.name);
-    std::optional<double> const truth = truth_of(report.data, summary.name);
-    bool const near = truth && *truth > low - (high - low) && *truth < high + (high - low);
-    std::pair<double, double> const extent = near ? cover(std::pair(low, high), std::pair(*truth, *truth)) : std::pair{low, high};
-    Panel p = cells.cell(i, 14, 12, 46, 20);
-    p.x = axis(extent.first, extent.second, 4, 0.06);
-    p.x.clear_edges(0.03);
-    // Densities are drawn as parts of the highest bar: the figure has no axis for them, and 10^12 none for gnuplot.
-    double const peak = histogram.peak();
-    p.y = {0, 1.08, 0, {}};
-    p.y_axis = false;
-    p.x_label = axis_label(summary.name, summary.unit, p.x);
-    Summary on_axis = summary;
-    on_axis.mean = p.x.scaled(summary.mean);
-    on_axis.sd = p.x.scaled_width(summary.sd);
-    p.title = mean_and_sd(on_axis);
-    auto const prior =
-        std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& info) { return info.name == summary.name; });
-    bool const has_prior = prior != report.priors.end() && prior->density;
-    any_prior = any_prior || has_prior;
-
-    std::string blocks = data_block(fmt::format("all{}", i), corners(histogram.outline(-infinity, infinity), p.x, peak));
-    blocks += data_block(fmt::format("inner{}", i), corners(histogram.outline(summary.q5, summary.q95), p.x, peak));
-    std::string curves = fmt::format(
-        "plot $all{0} using 1:2 with filledcurves y1=0 fc rgb '{1}' fs noborder, "
-        "$inner{0} using 1:2 with filledcurves y1=0 fc rgb '{2}' fs noborder",
-        i, noise_band, response_band);
-    auto const add_curve = [&](char const* what, std::vector<std::vector<double>> const& rows, std::string const& style) {
-      blocks += data_block(fmt::format("{}{}", what, i), rows);
-      curves += fmt::format(", ${}{} using 1:2 with lines {}", what, i, style);
-    };
-    constexpr int points = 121;
-    auto const place = [&](int k) { return p.x.low + (p.x.high - p.x.low) * k / (points - 1); };
-    if (has_prior) {
-      std::vector<std::vector<double>> rows;
-      for (int k = 0; k < points; ++k) rows.push_back({place(k), prior->density(p.x.unscaled(place(k))) / peak});
-      add_curve("prior", rows, fmt::format("lw 1.4 dt (6,4) lc rgb '{}'", contrast));
-    }
-    double const worth = std::isfinite(summary.ess_bulk) ? std::min(summary.ess_bulk, static_cast<double>(values.size()))
-                                                         : static_cast<double>(values.size());
-    double const reach = 5 * kernel_width(values, worth);
-    double const smallest = values.front(), largest = values.back();
-    double const lower = has_prior ? support_end(prior->density, smallest, smallest - reach) : -infinity;
-    double const upper = has_prior ? support_end(prior->density, largest, largest + reach) : infinity;
-    std::vector<double> const density =
-        kernel_density(values, worth, p.x.unscaled(p.x.low), p.x.unscaled(p.x.high), points,
-                       lower > smallest - reach ? lower : -infinity, upper < largest + reach ? upper : infinity);
-    if (!density.empty()) {
-      any_density = true;
-      std::vector<std::vector<double>> rows;
-      for (int k = 0; k < points; ++k) rows.push_back({place(k), density[static_cast<std::size_t>(k)] / peak});
-      p.y.high = std::max(p.y.high, 1.08 * *std::max_element(density.begin(), density.end()) / peak);
-      add_curve("density", rows, fmt::format("lw 1.6 lc rgb '{}'", model));
-    }
-    if (near) {
-      any_truth = true;
-      add_curve("truth", {{p.x.scaled(*truth), 0}, {p.x.scaled(*truth), p.y.high}}, fmt::format("lw 1.4 lc rgb '{}'", ink));
-    } else if (truth) {
-      add_name(far_names, fmt::format("{} ({})", summary.name, pretty_number(significant(*truth, 4))));
-    }
-    plots += blocks + panel(p, cells.width, cells.height) + curves + '\n';
-    if (i == 0) plots += end_legend();
+    drawing.plots.push_back(marginal_plot(of, i, at, kinds));
+    if (of.tails_cut()) add_name(cut, of.summary.name);
+    if (of.truth && !of.truth_is_near)
+      add_name(far, fmt::format("{} ({})", of.summary.name, pretty_number(significant(*of.truth, 4))));
   }
-  std::vector<Key> keys = {{Key::area, response_band, "90 % of the draws"}};
-  if (any_density) keys.push_back({Key::line, model, "density"});
-  if (any_prior) keys.push_back({Key::dashes, contrast, "prior"});
-  if (any_truth) keys.push_back({Key::line, ink, "truth"});
-  Figure out{"posterior", "Posterior and prior", "", preamble("posterior", cells.width, cells.height)};
-  out.script += legend(keys, 10, cells.width - 12.0, cells.height - 9.0, cells.width, cells.height) + plots + "unset multiplot\n";
-  out.caption =
-      "Marginal posteriors, as a histogram of the draws and as a smooth density; the darker part holds 90 %, the numbers "
-      "above are mean ± sd, in the unit of the axis.";
-  if (any_prior)
-    out.caption +=
-        " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; one that stands against "
-        "an edge is cut by the prior.";
-  if (any_truth) out.caption += " The upright line is the value that the data were made with.";
-  if (!far_names.empty()) out.caption += fmt::format(" Made with values outside what is shown: {}.", far_names);
-  if (!cut_names.empty()) out.caption += fmt::format(" Of {} the central 98 % are shown: the tails reach much farther.", cut_names);
-  out.caption += cells_left_out(columns.size());
-  return out;
+  drawing.legend = Legend{keys_of(kinds), 12, 9};
+  return {"posterior", "Posterior and prior", caption_of(kinds, far, cut, columns.size()), script(drawing)};
 }
 
 }  // namespace sysid

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnostics/residual_tests.hpp"
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
 
 namespace sysid {
@@ -36,32 +37,54 @@ struct Correlations {
   std::string label, name;
 };
 
-std::string correlation_panel(Correlations const& shown, std::string const& label, Panel p, int lags, int width, int height,
-                              std::string_view colour) {
-  std::vector<double> all = shown.test.correlation;
-  std::vector<std::vector<double>> bars, limits;
-  for (std::size_t i = 0; i < shown.test.correlation.size(); ++i) {
-    double const lag = shown.test.first_lag + static_cast<double>(i);
-    bars.push_back({lag, shown.test.correlation[i]});
-    limits.push_back({lag, -shown.test.bound[i], shown.test.bound[i]});
-    for (double const factor : {-1.5, 1.5}) all.push_back(factor * shown.test.bound[i]);
+/// Correlations with inputs: those shown, and how many are not, for their number or because the input does not vary.
+struct Crossed {
+  std::vector<Correlations> shown;
+  std::size_t left_out = 0, constant = 0;
+};
+
+Crossed crossed_with_inputs(Prediction const& prediction, std::vector<double> const& residuals, int lags) {
+  Crossed out;
+  if (prediction.rows) return out;  // rows of any order have no input before them
+  for (std::size_t k = 0; k < prediction.inputs.size(); ++k) {
+    PredictedInput const& input = prediction.inputs[k];
+    Correlations each{input_correlation(residuals, input.values, lags), "with " + input.name, fmt::format("input{}", k)};
+    std::vector<double> const& found = each.test.correlation;
+    if (!found.empty() && std::all_of(found.begin(), found.end(), [](double one) { return std::isfinite(one); }))
+      out.shown.push_back(std::move(each));
+    else
+      ++out.constant;
+  }
+  if (out.shown.size() <= most_crossed) return out;
+  out.left_out = out.shown.size() - most_crossed;
+  out.shown.resize(most_crossed);
+  return out;
+}
+
+Plot correlation_plot(Correlations const& of, Panel panel, int lags, std::string_view colour) {
+  std::vector<double> all = of.test.correlation;
+  Rows bars, limits;
+  for (std::size_t i = 0; i < of.test.correlation.size(); ++i) {
+    double const lag = of.test.first_lag + static_cast<double>(i);
+    bars.push_back({lag, of.test.correlation[i]});
+    limits.push_back({lag, -of.test.bound[i], of.test.bound[i]});
+    for (double const factor : {-1.5, 1.5}) all.push_back(factor * of.test.bound[i]);
   }
   // The band ends with the panel, not with the last lag.
   limits.insert(limits.begin(), {-0.5, limits.front()[1], limits.front()[2]});
   limits.push_back({lags + 1.0, limits.back()[1], limits.back()[2]});
   auto const [low, high] = finite_range(all);
-  p.x = axis(-0.5, lags + 1, 7);
-  p.x.exponent = 0;
-  p.y = axis(std::min(low, 0.0), std::max(high, 0.0), 3, 0.05);
-  p.y_label = axis_label(label, "", p.y);
-  for (auto& row : bars) row[1] = p.y.scaled(row[1]);
+  panel.x = axis(-0.5, lags + 1, 7);
+  panel.x.exponent = 0;
+  panel.y = axis(std::min(low, 0.0), std::max(high, 0.0), 3, 0.05);
+  panel.y_label = axis_label(of.label, "", panel.y);
+  for (auto& row : bars) row[1] = panel.y.scaled(row[1]);
   for (auto& row : limits)
-    for (std::size_t c : {1U, 2U}) row[c] = p.y.scaled(row[c]);
-  return data_block(shown.name, bars) + data_block(shown.name + "_limit", limits) + panel(p, width, height) +
-         fmt::format(
-             "plot ${0}_limit using 1:2:3 with filledcurves fc rgb '{1}' fs noborder, 0 with lines lw 1 lc rgb '{2}', "
-             "${0} using 1:2 with impulses lw 2.4 lc rgb '{3}'\n",
-             shown.name, noise_band, muted, colour);
+    for (std::size_t c : {1U, 2U}) row[c] = panel.y.scaled(row[c]);
+  std::string const limit = of.name + "_limit";
+  return {std::move(panel),
+          {{of.name, std::move(bars)}, {limit, std::move(limits)}},
+          {band(limit, 2, 3, noise_band), level(0, muted), impulses(of.name, colour)}};
 }
 
 }  // namespace
@@ -73,53 +96,36 @@ bool has_residuals(Prediction const& prediction, PredictedQuantity const& quanti
 
 Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
   std::vector<double> const residuals = residuals_of(prediction, quantity);
-  Correlations const own{whiteness(residuals, most_lags), "", "acf"};
+  Correlations const own{whiteness(residuals, most_lags), "autocorrelation", "acf"};
   int const lags = static_cast<int>(own.test.correlation.size());
+  Crossed const crossed = crossed_with_inputs(prediction, residuals, lags);
 
-  // Rows of any order have no input before them.
-  std::vector<Correlations> crossed;
-  std::size_t constant = 0;
-  for (std::size_t k = 0; k < prediction.inputs.size() && !prediction.rows; ++k) {
-    PredictedInput const& input = prediction.inputs[k];
-    Correlations each{input_correlation(residuals, input.values, lags), input.name, fmt::format("input{}", k)};
-    std::vector<double> const& found = each.test.correlation;
-    if (!found.empty() && std::all_of(found.begin(), found.end(), [](double one) { return std::isfinite(one); }))
-      crossed.push_back(std::move(each));
-    else
-      ++constant;
-  }
-  std::size_t const left_out = crossed.size() > most_crossed ? crossed.size() - most_crossed : 0;
-  crossed.resize(crossed.size() - left_out);
-
-  int const width = column_width, each = 118, below = 44, height = below + each * (1 + static_cast<int>(crossed.size()));
-  Figure out;
-  out.topic = Topic::fit;
-  out.name = identifier(fmt::format("residuals_{}_{}", prediction.experiment, quantity.name));
-  out.title = fmt::format("Correlations of the residuals of {}", quantity.name);
-  out.script = preamble(out.name, width, height);
-  int top = height - 10;
-  auto const place = [&](bool last) {
-    Panel p = panel_at(70, width - 14.0, top - each + 22.0, top, {}, {});
+  constexpr int each = 118, below = 44;
+  Drawing drawing{identifier(fmt::format("residuals_{}_{}", prediction.experiment, quantity.name)), column_width,
+                  below + each * (1 + static_cast<int>(crossed.shown.size()))};
+  int top = drawing.height - 10;
+  auto const add = [&](Correlations const& shown, bool last, std::string_view colour) {
+    Panel panel = panel_at(70, column_width - 14.0, top - each + 22.0, top, {}, {});
     top -= each;
-    p.x_numbers = last;
-    if (last) p.x_label = prediction.rows ? "lag [rows]" : "lag [samples]";
-    return p;
+    panel.x_numbers = last;
+    if (last) panel.x_label = prediction.rows ? "lag [rows]" : "lag [samples]";
+    drawing.plots.push_back(correlation_plot(shown, std::move(panel), lags, colour));
   };
-  out.script += correlation_panel(own, "autocorrelation", place(crossed.empty()), lags, width, height, model);
-  for (std::size_t k = 0; k < crossed.size(); ++k)
-    out.script +=
-        correlation_panel(crossed[k], "with " + crossed[k].label, place(k + 1 == crossed.size()), lags, width, height, contrast);
-  out.script += "unset multiplot\n";
+  add(own, crossed.shown.empty(), model);
+  for (Correlations const& shown : crossed.shown) add(shown, &shown == &crossed.shown.back(), contrast);
+  Figure out{drawing.name, fmt::format("Correlations of the residuals of {}", quantity.name), "", script(drawing), Topic::fit};
   out.caption = fmt::format(
       "Autocorrelation of the residuals of {}{}. Of white residuals 99 % stay inside the band; a pattern is dynamics the model "
       "lacks.",
-      quantity.name, crossed.empty() ? "" : ", and below it their correlation with what the input was as many samples before");
+      quantity.name,
+      crossed.shown.empty() ? "" : ", and below it their correlation with what the input was as many samples before");
   if (quantity.response.draws != 1)
     out.caption +=
         " Residuals are about the mean of the draws; the checks of a fit take those of its best mode, over the size of the noise.";
-  if (!crossed.empty()) out.caption += " Bars outside the lower band are what the input does and the model does not follow.";
-  if (left_out > 0) out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + left_out);
-  if (constant > 0) out.caption += " An input that does not vary has no correlation.";
+  if (!crossed.shown.empty()) out.caption += " Bars outside the lower band are what the input does and the model does not follow.";
+  if (crossed.left_out > 0)
+    out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + crossed.left_out);
+  if (crossed.constant > 0) out.caption += " An input that does not vary has no correlation.";
   return out;
 }
 

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
+#include "report/figure/small_multiples.hpp"
+#include "report/figure/surface.hpp"
 
 namespace sysid {
 
@@ -49,70 +52,96 @@ std::string where_data_come_from(RestoringForce const& force) {
       2 * force.half_width + 1);
 }
 
-}  // namespace
+/// Of the model, and of the data as far as they lie near it: points outside this may be noise that was differentiated.
+std::pair<double, double> shared_range(std::vector<double> const& of_model, std::vector<double> const& of_data) {
+  auto const [low, high] = finite_range(of_model);
+  std::pair<double, double> const wide{low - 0.25 * (high - low), high + 0.25 * (high - low)};
+  std::vector<double> inside;
+  for (double const v : of_data)
+    if (v >= wide.first && v <= wide.second) inside.push_back(v);
+  return inside.empty() ? std::pair{low, high} : cover({low, high}, finite_range(inside));
+}
 
-Figure loop_figure(RestoringForce const& force) {
-  auto const [first, last] = window(force.model);
-  int const width = column_width;
-  bool const whole = last - first == force.model.force.size();
-  std::vector<Key> keys = {{Key::line, model, whole ? "model" : "model around the largest displacement"}};
-  if (!force.data.force.empty()) keys.insert(keys.begin(), {Key::points, data, "data"});
-  int const height = 236 + legend_height(keys, 10, width - 14);
-  // Points of the data outside this may be noise that was differentiated.
-  auto const extent = [&](std::vector<double> const& of_model, std::vector<double> const& of_data) {
-    auto const [low, high] = finite_range(of_model);
-    std::pair<double, double> const wide{low - 0.25 * (high - low), high + 0.25 * (high - low)};
-    std::vector<double> inside;
-    for (double const v : of_data)
-      if (v >= wide.first && v <= wide.second) inside.push_back(v);
-    return inside.empty() ? std::pair{low, high} : cover({low, high}, finite_range(inside));
+/// What one panel of loops has as its abscissa.
+struct Abscissa {
+  char const* name;
+  std::string const &label, &unit;
+  std::vector<double> const &of_model, &of_data;
+};
+
+/// Tables and series over an abscissa: of the model the samples [first, last), of the data evenly thinned ones.
+void add_loops(Plot& plot, RestoringForce const& force, Abscissa const& over, std::size_t first, std::size_t last) {
+  auto const at = [&](double abscissa, double value) {
+    return std::vector<double>{plot.panel.x.scaled(abscissa), plot.panel.y.scaled(value)};
   };
-  auto const y_extent = extent(force.model.force, force.data.force);
-  Axis const y = axis(y_extent.first, y_extent.second, 5, 0.05);
-  Figure out;
-  out.topic = Topic::fit;
-  out.name = figure_name("loop", force);
-  out.title = fmt::format("Restoring force of {} on {}", force.displacement, force.experiment);
-  out.script = preamble(out.name, width, height) + legend(keys, 10, width - 14.0, height - 12.0, width, height);
-  struct Side {
-    char const* name;
-    std::string const &label, &unit;
-    std::vector<double> const &of_model, &of_data;
-  };
-  Side const sides[] = {
-      {"displacement", force.displacement, force.displacement_unit, force.model.displacement, force.data.displacement},
-      {"velocity", force.velocity, force.velocity_unit, force.model.velocity, force.data.velocity}};
-  double const step = (width - 70.0) / 2;
-  for (std::size_t k = 0; k < 2; ++k) {
-    Side const& side = sides[k];
-    auto const x_extent = extent(side.of_model, side.of_data);
-    Axis const x = axis(x_extent.first, x_extent.second, 4, 0.04);
-    double const left = 70 + static_cast<double>(k) * step;
-    Panel p = panel_at(left, k == 0 ? left + step - 30 : width - 14.0, 44, height - 28.0, x, y);
-    p.x_label = axis_label(side.label, side.unit, x);
-    p.y_numbers = k == 0;
-    if (k == 0) p.y_label = axis_label(force_name(force), force.force_unit, y);
-    std::vector<std::vector<double>> lines, points;
-    for (std::size_t i = first; i < last; ++i) lines.push_back({x.scaled(side.of_model[i]), y.scaled(force.model.force[i])});
-    std::size_t const stride = (force.data.force.size() + 2 * shown_points - 1) / (2 * shown_points);
-    for (std::size_t i = 0; i < force.data.force.size(); i += stride)
-      points.push_back({x.scaled(side.of_data[i]), y.scaled(force.data.force[i])});
-    out.script += data_block(fmt::format("{}_model", side.name), lines);
-    std::string plots = fmt::format("${}_model using 1:2 with lines lw 1 lc rgb '{}'\n", side.name, model);
-    if (!points.empty()) {
-      out.script += data_block(fmt::format("{}_data", side.name), points);
-      plots = fmt::format("${}_data using 1:2 with points pt 7 ps 0.2 lc rgb '{}', ", side.name, data) + plots;
-    }
-    out.script += panel(p, width, height) + "plot " + plots;
-    if (k == 0) out.script += end_legend();
-  }
-  out.script += "unset multiplot\n";
-  out.caption = fmt::format(
+  Table of_model{fmt::format("{}_model", over.name), {}}, of_data{fmt::format("{}_data", over.name), {}};
+  for (std::size_t i = first; i < last; ++i) of_model.rows.push_back(at(over.of_model[i], force.model.force[i]));
+  std::size_t const stride = (force.data.force.size() + 2 * shown_points - 1) / (2 * shown_points);
+  for (std::size_t i = 0; i < force.data.force.size(); i += stride)
+    of_data.rows.push_back(at(over.of_data[i], force.data.force[i]));
+  if (!of_data.rows.empty()) plot.series.push_back(points(of_data.name, 2, 0.2, data));
+  plot.series.push_back(line(of_model.name, 2, 1, model));
+  plot.tables.push_back(std::move(of_model));
+  if (!of_data.rows.empty()) plot.tables.push_back(std::move(of_data));
+}
+
+std::string loop_caption(RestoringForce const& force) {
+  return fmt::format(
       "What pulls {} back, along the record: {}. A line or a curve over the displacement is a spring, a slope over the velocity a "
       "damper; loops that stay open when the motion is slow are a hysteresis.{}",
       force.displacement,
       force.per_mass ? "minus the acceleration" : "the input less what accelerates the mass, in the unit of the input",
       where_data_come_from(force));
+}
+
+Rows mesh_of(RestoringForce const& force, Axis const& x, Axis const& y, Axis const& z) {
+  Rows mesh;
+  for (std::size_t i = 0; i < force.surface.size(); ++i) {
+    for (std::size_t j = 0; j < force.surface[i].size(); ++j)
+      mesh.push_back({x.scaled(force.grid_displacement[i]), y.scaled(force.grid_velocity[j]), z.scaled(force.surface[i][j])});
+    mesh.emplace_back();
+  }
+  return mesh;
+}
+
+/// Evenly thinned points of a path, those within the axes.
+Rows points_of(RestoringForce::Path const& path, Axis const& x, Axis const& y, Axis const& z) {
+  Rows points;
+  std::size_t const stride = (path.force.size() + shown_points - 1) / shown_points;
+  for (std::size_t i = 0; i < path.force.size(); i += stride) {
+    std::vector<double> const at = {x.scaled(path.displacement[i]), y.scaled(path.velocity[i]), z.scaled(path.force[i])};
+    if (at[0] >= x.low && at[0] <= x.high && at[1] >= y.low && at[1] <= y.high && at[2] >= z.low && at[2] <= z.high)
+      points.push_back(at);
+  }
+  return points;
+}
+
+}  // namespace
+
+Figure loop_figure(RestoringForce const& force) {
+  auto const [first, last] = window(force.model);
+  bool const whole = last - first == force.model.force.size();
+  Legend legend{{{Key::line, model, whole ? "model" : "model around the largest displacement"}}};
+  if (!force.data.force.empty()) legend.keys.insert(legend.keys.begin(), {Key::points, data, "data"});
+  int const height = 236 + legend.height();
+  Drawing drawing{figure_name("loop", force), column_width, height, std::move(legend)};
+  auto const y_range = shared_range(force.model.force, force.data.force);
+  Axis const y = axis(y_range.first, y_range.second, 5, 0.05);
+  Abscissa const abscissae[] = {
+      {"displacement", force.displacement, force.displacement_unit, force.model.displacement, force.data.displacement},
+      {"velocity", force.velocity, force.velocity_unit, force.model.velocity, force.data.velocity}};
+  for (std::size_t k = 0; k < std::size(abscissae); ++k) {
+    Abscissa const& over = abscissae[k];
+    auto const x_range = shared_range(over.of_model, over.of_data);
+    Plot plot{panel_beside(k, std::size(abscissae), 14, 44, height - 28.0, axis(x_range.first, x_range.second, 4, 0.04), y)};
+    plot.panel.x_label = axis_label(over.label, over.unit, plot.panel.x);
+    plot.panel.y_numbers = k == 0;
+    if (k == 0) plot.panel.y_label = axis_label(force_name(force), force.force_unit, y);
+    add_loops(plot, force, over, first, last);
+    drawing.plots.push_back(std::move(plot));
+  }
+  Figure out{drawing.name, fmt::format("Restoring force of {} on {}", force.displacement, force.experiment), loop_caption(force),
+             script(drawing), Topic::fit};
   if (!whole) out.caption += fmt::format(" Shown of the model are {} samples around the largest displacement.", last - first);
   return out;
 }
@@ -124,51 +153,18 @@ Figure surface_figure(RestoringForce const& force) {
   constexpr double edge = 0.002;  // lest the outer lines of the mesh are cut by their rounding
   Axis const x = axis(force.grid_displacement.front(), force.grid_displacement.back(), 3, edge),
              y = axis(force.grid_velocity.front(), force.grid_velocity.back(), 3, edge), z = axis(low, high, 4, 0.02);
-  int const width = column_width, height = 310;
-  Figure out;
-  out.topic = Topic::fit;
-  out.name = figure_name("surface", force);
-  out.title = fmt::format("Restoring-force surface of {} on {}", force.displacement, force.experiment);
   bool const has_data = !force.data.force.empty();
-  RestoringForce::Path const& path = has_data ? force.data : force.model;
-  std::vector<Key> const keys = {{Key::points, has_data ? data : contrast, has_data ? "data" : "where the model moves"},
-                                 {Key::line, model, "model"}};
-  out.script = preamble(out.name, width, height) + legend(keys, 10, width - 14.0, height - 12.0, width, height);
-  std::vector<std::vector<double>> mesh, points;
-  for (std::size_t i = 0; i < force.surface.size(); ++i) {
-    for (std::size_t j = 0; j < force.surface[i].size(); ++j)
-      mesh.push_back({x.scaled(force.grid_displacement[i]), y.scaled(force.grid_velocity[j]), z.scaled(force.surface[i][j])});
-    mesh.emplace_back();
-  }
-  std::size_t const stride = (path.force.size() + shown_points - 1) / shown_points;
-  for (std::size_t i = 0; i < path.force.size(); i += stride) {
-    std::vector<double> const at = {x.scaled(path.displacement[i]), y.scaled(path.velocity[i]), z.scaled(path.force[i])};
-    if (at[0] >= x.low && at[0] <= x.high && at[1] >= y.low && at[1] <= y.high && at[2] >= z.low && at[2] <= z.high)
-      points.push_back(at);
-  }
-  out.script += data_block("mesh", mesh) + (points.empty() ? "" : data_block("points", points));
-  auto const ticks = [](char which, Axis const& axis, char const* offset) {
-    std::string list;
-    for (auto const& [place, number] : axis.ticks) list += fmt::format("{}'{}' {:.10g}", list.empty() ? "" : ", ", number, place);
-    return fmt::format("set {0}tics offset {3} textcolor rgb '{1}' ({2})\n", which, ink, list, offset);
-  };
-  // gnuplot's own labels lie over the numbers of their axes, or are left out in the view below.
-  int labels = 0;
-  auto const label = [&](std::string const& text, char const* place) {
-    return fmt::format("set label {} {} at screen {} textcolor rgb '{}'\n", 300 + ++labels, quote(shortened(text, 190)), place,
-                       ink);
-  };
-  out.script += fmt::format(
-      "set xrange [{:.10g}:{:.10g}]\nset yrange [{:.10g}:{:.10g}]\nset zrange [{:.10g}:{:.10g}]\nset xyplane at {:.10g}\n"
-      "set view 50,25,1.08,0.9\nset border 127 lw 0.7\nset grid noxtics noytics noztics\n",
-      x.low, x.high, y.low, y.high, z.low, z.high, z.low);
-  out.script += ticks('x', x, "0,-0.2") + ticks('y', y, "0,-0.2") + ticks('z', z, "0.4,0");
-  out.script += label(axis_label(force.displacement, force.displacement_unit, x), "0.3,0.07 center");
-  out.script += label(axis_label(force.velocity, force.velocity_unit, y), "0.98,0.1 right");
-  out.script += label(axis_label(force_name(force), force.force_unit, z), "0.02,0.68 left");
-  out.script += fmt::format(
-      "splot $mesh using 1:2:3 with lines lw 0.8 lc rgb '{}'{}\nunset multiplot\n", model,
-      points.empty() ? "" : fmt::format(", $points using 1:2:3 with points pt 7 ps 0.2 lc rgb '{}'", has_data ? data : contrast));
+  std::string_view const point_colour = has_data ? data : contrast;
+  Surface const surface{figure_name("surface", force),
+                        {{{Key::points, point_colour, has_data ? "data" : "where the model moves"}, {Key::line, model, "model"}}},
+                        {x, axis_label(force.displacement, force.displacement_unit, x)},
+                        {y, axis_label(force.velocity, force.velocity_unit, y)},
+                        {z, axis_label(force_name(force), force.force_unit, z)},
+                        mesh_of(force, x, y, z),
+                        points_of(has_data ? force.data : force.model, x, y, z),
+                        point_colour};
+  Figure out{surface.name, fmt::format("Restoring-force surface of {} on {}", force.displacement, force.experiment), "",
+             script(surface), Topic::fit};
   out.caption = fmt::format(
       "The restoring force over displacement and velocity, by the model, over what the record reaches. Where no points lie the "
       "model "
