@@ -6,6 +6,7 @@
 #include "assist/completion_offer.hpp"
 #include "assist/completion_place.hpp"
 #include "assist/vocabulary.hpp"
+#include "check/checked/task_kinds.hpp"
 #include "distribution/distribution.hpp"
 #include "syntax/words.hpp"
 
@@ -150,7 +151,8 @@ class Completer : private Offer {
     if (words::contains(words::prepositions, tokens.back().text) || (has_preposition && place().follows(",")))
       return own(SymbolKind::data);
     if (!place().brackets.empty()) return arguments_of_model(place().brackets.back().callee, false);
-    if (!has_preposition && verb != "simulate") keyword(verb == "predict" ? "on" : verb == "discover" ? "from" : "to");
+    TaskKindRow const* const row = find_task_kind(verb);
+    if (!has_preposition && row != nullptr && !row->preposition.empty()) keyword(std::string(row->preposition));
     keyword("with");
   }
   void subjects(std::string_view verb) {

@@ -29,7 +29,7 @@ class Offer {
 
   // --- words of the language ---
   void add(Completion item);
-  void keyword(char const* word) { add({word, CompletionKind::keyword, {}, {}}); }
+  void keyword(std::string_view word) { add({std::string(word), CompletionKind::keyword, {}, {}}); }
   void keywords(std::span<std::string_view const> words);
   void vocabulary(std::vector<Word> const& words, CompletionKind kind);
   void vocabulary(WordKind kind, CompletionKind as = CompletionKind::word) { vocabulary(words_of(kind), as); }

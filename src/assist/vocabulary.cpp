@@ -12,13 +12,14 @@
 #include "check/elaborate/array_functions.hpp"
 #include "check/task/signal_generators.hpp"
 #include "check/task/task_options.hpp"
-#include "core/setting/solver.hpp"
+#include "data/input_rule.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
 #include "inference/table.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid::assist {
 namespace {
@@ -187,7 +188,11 @@ std::vector<Word> options_of(std::string_view verb) {
 }
 
 std::vector<Word> choices_of(std::string_view owner, std::string_view setting) {
-  if (setting == "hold") return as_choices("zero_order linear cubic band_limited");
+  if (setting == "hold") {
+    Words all;
+    for (InputRuleRow const& row : input_rules()) all.push_back({WordKind::choice, std::string(row.name), {}, {}});
+    return all;
+  }
   if (setting == "derivatives") return words_of(WordKind::derivative);
   if (SettingRow const* row = find_setting(setting_rows(owner), setting))
     return as_choices(row->kind == SettingKind::flag ? "yes no" : row->choices);

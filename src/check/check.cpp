@@ -34,10 +34,6 @@ class Unique {
   std::map<std::string, Span> seen_;
 };
 
-}  // namespace
-
-namespace {
-
 ast::Model const* find_model(ast::File const& tree, std::string const& name) {
   for (ast::Item const& item : tree.items)
     if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
@@ -50,78 +46,115 @@ bool mentioned(std::vector<ast::Task const*> const& tasks, std::string const& bl
   });
 }
 
+/// The passes over a file, in their order.
+class FileChecker {
+ public:
+  FileChecker(Elaborated const& elaborated, Backends const& backends, Diagnostics& diagnostics)
+      : tree_(elaborated.tree),
+        lineage_(elaborated.lineage),
+        backends_(backends),
+        diagnostics_(diagnostics),
+        unsound_(elaborated.lineage.failed) {
+    file_.tree = tree_;
+    names_.declared = declared_names(tree_);
+    names_.declared.all = lineage_.failed.empty();
+    for (std::string const& failed : lineage_.failed) names_.models[failed] = std::nullopt;
+  }
+
+  std::optional<CheckedFile> run() {
+    collect();
+    for (ast::Item const& item : tree_.items) check_item(item);
+    for (ast::Item const& item : tree_.items)
+      if (auto const* set = std::get_if<ast::Candidates>(&item)) check_set(*set);
+    for (ast::Task const* task : tasks_)
+      if (auto checked = check_task(*task, names_, file_, backends_, tasks_, diagnostics_))
+        file_.tasks.push_back(std::move(*checked));
+    check_unused_data();
+    remove_consequences(tree_, diagnostics_);
+    if (diagnostics_.has_errors()) return std::nullopt;
+    for (Model const& model : file_.models) warn_of_unused(model, diagnostics_);
+    return std::move(file_);
+  }
+
+ private:
+  // Functions and tasks, which others refer to.
+  void collect() {
+    for (ast::Item const& item : tree_.items) {
+      if (auto const* function = std::get_if<ast::FunctionDefinition>(&item))
+        if (unique_function_(function->name, function->name.text)) functions_.push_back(function);
+      if (auto const* task = std::get_if<ast::Task>(&item))
+        if (unique_task_(task->name ? *task->name : task->verb, task_name(*task))) tasks_.push_back(task);
+    }
+  }
+
+  void check_item(ast::Item const& item) {
+    if (auto const* model = std::get_if<ast::Model>(&item)) {
+      if (unique_model_(model->name, model->name.text)) check_one(*model);
+    } else if (auto const* data = std::get_if<ast::Data>(&item)) {
+      if (unique_data_(data->name, data->name.text))
+        names_.data[data->name.text] = keep(check_data(*data, diagnostics_), file_.data);
+    } else if (auto const* dictionary = std::get_if<ast::Dictionary>(&item)) {
+      if (unique_dictionary_(dictionary->name, dictionary->name.text))
+        names_.dictionaries[dictionary->name.text] =
+            keep(check_dictionary(*dictionary, functions_, diagnostics_), file_.dictionaries);
+    }
+  }
+
+  void check_one(ast::Model const& model) {
+    std::string const& name = model.name.text;
+    auto const made_of = lineage_.made_of.find(name);
+    bool const sound =
+        made_of == lineage_.made_of.end() || std::none_of(made_of->second.begin(), made_of->second.end(),
+                                                          [&](std::string const& each) { return unsound_.contains(each); });
+    std::size_t const before = diagnostics_.all().size();
+    auto checked = sound ? check_model(model, functions_, diagnostics_) : std::nullopt;
+    if (sound && !checked) blame_declaration(model, functions_, before, diagnostics_);
+    if (!checked) unsound_.insert(name);
+    if (checked && lineage_.only_checked.contains(name)) return;
+    names_.models[name] = keep(std::move(checked), file_.models);
+  }
+
+  void check_set(ast::Candidates const& set) {
+    if (!unique_candidates_(set.name, set.name.text)) return;
+    if (ast::Model const* model = find_model(tree_, set.name.text); model != nullptr)
+      diagnostics_.add(errors::model_and_candidates(set.name, model->name.span));
+    names_.candidates[set.name.text] = keep(check_candidates(set, names_.models, file_, diagnostics_), file_.candidates);
+  }
+
+  // A block that no task brings together with a model is held to what continuous time needs, unless the file has other models.
+  void check_unused_data() {
+    bool const other_dynamics = std::any_of(file_.models.begin(), file_.models.end(),
+                                            [](Model const& model) { return model.dynamics != Dynamics::continuous; });
+    for (DataBlock const& block : file_.data)
+      if (!other_dynamics && !mentioned(tasks_, block.name)) check_between_samples(block, nullptr, diagnostics_);
+  }
+
+  // Its index among the items; nothing where it failed its check.
+  template <typename Item>
+  static std::optional<int> keep(std::optional<Item> checked, std::vector<Item>& items) {
+    if (!checked) return std::nullopt;
+    items.push_back(std::move(*checked));
+    return static_cast<int>(items.size()) - 1;
+  }
+
+  ast::File const& tree_;
+  Lineage const& lineage_;
+  Backends const& backends_;
+  Diagnostics& diagnostics_;
+  CheckedFile file_;
+  TaskNames names_;
+  std::set<std::string> unsound_;  // what is made of them is not looked at: it has the same mistakes
+  std::vector<ast::FunctionDefinition const*> functions_;
+  std::vector<ast::Task const*> tasks_;
+  Unique unique_model_{"model", diagnostics_}, unique_data_{"data block", diagnostics_}, unique_task_{"task", diagnostics_},
+      unique_function_{"function", diagnostics_}, unique_candidates_{"candidate set", diagnostics_},
+      unique_dictionary_{"dictionary", diagnostics_};
+};
+
 }  // namespace
 
 std::optional<CheckedFile> check(Elaborated const& elaborated, Backends const& backends, Diagnostics& diagnostics) {
-  ast::File const& tree = elaborated.tree;
-  Lineage const& lineage = elaborated.lineage;
-  CheckedFile file;
-  file.tree = tree;
-  TaskNames names;
-  names.declared = declared_names(tree);
-  names.declared.all = lineage.failed.empty();
-  for (std::string const& failed : lineage.failed) names.models[failed] = std::nullopt;
-  std::set<std::string> unsound = lineage.failed;  // what is made of them is not looked at: it has the same mistakes
-  std::vector<ast::FunctionDefinition const*> functions;
-  std::vector<ast::Task const*> tasks;
-  Unique unique_model("model", diagnostics), unique_data("data block", diagnostics), unique_task("task", diagnostics),
-      unique_function("function", diagnostics), unique_candidates("candidate set", diagnostics),
-      unique_dictionary("dictionary", diagnostics);
-  for (ast::Item const& item : tree.items) {
-    if (auto const* function = std::get_if<ast::FunctionDefinition>(&item))
-      if (unique_function(function->name, function->name.text)) functions.push_back(function);
-    if (auto const* task = std::get_if<ast::Task>(&item))
-      if (unique_task(task->name ? *task->name : task->verb, task_name(*task))) tasks.push_back(task);
-  }
-  for (ast::Item const& item : tree.items) {
-    if (auto const* model = std::get_if<ast::Model>(&item)) {
-      if (!unique_model(model->name, model->name.text)) continue;
-      auto const made_of = lineage.made_of.find(model->name.text);
-      bool const sound =
-          made_of == lineage.made_of.end() || std::none_of(made_of->second.begin(), made_of->second.end(),
-                                                           [&](std::string const& each) { return unsound.contains(each); });
-      std::size_t const before = diagnostics.all().size();
-      auto checked = sound ? check_model(*model, functions, diagnostics) : std::nullopt;
-      if (sound && !checked) blame_declaration(*model, functions, before, diagnostics);
-      if (!checked) unsound.insert(model->name.text);
-      if (checked && lineage.only_checked.contains(model->name.text)) continue;
-      names.models[model->name.text] = checked ? std::optional(static_cast<int>(file.models.size())) : std::nullopt;
-      if (checked) file.models.push_back(std::move(*checked));
-    } else if (auto const* data = std::get_if<ast::Data>(&item)) {
-      if (!unique_data(data->name, data->name.text)) continue;
-      auto checked = check_data(*data, diagnostics);
-      names.data[data->name.text] = checked ? std::optional(static_cast<int>(file.data.size())) : std::nullopt;
-      if (checked) file.data.push_back(std::move(*checked));
-    } else if (auto const* dictionary = std::get_if<ast::Dictionary>(&item)) {
-      if (!unique_dictionary(dictionary->name, dictionary->name.text)) continue;
-      auto checked = check_dictionary(*dictionary, functions, diagnostics);
-      names.dictionaries[dictionary->name.text] =
-          checked ? std::optional(static_cast<int>(file.dictionaries.size())) : std::nullopt;
-      if (checked) file.dictionaries.push_back(std::move(*checked));
-    }
-  }
-  for (ast::Item const& item : tree.items) {
-    auto const* set = std::get_if<ast::Candidates>(&item);
-    if (set == nullptr || !unique_candidates(set->name, set->name.text)) continue;
-    if (ast::Model const* model = find_model(tree, set->name.text); model != nullptr)
-      diagnostics.add(errors::model_and_candidates(set->name, model->name.span));
-    auto checked = check_candidates(*set, names.models, file, diagnostics);
-    names.candidates[set->name.text] = checked ? std::optional(static_cast<int>(file.candidates.size())) : std::nullopt;
-    if (checked) file.candidates.push_back(std::move(*checked));
-  }
-  for (ast::Task const* task : tasks) {
-    auto checked = check_task(*task, names, file, backends, tasks, diagnostics);
-    if (checked) file.tasks.push_back(std::move(*checked));
-  }
-  // A block that no task brings together with a model is held to what continuous time needs, unless the file has other models.
-  bool const other_dynamics = std::any_of(file.models.begin(), file.models.end(),
-                                          [](Model const& model) { return model.dynamics != Dynamics::continuous; });
-  for (DataBlock const& block : file.data)
-    if (!other_dynamics && !mentioned(tasks, block.name)) check_between_samples(block, nullptr, diagnostics);
-  remove_consequences(tree, diagnostics);
-  if (diagnostics.has_errors()) return std::nullopt;
-  for (Model const& model : file.models) warn_of_unused(model, diagnostics);
-  return file;
+  return FileChecker(elaborated, backends, diagnostics).run();
 }
 
 }  // namespace sysid

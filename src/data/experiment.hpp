@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "core/numeric/unit.hpp"
+#include "data/input_rule.hpp"
 
 namespace sysid {
-
-enum class InputRule { zero_order, linear, cubic, band_limited };
 
 /// An input between its samples: on interval i, [t_i, t_(i+1)], a polynomial in s = (t - t_i)/(t_(i+1) - t_i), coefficients
 /// c_0 ... c_degree. Every rule has this form, so any solver may read it at any time.

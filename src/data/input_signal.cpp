@@ -5,7 +5,6 @@
 #include "core/text/diagnostic.hpp"
 #include "data/errors.hpp"
 #include "data/experiment.hpp"
-#include "data/spline.hpp"
 
 namespace sysid {
 namespace {
@@ -24,27 +23,12 @@ void require_equal_steps(std::vector<double> const& time) {
 
 InputSignal::InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples) {
   if (time.size() < 2 || time.size() != samples.size()) throw InternalError("an input signal needs two samples, each with a time");
-  if (rule == InputRule::band_limited) require_equal_steps(time);
+  InputRuleRow const& row = row_of(rule);
+  if (row.equal_steps) require_equal_steps(time);
   auto record = std::make_shared<Record>();
   record->rule = rule;
-  switch (rule) {
-    case InputRule::zero_order:
-      record->degree = 0;
-      record->coefficients.assign(samples.begin(), samples.end() - 1);
-      break;
-    case InputRule::linear:
-      record->degree = 1;
-      record->coefficients = linear_coefficients(samples);
-      break;
-    case InputRule::cubic:
-      record->degree = 3;
-      record->coefficients = cubic_coefficients(time, samples);
-      break;
-    case InputRule::band_limited:
-      record->degree = band_limited_degree;
-      record->coefficients = band_limited_coefficients(samples);
-      break;
-  }
+  record->degree = row.degree;
+  record->coefficients = row.coefficients(time, samples);
   record->time = std::move(time);
   record->samples = std::move(samples);
   rows_ = static_cast<int>(record->samples.size());
@@ -96,7 +80,7 @@ InputSignal InputSignal::shifted(double samples) const {
       continue;
     }
     double const s = (t - time[after - 1]) / (time[after] - time[after - 1]);
-    bool const held = record_->rule == InputRule::zero_order;
+    bool const held = row_of(record_->rule).jumps;
     moved[i] = held ? old[after - 1] + s * (old[after] - old[after - 1]) : whole.value(static_cast<int>(after) - 1, s);
   }
   return InputSignal(record_->rule, time, std::move(moved)).view(first_, rows_);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/input_rule.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/residual_checks.hpp"
 #include "likelihood/output.hpp"
@@ -107,7 +108,8 @@ Findings check_input_timing(ModelTarget const& target, Aim aim, Mode const& mode
            {model.inputs[i].name, target.experiments()[at].name},
            fmt::format("input {}{} half a sample {} would fit much better (log posterior up by {:.0f} over {} samples)",
                        model.inputs[i].name, on_experiment(target, e), best_shift > 0 ? "later" : "earlier", best_gain, scored),
-           "check the rule between input samples (hold zero_order, linear, cubic, band_limited) and the delay of the recording"});
+           fmt::format("check the rule between input samples (hold {}) and the delay of the recording",
+                       fmt::join(input_rule_names(), ", "))});
     }
   }
   return findings;

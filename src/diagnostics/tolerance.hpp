@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "core/setting/solver.hpp"
 #include "likelihood/target.hpp"
 #include "result/draws.hpp"
 #include "search/aim.hpp"
 #include "search/run_context.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 

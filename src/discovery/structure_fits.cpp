@@ -83,8 +83,7 @@ SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> 
 
 bool StructureFits::one_by_one(std::size_t m) const {
   if (!models_[m].failure.empty()) return false;
-  Stepping const stepping = models_[m].solver.row().stepping;
-  return stepping == Stepping::cvode || stepping == Stepping::ida;
+  return !models_[m].solver.row().in_program;
 }
 
 // The point and each perturbation simulate all rows.

@@ -38,6 +38,7 @@ struct DistributionRow {
   bool proper = true;
   bool logarithmic = false;    // the sampler's coordinate is logarithmic between finite bounds (log_uniform)
   bool dimensionless = false;  // the variate is a pure number (beta)
+  bool gaussian = false;       // closed under sums and conditioning: what processes and linear coefficients need
   /// log p(x | arguments), all constants kept; x inside the support.
   NodeId (*log_density)(Graph&, NodeId x, std::span<NodeId const> arguments);
   /// P(X <= x); nullptr: cannot be truncated.

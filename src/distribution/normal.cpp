@@ -42,6 +42,7 @@ DistributionRow normal_distribution() {
   return {.name = "normal",
           .arguments = arguments,
           .noise = true,
+          .gaussian = true,
           .log_density = &log_density,
           .cumulative = &cumulative,
           .survival = &survival,

@@ -6,24 +6,14 @@
 
 #include "core/numeric/normal_quantile.hpp"
 #include "distribution/distribution.hpp"
+#include "distribution/list.hpp"
 #include "function/primitive.hpp"
 
 namespace sysid {
 
-DistributionRow beta_distribution();
-DistributionRow exponential_distribution();
-DistributionRow flat_distribution();
-DistributionRow gamma_distribution();
-DistributionRow half_cauchy_distribution();
-DistributionRow half_normal_distribution();
-DistributionRow inverse_gamma_distribution();
-DistributionRow log_normal_distribution();
-DistributionRow log_uniform_distribution();
-DistributionRow negative_binomial_distribution();
-DistributionRow normal_distribution();
-DistributionRow poisson_distribution();
-DistributionRow student_t_distribution();
-DistributionRow uniform_distribution();
+#define DECLARE_ROW(name) DistributionRow name##_distribution();
+SYSID_DISTRIBUTIONS(DECLARE_ROW)
+#undef DECLARE_ROW
 
 using Nodes = std::span<NodeId const>;
 using Numbers = std::span<double const>;

@@ -8,6 +8,9 @@
 namespace sysid {
 namespace {
 
+/// The solver whose step a Stan program contains (stan_functions.cpp).
+constexpr std::string_view written_solver = "rk4";
+
 void require_carried(Task const& task, FitTask const& what, Model const& model, SolverSettings const& solver) {
   if (!model.processes.empty())
     throw not_carried(task, fmt::format("`{}` is a Gaussian process over its rows", model.processes.front().name),
@@ -17,9 +20,9 @@ void require_carried(Task const& task, FitTask const& what, Model const& model, 
   if (model.implicit)
     throw not_carried(task, "its equations are not solved for the highest derivatives",
                       "write it without what is determined implicitly");
-  if (model.integrated() && solver.method != "rk4")
+  if (model.integrated() && solver.method != written_solver)
     throw not_carried(task, fmt::format("it is integrated by {}", solver.method),
-                      "state `solver = rk4`, with as many substeps as it needs");
+                      fmt::format("state `solver = {}`, with as many substeps as it needs", written_solver));
 }
 
 }  // namespace

@@ -86,20 +86,6 @@ void mark_past(Experiment& experiment, Model const& model, Span place) {
 
 }  // namespace
 
-std::string_view rule_name(InputRule rule) {
-  switch (rule) {
-    case InputRule::zero_order:
-      return "zero_order";
-    case InputRule::linear:
-      return "linear";
-    case InputRule::cubic:
-      return "cubic";
-    case InputRule::band_limited:
-      return "band_limited";
-  }
-  return "?";
-}
-
 std::string prediction_text(Model const& model, PredictionRule rule) {
   bool from_data = false;
   for (int c = -1; c < static_cast<int>(model.channels.size()); ++c) from_data = from_data || !past_samples(model, c).empty();

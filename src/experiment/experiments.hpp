@@ -64,6 +64,4 @@ std::string prediction_text(Model const& model, PredictionRule rule);
 /// "bench.train".
 std::string data_name(DataBlock const& block, int part);
 
-std::string_view rule_name(InputRule rule);
-
 }  // namespace sysid

@@ -2,17 +2,13 @@
 #pragma once
 #include "gaussian_process/jet.hpp"
 #include "gaussian_process/kernel.hpp"
+#include "gaussian_process/list.hpp"
 
 namespace sysid::gaussian_process {
 
-KernelRow constant_kernel();
-KernelRow linear_kernel();
-KernelRow matern12_kernel();
-KernelRow matern32_kernel();
-KernelRow matern52_kernel();
-KernelRow oscillator_kernel();
-KernelRow periodic_kernel();
-KernelRow squared_exponential_kernel();
+#define DECLARE_ROW(name) KernelRow name##_kernel();
+SYSID_KERNELS(DECLARE_ROW)
+#undef DECLARE_ROW
 
 /// amplitude and one length-scale per input: what most stationary kernels have.
 constexpr HyperParameterRow amplitude_and_lengths[] = {{"amplitude", false, {.output = 1}}, {"length", true, {.input = 1}}};

@@ -8,8 +8,8 @@
 
 #include "model/dump.hpp"
 
-#include "core/setting/solver.hpp"
 #include "likelihood/parameter_space.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 namespace {
@@ -112,7 +112,7 @@ NodeId deviance_residual(Graph& graph, ChannelDensity const& density, int index)
 
 // Whether a program keeps the model's unknowns as algebraic states: not where they could be solved for and the solver wants y' = f.
 bool keeps_unknowns(CompiledModel const& compiled) {
-  return !compiled.model.unknowns.empty() && find_solver(compiled.method)->stepping == Stepping::ida;
+  return !compiled.model.unknowns.empty() && find_solver(compiled.method)->implicit;
 }
 
 SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {

@@ -13,7 +13,15 @@ namespace {
 template <class Rows>
 std::vector<BackendSettings> settings_of(Rows const& all) {
   std::vector<BackendSettings> rows;
-  for (auto const& row : all) rows.push_back({row.name, row.settings});
+  for (auto const& row : all) rows.push_back({.name = row.name, .settings = row.settings});
+  return rows;
+}
+
+std::vector<BackendSettings> fitting_backends() {
+  std::vector<BackendSettings> rows;
+  for (BackendRow const& row : backends())
+    rows.push_back(
+        {.name = row.name, .settings = row.settings, .optimum = row.aim != Aim::posterior, .prior = row.aim != Aim::likelihood});
   return rows;
 }
 
@@ -25,7 +33,7 @@ std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, Unsave
   bool const complete = !diagnostics.has_errors();
   Diagnostics found;  // behind the syntax
   auto const modules = load_modules(*read.tree, source, found, unsaved);
-  auto const fitting = settings_of(backends()), selecting = settings_of(selectors());
+  auto const fitting = fitting_backends(), selecting = settings_of(selectors());
   auto const discovering = settings_of(regression::selectors()), derivatives = settings_of(regression::forms());
   std::optional<CheckedFile> file;
   if (!found.has_errors())

@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/setting/solver.hpp"
 #include "expression/function.hpp"
 #include "expression/switching.hpp"
 #include "program/frozen.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
-
-EmbeddedMethod const& dopri5();  // dopri5.cpp
-
-EmbeddedMethod const* find_embedded(std::string_view name) { return name == dopri5().name ? &dopri5() : nullptr; }
 
 namespace {
 

@@ -7,21 +7,9 @@
 #include <vector>
 
 #include "expression/graph.hpp"
+#include "solver/embedded_method.hpp"
 
 namespace sysid {
-
-/// Coefficients of a method: stage i is evaluated at c_i with states y + h sum_j a_ij k_j; the step is y + h sum b_i k_i, its error
-/// estimate h sum e_i k_i.
-struct EmbeddedMethod {
-  std::string_view name;
-  int order;  // of the step; the estimate, of the solution of order `order - 1`, is of size h^order
-  std::vector<double> c;
-  std::vector<std::vector<double>> a;
-  std::vector<double> b, e;
-};
-
-/// nullptr when there is none of that name.
-EmbeddedMethod const* find_embedded(std::string_view name);
 
 /// The inputs' polynomials have at most this degree.
 constexpr int largest_input_degree = 7;

@@ -5,12 +5,12 @@
 #include <map>
 #include <tuple>
 
-#include "core/setting/solver.hpp"
 #include "core/text/diagnostic.hpp"
 #include "program/algebra.hpp"
 #include "program/embedded.hpp"
 #include "program/emit.hpp"
 #include "program/registers.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 namespace {
@@ -34,15 +34,16 @@ class Compilation {
     program_.graph = source.graph;
     program_.registers.parameters = source.parameters;
     program_.registers.states = source.states();
-    bool const embedded = find_embedded(source.integrator) != nullptr;
-    if (embedded) program_.equations = compile_equation_kernels(source);  // where a failed solve is looked into
-    if (source.map || embedded || find_integrator(source.integrator) != nullptr) {
+    SolverRow const* const solver = find_solver(source.integrator);
+    if (solver != nullptr && solver->embedded != nullptr)
+      program_.equations = compile_equation_kernels(source);  // where a failed solve is looked into
+    if (source.map || (solver != nullptr && solver->in_program)) {
       if (!source.constraints.empty()) throw InternalError("an explicit method for a model with algebraic states");
-      expand_step();
+      expand_step(solver);
       graph_ = program_.graph;
       compile_step();
-    } else if (SolverRow const* solver = find_solver(source.integrator)) {
-      if (!source.constraints.empty() && solver->stepping != Stepping::ida)
+    } else if (solver != nullptr) {
+      if (!source.constraints.empty() && !solver->implicit)
         throw InternalError("a solver for explicit equations for a model with algebraic states");
       program_.equations = compile_equation_kernels(source);
       graph_ = program_.graph;
@@ -62,25 +63,24 @@ class Compilation {
   }
 
  private:
-  void expand_step() {
+  void expand_step(SolverRow const* solver) {
     if (program_.source.map) {
       program_.next = program_.source.derivative;
       return;
     }
-    if (EmbeddedMethod const* method = find_embedded(program_.source.integrator)) {
-      Attempt const values = attempt(program_.graph, *method, program_.source.derivative);
+    if (solver->embedded != nullptr) {
+      Attempt const values = attempt(program_.graph, solver->embedded(), program_.source.derivative);
       program_.next = values.states;
       control_ = values.control;
       program_.registers.control = static_cast<int>(control_.size());
       return;
     }
-    IntegratorRow const* integrator = find_integrator(program_.source.integrator);
     Graph& graph = program_.graph;
     std::vector<NodeId> states;
     for (int i = 0; i < program_.source.states(); ++i) states.push_back(graph.leaf(LeafKind::state, i));
     NodeId const h = graph.leaf(LeafKind::step_size);
     Stages const stages{graph, program_.source.derivative, std::move(states), h, program_.visited};
-    program_.next = integrator->step(stages);
+    program_.next = solver->step(stages);
   }
 
   void compile_step() {

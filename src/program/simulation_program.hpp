@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "program/equation_kernels.hpp"
-#include "program/integrator.hpp"
 #include "program/kernel.hpp"
 #include "program/uniform_leaf.hpp"
+#include "solver/stages.hpp"
 
 namespace sysid {
 

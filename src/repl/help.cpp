@@ -9,6 +9,7 @@
 #include "app/catalogue/lists.hpp"
 #include "app/catalogue/module_page.hpp"
 #include "core/text/wrapped.hpp"
+#include "data/input_rule.hpp"
 #include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/words.hpp"
@@ -75,10 +76,6 @@ constexpr KeywordRow keyword_rows[] = {
     {"rows", "split train = rows 1..500", "rows of the file, from 1, both ends included"},
     {"hold", "input x = force [N] hold zero_order",
      "what an input does between samples: zero_order, linear, cubic or band_limited"},
-    {"zero_order", "hold zero_order", "an input that stays until its next sample"},
-    {"linear", "hold linear", "an input that goes straight from sample to sample"},
-    {"cubic", "hold cubic", "an input that follows a smooth spline through its samples"},
-    {"band_limited", "hold band_limited", "an input sampled behind an anti-aliasing filter"},
     // candidates and dictionaries
     {"shared", "shared m, c", "parameters that mean the same in every candidate"},
     {"probability", "linear probability 0.5",
@@ -170,7 +167,14 @@ void add_words(ListRow const& topic, std::vector<std::string>& words) {
 
 }  // namespace
 
-std::span<KeywordRow const> keywords() { return keyword_rows; }
+std::span<KeywordRow const> keywords() {
+  static std::vector<KeywordRow> const rows = [] {
+    std::vector<KeywordRow> all(std::begin(keyword_rows), std::end(keyword_rows));
+    for (InputRuleRow const& rule : input_rules()) all.push_back({rule.name, rule.usage, rule.summary});
+    return all;
+  }();
+  return rows;
+}
 
 std::optional<std::string> help_on(std::string const& word, int columns) {
   std::string text;
@@ -187,7 +191,7 @@ std::optional<std::string> help_on(std::string const& word, int columns) {
           "  a plot in characters: draws in their order, how often which value, one thing against another, a series along its "
           "record,\n"
           "  what a fit or prediction makes of a record\n");
-  for (KeywordRow const& row : keyword_rows)
+  for (KeywordRow const& row : keywords())
     if (row.word == word) add_rows(entry_of(row));
   for (ListRow const& topic : lists()) add_rows(from_list(topic, word));
   if (auto const page = module_page(word)) add(filled(*page, columns));
@@ -217,7 +221,7 @@ std::vector<std::string> const& words_with_help() {
     std::vector<std::string> words = {"plot", "trace", "histogram"};
     for (CommandRow const& row : commands()) words.emplace_back(row.name);
     for (PromptFunction const& row : prompt_functions()) words.emplace_back(row.name);
-    for (KeywordRow const& row : keyword_rows) words.emplace_back(row.word);
+    for (KeywordRow const& row : keywords()) words.emplace_back(row.word);
     for (ListRow const& topic : lists()) add_words(topic, words);
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());

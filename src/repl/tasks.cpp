@@ -8,6 +8,7 @@
 #include "app/run/pipeline.hpp"
 #include "app/session/results.hpp"
 #include "app/session/stored_draws.hpp"
+#include "check/checked/task_kinds.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
 #include "repl/workbench.hpp"
@@ -88,8 +89,8 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
   });
   clear_interrupt();
   if (claimed && ended) made_.insert(name);
-  bool const something = ended && (std::holds_alternative<SimulateTask>(place->what) ||
-                                   std::filesystem::exists(session.result_folder(*place) / "summary.json"));
+  bool const something =
+      ended && (kind_of(*place) == TaskKind::simulate || std::filesystem::exists(session.result_folder(*place) / "summary.json"));
   // A result of before that this run has swept away is none.
   if (!something && !std::filesystem::exists(options_.output / name / "summary.json"))
     std::erase_if(results_, [&](Result const& each) { return each.task == name; });
@@ -112,7 +113,7 @@ void Workbench::keep(Session& session, Task const& task, int index, std::string 
   result.summary = std::move(summary);
   if (auto const selected = session.selected.find(index); selected != session.selected.end())
     selected_[task.name] = selected->second;
-  if (!std::holds_alternative<FitTask>(task.what)) return;
+  if (kind_of(task) != TaskKind::fit) return;
   auto const fitted = session.fitted.find(index);
   if (interrupted_.contains(task.name)) {
     // The draws so far stand in the folder alone.

@@ -34,8 +34,7 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
   start_ = tabulate(program.start.uniforms, 1, false);
   carry_ = tabulate(program.carry.uniforms, samples(), false);
   // An embedded method finds its own steps: its rows belong to whole intervals.
-  if (solver.row().stepping == Stepping::fixed || solver.row().stepping == Stepping::lanes)
-    steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
+  if (solver.row().in_program) steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
   records_ = tabulate(program.record.uniforms, samples(), false);
   for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
 
@@ -58,8 +57,9 @@ int Schedule::count(int channel) const { return counts_[static_cast<std::size_t>
 bool Schedule::jumps(int sample) const {
   if (sample == 0) return true;
   for (InputSignal const& signal : experiment_.inputs) {
-    if (signal.rule() == InputRule::zero_order && signal.value(sample - 1, 1) != signal.value(sample, 0)) return true;
-    if (signal.rule() == InputRule::linear && signal.rate(sample - 1, 1) != signal.rate(sample, 0)) return true;
+    InputRuleRow const& rule = row_of(signal.rule());
+    if (rule.jumps && signal.value(sample - 1, 1) != signal.value(sample, 0)) return true;
+    if (rule.kinks && signal.rate(sample - 1, 1) != signal.rate(sample, 0)) return true;
   }
   return false;
 }

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/setting/solver.hpp"
 #include "data/experiment.hpp"
 #include "program/simulation_program.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 

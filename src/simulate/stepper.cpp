@@ -47,12 +47,12 @@ std::unique_ptr<Stepper> make_stepper(LaneFile const& file) {
 
 double work_per_sample(SimulationProgram const& program, SolverSettings const& solver) {
   if (solver.fixed_step()) return static_cast<double>(program.step.code.size()) * solver.substeps;
-  if (solver.row().stepping == Stepping::lanes) return 2 * static_cast<double>(program.step.code.size());  // attempts, roughly
+  if (solver.row().in_program) return 2 * static_cast<double>(program.step.code.size());  // attempts, roughly
   // Some twenty steps of two evaluations each, and what the solver does itself.
   EquationKernels const& equations = program.equations;
   return 20 * (2 * static_cast<double>(equations.rates.code.size()) + 200 * equations.states);
 }
 
-int least_lanes(SolverSettings const& solver) { return solver.fixed_step() || solver.row().stepping == Stepping::lanes ? 16 : 4; }
+int least_lanes(SolverSettings const& solver) { return solver.row().in_program ? 16 : 4; }
 
 }  // namespace sysid

@@ -9,7 +9,7 @@
 #include "function/primitive.hpp"
 #include "inference/backend/backend.hpp"
 #include "inference/targets.hpp"
-#include "program/integrator.hpp"
+#include "solver/stages.hpp"
 
 namespace sysid {
 namespace importance {

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "check/dictionary/generators.hpp"
-#include "core/setting/solver.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
@@ -17,6 +16,7 @@
 #include "regression/column/columns.hpp"
 #include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
+#include "solver/solver.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;

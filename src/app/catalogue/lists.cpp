@@ -8,7 +8,6 @@
 #include "app/catalogue/module_page.hpp"
 #include "check/dictionary/generators.hpp"
 #include "check/elaborate/array_functions.hpp"
-#include "core/setting/solver.hpp"
 #include "core/setting/table.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
@@ -17,6 +16,7 @@
 #include "load/modules.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 namespace {

@@ -12,8 +12,6 @@
 namespace sysid {
 namespace {
 
-constexpr double band_limited_reach_of_rate = 0.45;  // as InputSignal says
-
 // The data of a task that are there, each described; nothing when some are still to be made.
 std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData const& task, TaskPage& page) {
   bool complete = true;
@@ -45,14 +43,14 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
 void check_bands(TaskPage& page) {
   for (CoveragePage const& coverage : page.coverage)
     for (CoveragePage::Input const& input : coverage.inputs)
-      if (input.rule == rule_name(InputRule::band_limited) && input.high > band_limited_reach_of_rate * coverage.rate)
+      if (auto const rule = find_input_rule(input.rule);
+          rule && row_of(*rule).band > 0 && input.high > row_of(*rule).band * coverage.rate)
         page.findings.push_back(
             {FindingCode::input_band,
              Severity::warning,
              {input.name, coverage.name},
-             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `band_limited` is exact to 0.45 of "
-                         "it only",
-                         input.name, coverage.name, input.high, input.high / coverage.rate),
+             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `{}` is exact to {} of it only",
+                         input.name, coverage.name, input.high, input.high / coverage.rate, input.rule, row_of(*rule).band),
              "was it held between the samples, or sampled without a filter against aliases?"});
 }
 
@@ -73,40 +71,66 @@ void look_ahead_at_candidates(Session& session, Task const& task, SelectTask con
   }
 }
 
+// One function for each kind of task: what it is, in a line, and what can be known of it before it runs. data: of a selection and
+// its predictions the same for each candidate.
+using Looked = std::vector<TaskData> const&;
+
+void look_at_simulate(Session& session, Task const& task, Looked, TaskPage& page) {
+  SimulateTask const& what = std::get<SimulateTask>(task.what);
+  page.what = fmt::format("simulate {}: {} samples at {:.6g} Hz into {}",
+                          session.file.models[static_cast<std::size_t>(what.model)].name, what.samples, 1 / what.step, what.file);
+}
+
+void look_at_fit(Session& session, Task const& task, Looked data, TaskPage& page) {
+  FitTask const& what = std::get<FitTask>(task.what);
+  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
+  page.what = fmt::format("fit {} to {} with {}", model.name, data_names(session.file, what.experiments), what.backend);
+  auto const experiments = cover(session, data.front(), page);
+  check_bands(page);
+  if (experiments && !refusal(task, what, model, *experiments))
+    look_ahead(session, what, *experiments, page.outlooks.emplace_back());
+}
+
+void look_at_select(Session& session, Task const& task, Looked data, TaskPage& page) {
+  SelectTask const& what = std::get<SelectTask>(task.what);
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
+  page.what =
+      fmt::format("select {} ({}) to {} with {}", set.name, counted(set.models.size(), "model"),
+                  data_names(session.file, what.fits.front().experiments), what.backend);
+  auto const experiments = cover(session, data.front(), page);
+  check_bands(page);
+  if (experiments) look_ahead_at_candidates(session, task, what, page);
+}
+
+void look_at_discover(Session& session, Task const& task, Looked data, TaskPage& page) {
+  DiscoverTask const& what = std::get<DiscoverTask>(task.what);
+  page.what = fmt::format("discover {} from {} with {}, derivatives = {}",
+                          session.file.dictionaries[static_cast<std::size_t>(what.dictionary)].name,
+                          data_names(session.file, what.experiments), what.selector, what.form);
+  cover(session, data.front(), page);
+  check_bands(page);
+}
+
+void look_at_predict(Session& session, Task const& task, Looked data, TaskPage& page) {
+  PredictTask const& what = std::get<PredictTask>(task.what);
+  page.what = fmt::format("predict {} on {}", session.file.tasks[static_cast<std::size_t>(what.fit)].name,
+                          data_names(session.file, what.experiments));
+  cover(session, data.front(), page);
+}
+
+struct LookRow {
+  TaskKind kind;
+  void (*look)(Session&, Task const&, Looked, TaskPage&);
+};
+constexpr LookRow look_rows[] = {
+    {TaskKind::simulate, &look_at_simulate}, {TaskKind::fit, &look_at_fit},         {TaskKind::select, &look_at_select},
+    {TaskKind::discover, &look_at_discover}, {TaskKind::predict, &look_at_predict},
+};
+
 TaskPage check_task(Session& session, Task const& task) {
-  CheckedFile const& file = session.file;
   TaskPage page;
   page.name = task.name;
-  auto const data = data_of(file, task);  // of a selection and its predictions the same for each candidate
-  if (auto const* made = std::get_if<SimulateTask>(&task.what)) {
-    page.what = fmt::format("simulate {}: {} samples at {:.6g} Hz into {}", file.models[static_cast<std::size_t>(made->model)].name,
-                            made->samples, 1 / made->step, made->file);
-  } else if (auto const* fit = std::get_if<FitTask>(&task.what)) {
-    Model const& model = file.models[static_cast<std::size_t>(fit->model)];
-    page.what = fmt::format("fit {} to {} with {}", model.name, data_names(file, fit->experiments), fit->backend);
-    auto const experiments = cover(session, data.front(), page);
-    check_bands(page);
-    if (experiments && !refusal(task, *fit, model, *experiments))
-      look_ahead(session, *fit, *experiments, page.outlooks.emplace_back());
-  } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
-    CandidateSet const& set = file.candidates[static_cast<std::size_t>(selection->candidates)];
-    page.what = fmt::format("select {} ({}) to {} with {}", set.name, counted(set.models.size(), "model"),
-                            data_names(file, selection->fits.front().experiments), selection->backend);
-    auto const experiments = cover(session, data.front(), page);
-    check_bands(page);
-    if (experiments) look_ahead_at_candidates(session, task, *selection, page);
-  } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
-    page.what = fmt::format("discover {} from {} with {}, derivatives = {}",
-                            file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].name,
-                            data_names(file, discovery->experiments), discovery->selector, discovery->form);
-    cover(session, data.front(), page);
-    check_bands(page);
-  } else {
-    auto const& prediction = std::get<PredictTask>(task.what);
-    page.what = fmt::format("predict {} on {}", file.tasks[static_cast<std::size_t>(prediction.fit)].name,
-                            data_names(file, prediction.experiments));
-    cover(session, data.front(), page);
-  }
+  row_for(look_rows, kind_of(task)).look(session, task, task_row(task).data(session.file, task), page);
   return page;
 }
 

@@ -92,10 +92,11 @@ LookedAt::LookedAt(Session& session, FitTask const& what, std::vector<Experiment
   while (static_cast<int>(solvers.size()) <= effort.refinements) solvers.push_back(solvers.back().finer());
   for (SolverSettings const& solver : solvers)
     outputs.emplace_back(compiled, space, experiments, solver, start_rows(what.start), session.options.execution, pool);
-  if (what.solver.fixed_step() && jumps(model()))
-    on_jumps.emplace(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, "dopri5", what.prediction), space,
-                     experiments, SolverSettings{.method = "dopri5", .relative = smooth_enough}, start_rows(what.start),
-                     session.options.execution, pool);
+  if (what.solver.fixed_step() && jumps(model())) {
+    SolverSettings const adaptive{.method = std::string(adaptive_solver().name), .relative = smooth_enough};
+    on_jumps.emplace(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, adaptive.method, what.prediction),
+                     space, experiments, adaptive, start_rows(what.start), session.options.execution, pool);
+  }
 }
 
 void LookedAt::add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message,

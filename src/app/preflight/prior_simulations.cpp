@@ -41,9 +41,10 @@ class Settling {
   }
 
   // Tries the lanes; where the method follows one, its response is the answer.
-  void attempt(std::string const& method, std::size_t budget, std::vector<int> const& lanes) {
+  void attempt(SolverRow const& row, std::size_t budget, std::vector<int> const& lanes) {
     std::size_t const steps = budget / std::max<std::size_t>(1, samples_);
     if (lanes.empty() || steps < fewest_steps) return;
+    std::string const method(row.name);
     auto const compiled = session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, method, what_.prediction);
     SolverSettings const solver{
         .method = method, .relative = comparable, .steps = static_cast<int>(std::min<std::size_t>(steps, 10'000))};
@@ -127,9 +128,9 @@ SettledDraws settle_draws(Session& session, FitTask const& what, std::shared_ptr
     std::vector<int> lanes(width);
     std::iota(lanes.begin(), lanes.end(), 0);
     if (model.states.size() > many_states) lanes = settling.open();
-    settling.attempt("dopri5", explicit_steps, lanes);
+    settling.attempt(adaptive_solver(), explicit_steps, lanes);
     std::vector<int> const left = settling.open();
-    if (!left.empty()) settling.attempt("cvode", implicit_steps / left.size(), left);
+    if (!left.empty()) settling.attempt(stiff_solver(), implicit_steps / left.size(), left);
   }
   settling.trace();
   return result;

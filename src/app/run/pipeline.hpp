@@ -13,9 +13,6 @@ namespace sysid {
 
 class Session;
 
-/// "fit": the verb that a task is written with.
-std::string verb_of(Task const& task);
-
 /// What `--dump STAGE` prints: ast, flat, model or program.
 std::string dump_stage(Source& source, std::string const& stage, Diagnostics& diagnostics);
 

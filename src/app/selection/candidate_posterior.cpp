@@ -54,7 +54,11 @@ void settle(Session& session, Candidate const& candidate, std::uint64_t seed, Ca
     return likelihood_target(session, candidate, solver, session.interruptible());
   };
   SilentProgress silent;  // one line for all candidates is shown already
-  RunContext context{seed, silent, extra, [&] { return session.interrupted(); }, {}, 0, {}, {}, {}};
+  RunContext context{.seed = seed,
+                     .progress = silent,
+                     .ledger = extra,
+                     .interrupted = [&] { return session.interrupted(); },
+                     .checkpoint_interval = 0};
   SettledSolver settled = settle_solver(make, Aim::posterior, candidate.fit->solver, std::move(posterior.modes), context);
   posterior.modes = std::move(settled.modes);
   if (settled.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none

@@ -48,7 +48,11 @@ Polish polish_candidates(Session& session, std::vector<Candidate> const& candida
     }
     auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.options.execution);
     Ledger extra;
-    RunContext context{seed, session.progress, extra, [&] { return session.interrupted(); }, {}, 60, {}, posteriors[k].modes, {}};
+    RunContext context{.seed = seed,
+                       .progress = session.progress,
+                       .ledger = extra,
+                       .interrupted = [&] { return session.interrupted(); },
+                       .modes = posteriors[k].modes};
     FitResult chains = mh::run(*target, settings_for(samples), context);
     if (chains.interrupted) {
       polish.interrupted = true;

@@ -62,15 +62,13 @@ class Select {
     if (auto const why = refusal(task_, what_, session_.file.models, data)) throw UserError(*why);
     SelectorRow const& selector = *find_selector(what_.backend);
     ModelSelectionTarget const target = make_target(false);
-    RunContext context{seed_,
-                       session_.progress,
-                       ledger_,
-                       [this] { return session_.interrupted(); },
-                       [this](json const& state) { checkpoint_.save(state); },
-                       session_.options.checkpoint_interval,
-                       checkpoint_.stored(),
-                       {},
-                       {}};
+    RunContext context{.seed = seed_,
+                       .progress = session_.progress,
+                       .ledger = ledger_,
+                       .interrupted = [this] { return session_.interrupted(); },
+                       .checkpoint = [this](json const& state) { checkpoint_.save(state); },
+                       .checkpoint_interval = session_.options.checkpoint_interval,
+                       .resume = checkpoint_.stored()};
     if (context.resume)
       session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
     else
@@ -142,14 +140,54 @@ class Select {
 
   ExitCode finish(ModelSelectionTarget const& target, SelectionResult result) {
     bool interrupted = result.interrupted;
-    Candidate const& first = candidates_.front();
+    SelectionReport selection = begin_selection(std::move(result));
+    Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
+    Report report = begin(leading, selection);
+    std::vector<CandidatePosterior> posteriors;
+    if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
+      auto found = candidate_posteriors(session_, candidates_, selection.result, seed_);
+      interrupted = !found;
+      if (found) posteriors = std::move(*found);
+    }
+    bool const checked = !interrupted && what_.settings.flag("cross_check"),
+               polished = !interrupted && what_.settings.flag("polish");
+    if (checked) check_by_likelihood(leading, posteriors, selection, report);
+    if (!interrupted) check_simulations(target, leading, posteriors, selection, report);
+    if (polished) {
+      Polish polish =
+          polish_candidates(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
+      add(polish.findings, report);
+      interrupted = polish.interrupted;
+    }
+    note_end(selection, interrupted, polished, report);
+    if (!interrupted) add_predictions(selection, report);
+    add_settings(selection, report);
+    add_outcome(selection, report);
+    keep_draws(selection.result);
+    report.selection = std::move(selection);
+    keep_result(session_, task_, report);
+    if (interrupted) {
+      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
+      return ExitCode::interrupted;
+    }
+    remove_file(checkpoint_.path());
+    return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  static void add(Findings const& more, Report& report) { report.findings.insert(report.findings.end(), more.begin(), more.end()); }
+
+  SelectionReport begin_selection(SelectionResult result) const {
     SelectionReport selection;
     selection.result = std::move(result);
     selection.distance = what_.distance.text.empty() ? "nmse" : what_.distance.text;
     selection.likelihoods.resize(candidates_.size());
     selection.resampling_seed = seed_;
     summarise_shared(session_, set_, candidates_, selection);
-    Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
+    return selection;
+  }
+
+  Report begin(Candidate const& leading, SelectionReport const& selection) const {
+    Candidate const& first = candidates_.front();
     Report report = begin_report(
         session_, task_, leading.fit->model,
         fmt::format("select {} to {} with {}", set_.name, data_names(session_.file, first.fit->experiments), what_.backend), seed_);
@@ -159,34 +197,27 @@ class Select {
     for (Candidate const& candidate : candidates_)
       for (ExperimentData const& each : candidate.data)
         look_at_data(session_.file, each, candidate.compiled->model, report.findings);
-    std::vector<CandidatePosterior> posteriors;
-    if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
-      auto found = candidate_posteriors(session_, candidates_, selection.result, seed_);
-      interrupted = !found;
-      if (found) posteriors = std::move(*found);
-    }
-    bool const checked = !interrupted && what_.settings.flag("cross_check"),
-               polished = !interrupted && what_.settings.flag("polish");
-    auto const add = [&](Findings const& more) { report.findings.insert(report.findings.end(), more.begin(), more.end()); };
-    if (checked) {
-      add_likelihoods(candidates_, posteriors, selection, report.findings);
-      auto const lead = static_cast<std::size_t>(selection.leader());
-      FitCheck check = check_candidate(session_, leading, posteriors[lead]);
-      report.fit = std::move(check.lines);
-      add(check.findings);
-    }
-    if (!interrupted) {
-      add(solver_findings(candidates_, posteriors));
-      add(add_noise_floor(session_, candidates_, target, posteriors, selection));
-      if (leading.compiled->model.integrated() && std::isfinite(selection.result.threshold))
-        add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver));
-    }
-    if (polished) {
-      Polish polish =
-          polish_candidates(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
-      add(polish.findings);
-      interrupted = polish.interrupted;
-    }
+    return report;
+  }
+
+  void check_by_likelihood(Candidate const& leading, std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection,
+                           Report& report) {
+    add_likelihoods(candidates_, posteriors, selection, report.findings);
+    auto const lead = static_cast<std::size_t>(selection.leader());
+    FitCheck check = check_candidate(session_, leading, posteriors[lead]);
+    report.fit = std::move(check.lines);
+    add(check.findings, report);
+  }
+
+  void check_simulations(ModelSelectionTarget const& target, Candidate const& leading,
+                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection, Report& report) {
+    add(solver_findings(candidates_, posteriors), report);
+    add(add_noise_floor(session_, candidates_, target, posteriors, selection), report);
+    if (leading.compiled->model.integrated() && std::isfinite(selection.result.threshold))
+      add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver), report);
+  }
+
+  static void note_end(SelectionReport const& selection, bool interrupted, bool polished, Report& report) {
     if (interrupted)
       report.findings.push_back(interrupted_finding("this is what it had by then"));
     else if (!selection.result.ran_out)
@@ -200,13 +231,19 @@ class Select {
                                  "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
                                  "after an early stop, smaller after a late one",
                                  polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
-    if (!interrupted) add_predictions(selection, report);
+  }
+
+  void add_settings(SelectionReport const& selection, Report& report) const {
+    Candidate const& first = candidates_.front();
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : selection.result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("distance", selection.distance);
     report.settings.emplace_back("start_state", start_text(first.fit->start));
     if (first.compiled->model.integrated()) add_solver(first.fit->solver, report.settings);
     report.resolved_text = resolved_select(session_, task_, what_, seed_);
+  }
+
+  void add_outcome(SelectionReport const& selection, Report& report) const {
     report.ledger = ledger_;
     report.tables = selection_tables(selection);
     report.verdict = headline(selection, report.findings);
@@ -214,18 +251,14 @@ class Select {
     report.timing.emplace_back("wall_seconds", wall.count());
     report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
     report.timing.emplace_back("lanes", static_cast<std::int64_t>(session_.options.execution.lanes));
+  }
+
+  // For predictions of this run.
+  void keep_draws(SelectionResult const& result) {
     std::vector<SelectedCandidate>& kept = session_.selected[index_];
     kept.clear();
-    for (SelectedModel const& model : selection.result.models)
+    for (SelectedModel const& model : result.models)
       kept.push_back({model.probability, model.died_in > 0 ? Draws{} : resampled_draws(model, seed_)});
-    report.selection = std::move(selection);
-    keep_result(session_, task_, report);
-    if (interrupted) {
-      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
-      return ExitCode::interrupted;
-    }
-    remove_file(checkpoint_.path());
-    return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
   }
 
   static std::string headline(SelectionReport const& selection, Findings const& findings) {

@@ -36,7 +36,7 @@ std::optional<Floor> floor_at(Session const& session, Candidate const& candidate
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     Channel const& channel = model.channels[c];
     if (candidate.measure.weights[c] == 0) continue;
-    if (channel.noise.row->name != "normal") return std::nullopt;
+    if (!channel.noise.row->gaussian) return std::nullopt;
     double sum = 0, count = 0;
     for (std::size_t e = 0; e < candidate.data.size(); ++e) {
       Experiment const& experiment = candidate.data[e].experiment;

@@ -17,32 +17,6 @@
 
 namespace sysid {
 
-std::vector<TaskData> data_of(CheckedFile const& file, Task const& task) {
-  auto const model = [&](int index) { return &file.models[static_cast<std::size_t>(index)]; };
-  auto const of_fit = [&](FitTask const& fit) { return TaskData{model(fit.model), &fit.experiments, fit.start, fit.prediction}; };
-  std::vector<TaskData> all;
-  if (auto const* fit = std::get_if<FitTask>(&task.what)) {
-    all.push_back(of_fit(*fit));
-  } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
-    for (FitTask const& fit : selection->fits) all.push_back(of_fit(fit));
-  } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
-    all.push_back({&file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].measured,
-                   &discovery->experiments,
-                   {StartRule::Kind::rest, 0},
-                   PredictionRule::as_written});
-  } else if (auto const* prediction = std::get_if<PredictTask>(&task.what)) {
-    Task const& subject = file.tasks[static_cast<std::size_t>(prediction->fit)];
-    auto const add = [&](int index, std::vector<ExperimentUse> const& experiments) {
-      all.push_back({model(index), &experiments, prediction->start, prediction->prediction});
-    };
-    if (auto const* selection = std::get_if<SelectTask>(&subject.what))
-      for (std::size_t c = 0; c < selection->fits.size(); ++c) add(selection->fits[c].model, prediction->candidate_experiments[c]);
-    else
-      add(std::get<FitTask>(subject.what).model, prediction->experiments);
-  }
-  return all;
-}
-
 namespace {
 
 Diagnostic refused(Task const& task, std::string code, std::string message, std::string help) {
@@ -152,7 +126,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
   };
   for (Task const& task : session.file.tasks) {
     bool complete = true;
-    for (TaskData const& data : wanted(task) ? data_of(session.file, task) : std::vector<TaskData>()) {
+    for (TaskData const& data : wanted(task) ? task_row(task).data(session.file, task) : std::vector<TaskData>()) {
       auto const as_predicted = with_prediction(*data.model, data.prediction);
       for (ExperimentUse const& use : *data.experiments) {
         DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
@@ -177,20 +151,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
       }
     }
     if (!wanted(task) || !complete) continue;
-    auto const loaded = [&](FitTask const& fit) {
-      return load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
-                              fit.prediction);
-    };
-    if (auto const* fit = std::get_if<FitTask>(&task.what)) {
-      if (auto const why = refusal(task, *fit, session.file.models[static_cast<std::size_t>(fit->model)], loaded(*fit)))
-        add_one(*why);
-    } else if (auto const* selection = std::get_if<SelectTask>(&task.what)) {
-      std::vector<std::vector<ExperimentData>> data;
-      for (FitTask const& fit : selection->fits) data.push_back(loaded(fit));
-      if (auto const why = refusal(task, *selection, session.file.models, data)) add_one(*why);
-    } else if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) {
-      if (auto const why = refusal(task, *discovery)) add_one(*why);
-    }
+    if (auto const why = task_row(task).refusal(session, task)) add_one(*why);
   }
   result.unreadable = only_unreadable;
   return result;

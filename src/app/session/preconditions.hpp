@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/session/session.hpp"
+#include "app/session/task_rows.hpp"
 #include "core/text/diagnostic.hpp"
 #include "experiment/experiments.hpp"
 
@@ -34,16 +35,6 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
 
 /// Of all tasks, as far as it can be known before any runs: data that a simulate task makes are looked at where they are there.
 Readiness check_readiness(Session& session);
-
-/// The data of a task, once for each model that reads them, those of a discovery for what its dictionary is bound to; empty for a
-/// simulate task.
-struct TaskData {
-  Model const* model = nullptr;
-  std::vector<ExperimentUse> const* experiments = nullptr;
-  StartRule start;
-  PredictionRule prediction = PredictionRule::as_written;
-};
-std::vector<TaskData> data_of(CheckedFile const& file, Task const& task);
 
 /// The simulate task whose result the data block reads, or nullptr.
 Task const* maker(Session const& session, DataBlock const& block);

@@ -3,9 +3,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "core/setting/solver.hpp"
 #include "core/system/ledger.hpp"
 #include "inference/backend/backend.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 

@@ -9,6 +9,7 @@
 
 #include "app/session/made_from.hpp"
 #include "core/system/digest.hpp"
+#include "app/session/task_rows.hpp"
 #include "core/system/files.hpp"
 #include "experiment/experiments.hpp"
 #include "experiment/prior_density.hpp"
@@ -36,19 +37,6 @@ ast::Model const* as_written(ast::File const& tree, Span span) {
   return nullptr;
 }
 
-std::vector<ExperimentUse> const& experiments_of(Task const& task) {
-  if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->experiments;
-  if (auto const* selection = std::get_if<SelectTask>(&task.what)) return selection->fits.front().experiments;
-  if (auto const* discovery = std::get_if<DiscoverTask>(&task.what)) return discovery->experiments;
-  return std::get<FitTask>(task.what).experiments;
-}
-
-/// The task itself, or the one whose draws it predicts with.
-Task const& subject_of(Session const& session, Task const& task) {
-  auto const* prediction = std::get_if<PredictTask>(&task.what);
-  return prediction == nullptr ? task : session.file.tasks[static_cast<std::size_t>(prediction->fit)];
-}
-
 /// As one word of a POSIX shell: in quotes where it would not be one by itself, or would be taken for an option.
 std::string quoted_for_shell(std::string const& word) {
   bool const plain = !word.empty() && word.front() != '-' && std::all_of(word.begin(), word.end(), [](char c) {
@@ -60,40 +48,19 @@ std::string quoted_for_shell(std::string const& word) {
   return out + "'";
 }
 
-/// "model `duffing`": of a selection the first.
-std::string subject_name(Session const& session, Task const& task) {
-  Task const& subject = subject_of(session, task);
-  auto const model = [&](int index) {
-    return fmt::format("model `{}`", session.file.models[static_cast<std::size_t>(index)].name);
-  };
-  if (auto const* discovery = std::get_if<DiscoverTask>(&subject.what))
-    return fmt::format("dictionary `{}`", session.file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].name);
-  if (auto const* selection = std::get_if<SelectTask>(&subject.what)) return model(selection->fits.front().model);
-  return model(std::get<FitTask>(subject.what).model);
-}
-
 }  // namespace
 
-std::string task_digest(Session const& session, Task const& task) {
-  Task const& subject = subject_of(session, task);
-  auto const of_model = [&](int model) { return model_digest(session, session.file.models[static_cast<std::size_t>(model)].name); };
-  if (auto const* discovery = std::get_if<DiscoverTask>(&subject.what))
-    return sha256(unparse(ast::File{{session.file.dictionaries[static_cast<std::size_t>(discovery->dictionary)].tree}}));
-  auto const* selection = std::get_if<SelectTask>(&subject.what);
-  if (selection == nullptr) return of_model(std::get<FitTask>(subject.what).model);
-  std::string all;
-  for (FitTask const& fit : selection->fits) all += of_model(fit.model);
-  return sha256(all);
-}
+std::string task_digest(Session const& session, Task const& task) { return task_row(task).digest(session, task); }
 
 std::string statement_digest(Session const& session, Task const& task) {
+  std::vector<ExperimentUse> const experiments = task_row(task).experiments(task);
   std::string text;
   for (ast::Item const& item : session.file.tree.items) {
     if (auto const* statement = std::get_if<ast::Task>(&item); statement != nullptr && statement->verb.span == task.span)
       text += unparse(ast::File{{*statement}});
     auto const* data = std::get_if<ast::Data>(&item);
     if (data == nullptr) continue;
-    for (ExperimentUse const& use : experiments_of(task)) {
+    for (ExperimentUse const& use : experiments) {
       DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
       if (block.name != data->name.text) continue;
       ast::Data used = *data;
@@ -112,15 +79,11 @@ void add_repetition(Session const& session, Task const& task, Report& report) {
   report.place = static_cast<int>(&task - session.file.tasks.data());
   RunOptions const& options = session.options;
   report.command = fmt::format("sysid run {}", quoted_for_shell(session.source.name()));
-  auto const stated = [](Task const& each) {
-    return std::visit([](auto const& what) { return what.seed.has_value(); }, each.what);
-  };
+  auto const stated = [](Task const& each) { return stated_seed(each).has_value(); };
   std::vector<Task const*> needed = {&task};  // with those whose draws it is made from
-  for (std::size_t i = 0; i < needed.size(); ++i) {
-    auto const add = [&](int index) { needed.push_back(&session.file.tasks[static_cast<std::size_t>(index)]); };
-    if (auto const* prediction = std::get_if<PredictTask>(&needed[i]->what)) add(prediction->fit);
-    if (auto const* fit = std::get_if<FitTask>(&needed[i]->what); fit != nullptr && fit->near) add(*fit->near);
-  }
+  for (std::size_t i = 0; i < needed.size(); ++i)
+    for (int const index : task_row(*needed[i]).needs(*needed[i]))
+      needed.push_back(&session.file.tasks[static_cast<std::size_t>(index)]);
   bool const all_drawn = std::none_of(needed.begin(), needed.end(), [&](Task const* each) { return stated(*each); });
   if (options.seed || all_drawn) report.command += fmt::format(" --seed {}", report.seed);
   if (!options.seed && !all_drawn)
@@ -217,8 +180,8 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   };
   if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
   if (summary["versions"].value("model_sha256", "") != task_digest(session, task))
-    return refuse("text of " + subject_name(session, task));
-  std::vector<ExperimentUse> const& experiments = experiments_of(task);
+    return refuse("text of " + task_row(task).name(session, task));
+  std::vector<ExperimentUse> const experiments = task_row(task).experiments(task);
   auto const stored = summary.value("data", nlohmann::json::array());
   if (stored.size() != experiments.size()) return refuse("set of experiments");
   for (std::size_t e = 0; e < experiments.size(); ++e) {

@@ -2,8 +2,8 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 
-#include "core/setting/solver.hpp"
 #include "result/report.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 

@@ -7,19 +7,19 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <set>
 
 #include "app/session/session.hpp"
 #include "app/task/drawn_functions.hpp"
 #include "app/task/signals.hpp"
-#include "core/numeric/statistics.hpp"
+#include "check/checked/task_kinds.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "experiment/experiments.hpp"
 #include "likelihood/trajectory.hpp"
-#include "report/file/csv.hpp"
+#include "report/file/made_record.hpp"
+#include "core/numeric/statistics.hpp"
 
 namespace sysid {
 namespace {
@@ -46,8 +46,6 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
                                      what.solver.finer().option());
   }
 }
-
-std::string unit_suffix(std::string const& unit) { return unit.empty() ? std::string() : " [" + unit + "]"; }
 
 // "does not stay finite: `y^3` (duffing.sysid:10:27) at t = 0.1 s"; the place is left out when the failure cannot be repeated.
 std::string first_failure(Session const& session, SimulateTask const& what, CompiledModel const& compiled, Experiment experiment,
@@ -152,156 +150,193 @@ void warn_of_older_data(Session& session, Task const& task, std::filesystem::pat
   }
 }
 
+/// One simulate task: what it runs along, the run, what is noted of it, its record.
+class Simulate {
+ public:
+  Simulate(Session& session, Task const& task, SimulateTask const& what)
+      : session_(session),
+        task_(task),
+        what_(what),
+        written_(session.file.models[static_cast<std::size_t>(what.model)]),
+        feeds_back_(what.noise_fraction < 0 && reads_samples(written_)),
+        seed_(session.seed(task, what.seed)),
+        series_(ordinal() << 32),
+        noise_key_{seed_, Purpose::noise, series_, 0},
+        parameters_(static_cast<int>(written_.parameters.size()), 1) {
+    // Noise in percent is added to a response without noise.
+    PredictionRule const rule =
+        written_.dynamics == Dynamics::discrete && !feeds_back_ ? PredictionRule::free_run : PredictionRule::as_written;
+    for (std::size_t p = 0; p < written_.parameters.size(); ++p)
+      parameters_(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
+    StreamKey const function_key{seed_, Purpose::prior, series_, 0};
+    drawn_ = draw_coefficients(written_, function_key, parameters_);
+    if (!written_.processes.empty())
+      functions_.emplace(with_prediction(written_, rule).value(), what.solver.method, parameters_, function_key);
+    for (Process const& process : written_.processes)
+      drawn_.push_back(fmt::format("function {} drawn from its prior", process.name));
+    compiled_ = functions_ ? functions_->compiled() : session.compiled(what.model, false, what.solver.method, rule);
+    history_ = data_lag(model());
+    prepare();
+  }
+
+  ExitCode run() {
+    std::vector<Feedback> feedbacks;
+    if (feeds_back_) {
+      for (auto& channel : experiment_.measured) channel.assign(experiment_.time.size(), 0.0);
+      feedbacks.push_back(measured_samples(*compiled_));
+    }
+    if (functions_) feedbacks.push_back(drawn_values(*functions_, time_, history_));
+    Trajectory const trajectory(compiled_, experiment_, what_.solver, 0, session_.options.execution);
+    auto const ended = in_rounds(session_, task_, compiled_, experiment_, what_, parameters_, noise_key_, feedbacks);
+    if (!ended) {
+      session_.notices << fmt::format("{}: interrupted; --resume starts it again\n", task_.name);
+      return ExitCode::interrupted;
+    }
+    require_numbers(*ended);
+    note_findings(*ended);
+    auto const path = session_.result_folder(task_) / what_.file;
+    write_file(path, record(trajectory.quantities(), *ended));
+    session_.notices << fmt::format("{}: {} samples of {} written to {}\n", task_.name, what_.samples, model().name, path.string());
+    warn_of_older_data(session_, task_, path);
+    return ExitCode::success;
+  }
+
+ private:
+  Model const& model() const { return compiled_->model; }
+  bool rows() const { return model().dynamics == Dynamics::none; }
+
+  // Several records made in one run with one seed are different records.
+  std::uint64_t ordinal() const {
+    std::uint64_t count = 0;
+    for (Task const& each : session_.file.tasks) {
+      if (&each == &task_) break;
+      if (kind_of(each) == TaskKind::simulate) ++count;
+    }
+    return count;
+  }
+
+  // The experiment that the model is simulated along.
+  void prepare() {
+    auto const history = static_cast<std::size_t>(history_);
+    for (int i = -history_; i < what_.samples; ++i) time_.push_back(rows() ? i + 1 : i * what_.step);
+    experiment_.name = task_.name;
+    experiment_.time.assign(time_.begin() + history_, time_.end());
+    experiment_.history.assign(model().channels.size(), std::vector<double>(history, 0.0));
+    experiment_.scored.assign(static_cast<std::size_t>(what_.samples), 1);
+    experiment_.measured.resize(model().channels.size());
+    for (std::size_t i = 0; i < what_.inputs.size(); ++i) {
+      inputs_.push_back(generate(what_.inputs[i], what_.samples, what_.step, {seed_, Purpose::input, i + series_, 0}));
+      std::vector<double> samples(history, 0.0);
+      samples.insert(samples.end(), inputs_.back().begin(), inputs_.back().end());
+      InputRule const rule = model().dynamics == Dynamics::continuous ? what_.inputs[i].rule : InputRule::zero_order;
+      experiment_.inputs.push_back(InputSignal(rule, time_, std::move(samples)).view(history_, what_.samples));
+    }
+    for (std::size_t i = what_.inputs.size(); i < model().inputs.size(); ++i)
+      experiment_.inputs.push_back(
+          InputSignal(InputRule::zero_order, time_, std::vector<double>(time_.size(), 0.0)).view(history_, what_.samples));
+  }
+
+  void require_numbers(Trajectory::Result const& result) const {
+    auto const failed = [&](std::string message, std::string help) {
+      return UserError({Severity::error, "E5001", std::move(message), Label{task_.span, {}}, {}, std::move(help)});
+    };
+    if (result.failed() > 0)
+      throw failed(
+          fmt::format("the simulation `{}` {}", task_.name,
+                      functions_ ? "does not stay finite" : first_failure(session_, what_, *compiled_, experiment_, parameters_)),
+          "take smaller steps (substeps = 10), `solver = cvode` where the model is stiff, or other values");
+    for (auto const& channel : result.noisy)
+      for (auto const& values : channel)
+        if (what_.noise_fraction < 0 && std::any_of(values.begin(), values.end(), [](double y) { return std::isnan(y); }))
+          throw failed(fmt::format("the noise of the simulation `{}` is impossible at some samples", task_.name),
+                       "its scale must stay positive along the whole record");
+  }
+
+  void note_findings(Trajectory::Result const& result) {
+    if (model().integrated()) check_step(session_, task_, what_, compiled_, experiment_, parameters_, result);
+    for (Finding const& finding : drift_findings(session_.source, model(), result, task_.name))
+      session_.notices << fmt::format("{}: {}{}\n", task_.name, finding.severity == Severity::warning ? "warning: " : "",
+                                      finding.message);
+    for (Finding const& finding : check_ranges(model(), experiment_, what_.solver, 0, parameters_, session_.options.execution))
+      session_.notices << fmt::format("{}: warning: {}\n", task_.name, finding.message);
+  }
+
+  // The columns of a channel: as measured, and without noise; none of what is no channel.
+  struct ChannelColumns {
+    std::string measured, clean;
+  };
+
+  std::string record(std::vector<TrajectoryQuantity> const& quantities, Trajectory::Result const& result) {
+    MadeRecord record(rows() ? "row" : "t", experiment_.time);
+    record.comment(fmt::format("made by sysid {}: {} of model {}, seed {}", SYSID_VERSION, task_.name, model().name, seed_));
+    for (std::size_t p = 0; p < model().parameters.size(); ++p)
+      if (what_.values[p]) {
+        Parameter const& parameter = model().parameters[p];
+        record.comment(fmt::format("{} = {}{}", parameter.name, shortest(parameter.from_si(*what_.values[p])),
+                                   unit_suffix(parameter.unit_text())));
+      }
+    for (std::string const& function : drawn_) record.comment(function);
+    // Channels keep their names; an input of the same name says what it is.
+    std::vector<ChannelColumns> names(quantities.size());
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+      if (quantities[q].channel < 0) continue;
+      names[q].measured = record.take_name(quantities[q].name, "_measured");
+      names[q].clean = record.take_name(names[q].measured + "_clean", "");
+    }
+    add_inputs(record);
+    if (history_ > 0) record.comment("before the first row all inputs and measured samples are 0");
+    for (std::size_t q = 0; q < quantities.size(); ++q)
+      if (quantities[q].channel >= 0) add_channel(record, quantities[q], names[q], result.values[q][0], result);
+    return record.text();
+  }
+
+  void add_inputs(MadeRecord& record) {
+    for (std::size_t i = 0; i < what_.inputs.size(); ++i) {
+      Quantity const& input = model().inputs[i];
+      std::string const name = record.take_name(input.name, "_input");
+      record.comment(fmt::format("column {}{}{}", name, unit_suffix(input.unit_text()),
+                                 model().dynamics == Dynamics::continuous
+                                     ? fmt::format(": {} between samples", rule_name(what_.inputs[i].rule))
+                                     : std::string()));
+      for (double& value : inputs_[i]) value = input.from_si(value);
+      record.add(name, inputs_[i]);
+    }
+  }
+
+  void add_channel(MadeRecord& record, TrajectoryQuantity const& quantity, ChannelColumns const& names,
+                   std::vector<double> const& clean, Trajectory::Result const& result) const {
+    std::vector<double> noisy = result.noisy[static_cast<std::size_t>(quantity.channel)][0];
+    if (what_.noise_fraction >= 0) {
+      double const sd = what_.noise_fraction * std::sqrt(population_variance(clean));
+      Stream stream(noise_key_.at(series_, static_cast<std::uint64_t>(quantity.channel)));
+      for (std::size_t i = 0; i < clean.size(); ++i) noisy[i] = clean[i] + sd * stream.normal();
+      record.comment(fmt::format("noise sd of {}: {}{}", quantity.name, shortest(sd), unit_suffix(quantity.unit)));
+    }
+    record.comment(fmt::format("column {}{}: measured; {}: without {}noise", names.measured, unit_suffix(quantity.unit),
+                               names.clean, feeds_back_ ? "the sample's own " : ""));
+    record.add(names.measured, std::move(noisy));
+    record.add(names.clean, clean);
+  }
+
+  Session& session_;
+  Task const& task_;
+  SimulateTask const& what_;
+  Model const& written_;
+  bool const feeds_back_;
+  std::uint64_t const seed_, series_;
+  StreamKey const noise_key_;
+  LaneArray parameters_;
+  std::vector<std::string> drawn_;  // functions, for the head of the record
+  std::optional<DrawnFunctions> functions_;
+  std::shared_ptr<CompiledModel const> compiled_;
+  int history_ = 0;           // samples before the record that the model reads
+  std::vector<double> time_;  // history included
+  std::vector<std::vector<double>> inputs_;
+  Experiment experiment_;
+};
+
 }  // namespace
 
-ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) {
-  bool const feeds_back = what.noise_fraction < 0 && reads_samples(session.file.models[static_cast<std::size_t>(what.model)]);
-  Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
-  // Noise in percent is added to a response without noise.
-  PredictionRule const rule =
-      written.dynamics == Dynamics::discrete && !feeds_back ? PredictionRule::free_run : PredictionRule::as_written;
-  std::uint64_t const seed = session.seed(task, what.seed);
-  // Several records made in one run with one seed are different records.
-  std::uint64_t ordinal = 0;
-  for (Task const& each : session.file.tasks) {
-    if (&each == &task) break;
-    if (std::holds_alternative<SimulateTask>(each.what)) ++ordinal;
-  }
-  std::uint64_t const series = ordinal << 32;
-  LaneArray parameters(static_cast<int>(written.parameters.size()), 1);
-  for (std::size_t p = 0; p < written.parameters.size(); ++p)
-    parameters(static_cast<int>(p), 0) = what.values[p].value_or(std::nan(""));
-  StreamKey const function_key{seed, Purpose::prior, series, 0};
-  std::vector<std::string> drawn = draw_coefficients(written, function_key, parameters);
-  std::optional<DrawnFunctions> functions;
-  if (!written.processes.empty())
-    functions.emplace(with_prediction(written, rule).value(), what.solver.method, parameters, function_key);
-  for (Process const& process : written.processes) drawn.push_back(fmt::format("function {} drawn from its prior", process.name));
-  auto const compiled = functions ? functions->compiled() : session.compiled(what.model, false, what.solver.method, rule);
-  Model const& model = compiled->model;
-
-  Experiment experiment;
-  experiment.name = task.name;
-  bool const rows = model.dynamics == Dynamics::none;
-  int const history = data_lag(model);
-  std::vector<double> time;  // history included
-  for (int i = -history; i < what.samples; ++i) time.push_back(rows ? i + 1 : i * what.step);
-  experiment.time.assign(time.begin() + history, time.end());
-  experiment.history.assign(model.channels.size(), std::vector<double>(static_cast<std::size_t>(history), 0.0));
-  experiment.scored.assign(static_cast<std::size_t>(what.samples), 1);
-  experiment.measured.resize(model.channels.size());
-  std::vector<std::vector<double>> inputs;
-  for (std::size_t i = 0; i < what.inputs.size(); ++i) {
-    inputs.push_back(generate(what.inputs[i], what.samples, what.step, {seed, Purpose::input, i + series, 0}));
-    std::vector<double> samples(static_cast<std::size_t>(history), 0.0);
-    samples.insert(samples.end(), inputs.back().begin(), inputs.back().end());
-    InputRule const rule = model.dynamics == Dynamics::continuous ? what.inputs[i].rule : InputRule::zero_order;
-    experiment.inputs.push_back(InputSignal(rule, time, std::move(samples)).view(history, what.samples));
-  }
-  for (std::size_t i = what.inputs.size(); i < model.inputs.size(); ++i)
-    experiment.inputs.push_back(
-        InputSignal(InputRule::zero_order, time, std::vector<double>(time.size(), 0.0)).view(history, what.samples));
-  std::vector<Feedback> feedbacks;
-  if (feeds_back) {
-    for (auto& channel : experiment.measured) channel.assign(experiment.time.size(), 0.0);
-    feedbacks.push_back(measured_samples(*compiled));
-  }
-  if (functions) feedbacks.push_back(drawn_values(*functions, time, history));
-  Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
-  StreamKey const noise_key{seed, Purpose::noise, series, 0};
-  auto const ended = in_rounds(session, task, compiled, experiment, what, parameters, noise_key, feedbacks);
-  if (!ended) {
-    session.notices << fmt::format("{}: interrupted; --resume starts it again\n", task.name);
-    return ExitCode::interrupted;
-  }
-  Trajectory::Result const& result = *ended;
-  if (result.failed() > 0)
-    throw UserError(
-        {Severity::error,
-         "E5001",
-         fmt::format("the simulation `{}` {}", task.name,
-                     functions ? "does not stay finite" : first_failure(session, what, *compiled, experiment, parameters)),
-         Label{task.span, {}},
-         {},
-         "take smaller steps (substeps = 10), `solver = cvode` where the model is stiff, or other values"});
-
-  for (auto const& channel : result.noisy)
-    for (auto const& values : channel)
-      if (what.noise_fraction < 0 && std::any_of(values.begin(), values.end(), [](double y) { return std::isnan(y); }))
-        throw UserError({Severity::error,
-                         "E5001",
-                         fmt::format("the noise of the simulation `{}` is impossible at some samples", task.name),
-                         Label{task.span, {}},
-                         {},
-                         "its scale must stay positive along the whole record"});
-  if (model.integrated()) check_step(session, task, what, compiled, experiment, parameters, result);
-  for (Finding const& finding : drift_findings(session.source, model, result, task.name))
-    session.notices << fmt::format("{}: {}{}\n", task.name, finding.severity == Severity::warning ? "warning: " : "",
-                                   finding.message);
-  for (Finding const& finding : check_ranges(model, experiment, what.solver, 0, parameters, session.options.execution))
-    session.notices << fmt::format("{}: warning: {}\n", task.name, finding.message);
-
-  std::string header = rows ? "row" : "t",
-              comments = fmt::format("# made by sysid {}: {} of model {}, seed {}\n", SYSID_VERSION, task.name, model.name, seed);
-  for (std::size_t p = 0; p < model.parameters.size(); ++p)
-    if (what.values[p])
-      comments += fmt::format("# {} = {}{}\n", model.parameters[p].name, shortest(model.parameters[p].from_si(*what.values[p])),
-                              unit_suffix(model.parameters[p].unit_text()));
-  for (std::string const& function : drawn) comments += fmt::format("# {}\n", function);
-  std::vector<std::vector<double>> columns = {experiment.time};
-  // Channels keep their names; an input of the same name says what it is.
-  std::set<std::string> taken = {header};
-  auto const column_name = [&taken](std::string name, std::string const& suffix) {
-    if (taken.contains(name)) name += suffix;
-    while (!taken.insert(name).second) name += "_";
-    return name;
-  };
-  std::vector<std::pair<std::string, std::string>> channel_columns;  // measured, without noise; by quantity
-  for (TrajectoryQuantity const& quantity : trajectory.quantities()) {
-    channel_columns.emplace_back();
-    if (quantity.channel < 0) continue;
-    channel_columns.back().first = column_name(quantity.name, "_measured");
-    channel_columns.back().second = column_name(channel_columns.back().first + "_clean", "");
-  }
-  for (std::size_t i = 0; i < what.inputs.size(); ++i) {
-    std::string const name = column_name(model.inputs[i].name, "_input");
-    header += "," + csv_field(name);
-    comments +=
-        fmt::format("# column {}{}{}\n", name, unit_suffix(model.inputs[i].unit_text()),
-                    model.dynamics == Dynamics::continuous ? fmt::format(": {} between samples", rule_name(what.inputs[i].rule))
-                                                           : std::string());
-    for (double& value : inputs[i]) value = model.inputs[i].from_si(value);
-    columns.push_back(inputs[i]);
-  }
-  if (history > 0) comments += "# before the first row all inputs and measured samples are 0\n";
-  for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
-    TrajectoryQuantity const& quantity = trajectory.quantities()[q];
-    std::vector<double> const& clean = result.values[q][0];
-    if (quantity.channel < 0) continue;
-    std::vector<double> noisy = result.noisy[static_cast<std::size_t>(quantity.channel)][0];
-    if (what.noise_fraction >= 0) {
-      double const sd = what.noise_fraction * std::sqrt(population_variance(clean));
-      Stream stream(noise_key.at(series, static_cast<std::uint64_t>(quantity.channel)));
-      for (std::size_t i = 0; i < clean.size(); ++i) noisy[i] = clean[i] + sd * stream.normal();
-      comments += fmt::format("# noise sd of {}: {}{}\n", quantity.name, shortest(sd), unit_suffix(quantity.unit));
-    }
-    auto const& [measured, noiseless] = channel_columns[q];
-    header += fmt::format(",{},{}", csv_field(measured), csv_field(noiseless));
-    comments += fmt::format("# column {}{}: measured; {}: without {}noise\n", measured, unit_suffix(quantity.unit), noiseless,
-                            feeds_back ? "the sample's own " : "");
-    columns.push_back(std::move(noisy));
-    columns.push_back(clean);
-  }
-  std::string text = comments + header + "\n";
-  for (std::size_t i = 0; i < experiment.time.size(); ++i)
-    for (std::size_t c = 0; c < columns.size(); ++c) text += shortest(columns[c][i]) + (c + 1 == columns.size() ? "\n" : ",");
-
-  auto const folder = session.result_folder(task);
-  write_file(folder / what.file, text);
-  session.notices << fmt::format("{}: {} samples of {} written to {}\n", task.name, what.samples, model.name,
-                                 (folder / what.file).string());
-  warn_of_older_data(session, task, folder / what.file);
-  return ExitCode::success;
-}
+ExitCode run_simulate(Session& session, Task const& task, SimulateTask const& what) { return Simulate(session, task, what).run(); }
 
 }  // namespace sysid

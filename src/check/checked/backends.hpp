@@ -7,10 +7,12 @@
 
 namespace sysid {
 
-/// A back end as tasks may name it: the checker knows its settings, nothing else.
+/// A back end as tasks may name it: the checker knows its settings, and what it makes of a prior.
 struct BackendSettings {
   std::string_view name;
   std::span<SettingRow const> settings;
+  bool optimum = false;  // its result is the largest density, no draws
+  bool prior = true;     // that density contains the prior
 };
 
 /// Those that a file's tasks may name.

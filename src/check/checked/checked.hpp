@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/setting/settings.hpp"
-#include "core/setting/solver.hpp"
 #include "data/experiment.hpp"
 #include "data/start_rule.hpp"
 #include "model/past.hpp"
 #include "regression/column/dictionary.hpp"
+#include "solver/solver.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid {

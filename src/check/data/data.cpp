@@ -15,13 +15,11 @@
 namespace sysid {
 namespace {
 
-std::optional<InputRule> input_rule(std::string const& name) {
-  static std::map<std::string, InputRule> const rules = {{"zero_order", InputRule::zero_order},
-                                                         {"linear", InputRule::linear},
-                                                         {"cubic", InputRule::cubic},
-                                                         {"band_limited", InputRule::band_limited}};
-  auto const place = rules.find(name);
-  return place == rules.end() ? std::nullopt : std::optional(place->second);
+std::vector<std::string> rules_with_rate() {
+  std::vector<std::string> names;
+  for (InputRuleRow const& row : input_rules())
+    if (row.has_rate) names.emplace_back(row.name);
+  return names;
 }
 
 class DataChecker {
@@ -89,11 +87,11 @@ class DataChecker {
     DataInputUse use{column(tree.column), tree.input.text, {}, tree.input.span, {}};
     if (!tree.rule) {
       use.rule_span = tree.span;
-    } else if (auto const rule = input_rule(tree.rule->text)) {
+    } else if (auto const rule = find_input_rule(tree.rule->text)) {
       use.rule = *rule;
       use.rule_span = tree.rule->span;
     } else {
-      diagnostics_.add(errors::unknown_rule(*tree.rule));
+      diagnostics_.add(errors::unknown_rule(*tree.rule, input_rule_names()));
     }
     block_.inputs.push_back(std::move(use));
   }
@@ -151,7 +149,7 @@ void check_between_samples(DataBlock const& block, Model const* model, Diagnosti
   for (DataInputUse const& use : block.inputs) {
     bool const wanted = model == nullptr || std::any_of(model->inputs.begin(), model->inputs.end(),
                                                         [&](Quantity const& input) { return input.name == use.input; });
-    if (!use.rule && wanted) diagnostics.add(errors::rule_missing(use.rule_span, use.input));
+    if (!use.rule && wanted) diagnostics.add(errors::rule_missing(use.rule_span, use.input, input_rule_names()));
   }
 }
 
@@ -216,11 +214,12 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
       continue;
     }
     compare_units(*bound, input, "column `" + bound->column + "`");
-    if (bound->rule != InputRule::zero_order) continue;
+    if (!bound->rule || row_of(*bound->rule).has_rate) continue;
     for (NodeId id = 0; id < model.graph.size(); ++id) {
       Node const& node = model.graph[id];
       if (node.operation == Operation::leaf && node.leaf_kind == LeafKind::input_rate && node.index == static_cast<int>(i)) {
-        diagnostics.add(errors::rate_under_zero_order(bound->rule_span, model.graph.span(id).value_or(input.span), input.name));
+        diagnostics.add(errors::rate_under_zero_order(bound->rule_span, model.graph.span(id).value_or(input.span), input.name,
+                                                      rules_with_rate()));
         break;
       }
     }

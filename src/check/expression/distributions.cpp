@@ -26,6 +26,176 @@ std::optional<Unit> unit_of_argument(std::optional<Unit> const& unit, int unit_p
   return unit_power == 1 ? unit : power(*unit, {unit_power, 1});
 }
 
+/// One use of a distribution on its way from the call to expressions: arguments to their places, their values, then what must hold
+/// between them.
+class DistributionChecker {
+ public:
+  DistributionChecker(Scope& scope, ast::Call const& call, Quantity const& variate, DistributionRow const& row)
+      : scope_(scope),
+        diagnostics_(scope.diagnostics()),
+        graph_(scope.graph()),
+        call_(call),
+        variate_(variate),
+        row_(row),
+        name_(row.name),
+        given_(row.arguments.size()) {
+    for (ArgumentRow const& argument : row.arguments)
+      for (auto const& spelling : spelling_names(argument)) signature_.push_back(spelling);
+  }
+
+  std::optional<Distribution> run() {
+    use_.row = &row_;
+    for (ast::Argument const& argument : call_.arguments) argument.name ? take_named(argument) : take_positional(argument);
+    evaluate_arguments();
+    use_.lower = bound(lower_, "lower");
+    use_.upper = bound(upper_, "upper");
+    if (!good_ || use_.arguments.size() != row_.arguments.size()) return std::nullopt;
+    if (!unit_fits() || !arguments_fit() || !bounds_fit()) return std::nullopt;
+    return use_;
+  }
+
+ private:
+  void fail(Diagnostic diagnostic) {
+    diagnostics_.add(std::move(diagnostic));
+    good_ = false;
+  }
+
+  void take(Given& place, Spelling const* spelling, ast::Argument const& argument, std::string const& spelt) {
+    if (place.value != nullptr)
+      return fail(
+          errors::argument_twice(argument.span, place.span, spelt, place.spelling ? std::string(place.spelling->name) : spelt));
+    place = {&argument.value, spelling, argument.span};
+  }
+
+  void take_positional(ast::Argument const& argument) {
+    if (position_ >= given_.size()) return fail(errors::too_many_arguments(argument.span, name_, signature_));
+    std::size_t const position = position_++;
+    std::span<Spelling const> const spellings = row_.arguments[position].spellings;
+    if (spellings.size() > 1) return fail(errors::must_be_named(argument.span, name_, spelling_names(row_.arguments[position])));
+    take(given_[position], &spellings.front(), argument, std::string(spellings.front().name));
+  }
+
+  void take_named(ast::Argument const& argument) {
+    std::string const& key = argument.name->text;
+    for (std::size_t i = 0; i < given_.size(); ++i)
+      for (Spelling const& spelling : row_.arguments[i].spellings)
+        if (spelling.name == key) return take(given_[i], &spelling, argument, key);
+    if (key == "lower" || key == "upper") {
+      if (row_.cumulative == nullptr) fail(errors::cannot_truncate(argument.span, name_));
+      return take(key == "lower" ? lower_ : upper_, nullptr, argument, key);
+    }
+    std::vector<std::string> known = signature_;
+    if (row_.cumulative != nullptr) known.insert(known.end(), {"lower", "upper"});
+    fail(errors::unknown_argument(*argument.name, name_, known));
+  }
+
+  std::optional<Typed> value_in(std::optional<Unit> const& wanted, ast::Expression const& tree, std::string const& spelt,
+                                bool is_width = false) {
+    std::string const declared = variate_.unit ? "[" + unit_words(*variate_.unit, {}) + "]" : "";
+    return scope_.expression_in(wanted, variate_.span, tree,
+                                {Occasion::Kind::distribution, spelt, variate_.name, declared, is_width});
+  }
+
+  void evaluate_arguments() {
+    bool const all_placed = good_;
+    for (std::size_t i = 0; i < given_.size(); ++i) {
+      ArgumentRow const& argument = row_.arguments[i];
+      if (given_[i].value != nullptr) {
+        evaluate(given_[i]);
+      } else if (!std::isnan(argument.fallback)) {
+        auto const scale = unit_of_argument(variate_.unit, argument.spellings.front().unit_power);
+        use_.arguments.push_back(graph_.constant(argument.fallback * (scale ? scale->scale : 1)));
+      } else {
+        if (all_placed) diagnostics_.add(errors::argument_missing(call_, spelling_names(argument)));
+        good_ = false;
+      }
+    }
+  }
+
+  void evaluate(Given const& given) {
+    std::optional<Unit> unit = unit_of_argument(variate_.unit, given.spelling->unit_power);
+    // Widths of a temperature are differences: they have no zero to shift.
+    std::string_view const spelt = given.spelling->name;
+    bool const place = spelt == "mean" || spelt == "median" || spelt == "location" || spelt == "lower" || spelt == "upper";
+    std::optional<Typed> value = value_in(unit, *given.value, std::string(spelt), !place);
+    if (!value) {
+      good_ = false;
+      return;
+    }
+    if (!place) {
+      value->unit.offset = 0;
+      if (unit) unit->offset = 0;
+    }
+    NodeId node = adapt(graph_, *value, unit);
+    if (given.spelling->to_canonical != nullptr) node = given.spelling->to_canonical(graph_, node, use_.arguments);
+    use_.arguments.push_back(node);
+  }
+
+  std::optional<NodeId> bound(Given const& place, char const* spelt) {
+    if (place.value == nullptr) return std::nullopt;
+    auto const value = value_in(variate_.unit, *place.value, spelt);
+    if (!value) {
+      good_ = false;
+      return std::nullopt;
+    }
+    NodeId const node = adapt(graph_, *value, variate_.unit);
+    auto const number = graph_.constant_value(node);
+    return number && std::isinf(*number) ? std::nullopt : std::optional(node);
+  }
+
+  bool refused(Diagnostic diagnostic) {
+    diagnostics_.add(std::move(diagnostic));
+    return false;
+  }
+
+  bool unit_fits() {
+    std::optional<Unit> const& unit = variate_.unit;
+    if (row_.dimensionless && unit && !unit->dimensionless()) {
+      std::string const text = unit->text.empty() ? format_dimension(unit->dimension) : unit->text;
+      return refused(row_.discrete ? errors::unit_of_count(call_.span, name_, text)
+                                   : errors::unit_of_share(call_.span, name_, text));
+    }
+    if (row_.discrete && unit && unit->scale != 1) return refused(errors::unit_of_count(call_.span, name_, unit->text));
+    return true;
+  }
+
+  // Where they are numbers.
+  bool arguments_fit() {
+    std::vector<double> numbers;
+    for (NodeId const argument : use_.arguments)
+      if (auto const number = graph_.constant_value(argument)) numbers.push_back(*number);
+    if (numbers.size() != use_.arguments.size() || row_.refuse == nullptr) return true;
+    std::string_view const reason = row_.refuse(numbers);
+    return reason.empty() || refused(errors::bad_arguments(call_.span, name_, reason));
+  }
+
+  bool bounds_fit() {
+    if (use_.lower && use_.upper) {
+      auto const a = graph_.constant_value(*use_.lower), b = graph_.constant_value(*use_.upper);
+      if (a && b && !(*a < *b)) return refused(errors::bad_arguments(call_.span, name_, "lower is not below upper"));
+    }
+    if (row_.proper && (use_.lower || use_.upper)) {
+      auto const left = graph_.constant_value(mass(graph_, use_));
+      if (left && !(*left > 0)) return refused(errors::no_mass(call_.span, name_));
+    }
+    return true;
+  }
+
+  Scope& scope_;
+  Diagnostics& diagnostics_;
+  Graph& graph_;
+  ast::Call const& call_;
+  Quantity const& variate_;
+  DistributionRow const& row_;
+  std::string const name_;
+  std::vector<std::string> signature_;
+  std::vector<Given> given_;  // by argument of the row
+  Given lower_, upper_;
+  std::size_t position_ = 0;  // of the next argument without a name
+  bool good_ = true;
+  Distribution use_;
+};
+
 }  // namespace
 
 ast::Expression const* location_argument(ast::Call const& call) {
@@ -36,164 +206,14 @@ ast::Expression const* location_argument(ast::Call const& call) {
 }
 
 std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& call, Quantity const& variate) {
-  Diagnostics& diagnostics = scope.diagnostics();
-  std::optional<Unit> const& unit = variate.unit;
   DistributionRow const* row = find_distribution(call.function.text);
   if (row == nullptr) {
     std::vector<std::string> known;
     for (DistributionRow const& each : distributions()) known.emplace_back(each.name);
-    diagnostics.add(errors::unknown_distribution(call.function, known));
+    scope.diagnostics().add(errors::unknown_distribution(call.function, known));
     return std::nullopt;
   }
-  std::string const name(row->name);
-  std::vector<std::string> signature;
-  for (ArgumentRow const& argument : row->arguments)
-    for (auto const& spelling : spelling_names(argument)) signature.push_back(spelling);
-
-  bool good = true;
-  std::vector<Given> given(row->arguments.size());
-  Given lower, upper;
-  std::size_t position = 0;
-  auto const take = [&](Given& place, Spelling const* spelling, ast::Argument const& argument, std::string const& spelt) {
-    if (place.value != nullptr) {
-      diagnostics.add(
-          errors::argument_twice(argument.span, place.span, spelt, place.spelling ? std::string(place.spelling->name) : spelt));
-      good = false;
-      return;
-    }
-    place = {&argument.value, spelling, argument.span};
-  };
-  for (ast::Argument const& argument : call.arguments) {
-    if (!argument.name) {
-      if (position >= given.size()) {
-        diagnostics.add(errors::too_many_arguments(argument.span, name, signature));
-        good = false;
-      } else if (row->arguments[position].spellings.size() > 1) {
-        diagnostics.add(errors::must_be_named(argument.span, name, spelling_names(row->arguments[position])));
-        good = false;
-        ++position;
-      } else {
-        Spelling const& spelling = row->arguments[position].spellings.front();
-        take(given[position], &spelling, argument, std::string(spelling.name));
-        ++position;
-      }
-      continue;
-    }
-    std::string const& key = argument.name->text;
-    bool found = false;
-    for (std::size_t i = 0; i < given.size() && !found; ++i)
-      for (Spelling const& spelling : row->arguments[i].spellings)
-        if (spelling.name == key) {
-          take(given[i], &spelling, argument, key);
-          found = true;
-          break;
-        }
-    if (!found && (key == "lower" || key == "upper")) {
-      if (row->cumulative == nullptr) {
-        diagnostics.add(errors::cannot_truncate(argument.span, name));
-        good = false;
-      }
-      take(key == "lower" ? lower : upper, nullptr, argument, key);
-      found = true;
-    }
-    if (!found) {
-      std::vector<std::string> known = signature;
-      if (row->cumulative != nullptr) known.insert(known.end(), {"lower", "upper"});
-      diagnostics.add(errors::unknown_argument(*argument.name, name, known));
-      good = false;
-    }
-  }
-
-  Distribution use;
-  use.row = row;
-  Graph& graph = scope.graph();
-  std::string const declared = unit ? "[" + unit_words(*unit, {}) + "]" : "";
-  auto const argument_in = [&](std::optional<Unit> const& wanted, ast::Expression const& tree, std::string const& spelt,
-                               bool is_width = false) {
-    return scope.expression_in(wanted, variate.span, tree, {Occasion::Kind::distribution, spelt, variate.name, declared, is_width});
-  };
-  bool all_given = good;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    ArgumentRow const& argument = row->arguments[i];
-    if (given[i].value == nullptr) {
-      if (std::isnan(argument.fallback)) {
-        if (all_given) diagnostics.add(errors::argument_missing(call, spelling_names(argument)));
-        good = false;
-      } else {
-        int const unit_power = argument.spellings.front().unit_power;
-        auto const scale = unit_of_argument(unit, unit_power);
-        use.arguments.push_back(graph.constant(argument.fallback * (scale ? scale->scale : 1)));
-      }
-      continue;
-    }
-    std::optional<Unit> argument_unit = unit_of_argument(unit, given[i].spelling->unit_power);
-    // Widths of a temperature are differences: they have no zero to shift.
-    std::string_view const spelt = given[i].spelling->name;
-    bool const place = spelt == "mean" || spelt == "median" || spelt == "location" || spelt == "lower" || spelt == "upper";
-    auto const value = argument_in(argument_unit, *given[i].value, std::string(spelt), !place);
-    if (!value) {
-      good = false;
-      continue;
-    }
-    Typed argument_value = *value;
-    if (!place) {
-      argument_value.unit.offset = 0;
-      if (argument_unit) argument_unit->offset = 0;
-    }
-    NodeId node = adapt(graph, argument_value, argument_unit);
-    if (given[i].spelling->to_canonical != nullptr) node = given[i].spelling->to_canonical(graph, node, use.arguments);
-    use.arguments.push_back(node);
-  }
-  auto const bound = [&](Given const& place, char const* spelt) -> std::optional<NodeId> {
-    if (place.value == nullptr) return std::nullopt;
-    auto const value = argument_in(unit, *place.value, spelt);
-    if (!value) {
-      good = false;
-      return std::nullopt;
-    }
-    NodeId const node = adapt(graph, *value, unit);
-    auto const number = graph.constant_value(node);
-    return number && std::isinf(*number) ? std::nullopt : std::optional(node);
-  };
-  use.lower = bound(lower, "lower");
-  use.upper = bound(upper, "upper");
-  if (!good || use.arguments.size() != row->arguments.size()) return std::nullopt;
-
-  if (row->dimensionless && unit && !unit->dimensionless()) {
-    std::string const text = unit->text.empty() ? format_dimension(unit->dimension) : unit->text;
-    diagnostics.add(row->discrete ? errors::unit_of_count(call.span, name, text) : errors::unit_of_share(call.span, name, text));
-    return std::nullopt;
-  }
-
-  if (row->discrete && unit && unit->scale != 1) {
-    diagnostics.add(errors::unit_of_count(call.span, name, unit->text));
-    return std::nullopt;
-  }
-
-  std::vector<double> numbers;
-  for (NodeId const argument : use.arguments)
-    if (auto const number = graph.constant_value(argument)) numbers.push_back(*number);
-  if (numbers.size() == use.arguments.size() && row->refuse != nullptr) {
-    if (std::string_view const reason = row->refuse(numbers); !reason.empty()) {
-      diagnostics.add(errors::bad_arguments(call.span, name, reason));
-      return std::nullopt;
-    }
-  }
-  if (use.lower && use.upper) {
-    auto const a = graph.constant_value(*use.lower), b = graph.constant_value(*use.upper);
-    if (a && b && !(*a < *b)) {
-      diagnostics.add(errors::bad_arguments(call.span, name, "lower is not below upper"));
-      return std::nullopt;
-    }
-  }
-  if (row->proper && (use.lower || use.upper)) {
-    auto const left = graph.constant_value(mass(graph, use));
-    if (left && !(*left > 0)) {
-      diagnostics.add(errors::no_mass(call.span, name));
-      return std::nullopt;
-    }
-  }
-  return use;
+  return DistributionChecker(scope, call, variate, *row).run();
 }
 
 }  // namespace sysid

@@ -121,6 +121,15 @@ class Scope {
   Typed combined(ast::Binary const& binary, Typed const& left, Typed const& right);
   Typed compared(Operation operation, UnitOperand left, UnitOperand right);
   std::optional<Typed> function_call(ast::Call const& call);
+  struct CallArguments {
+    std::vector<UnitOperand> values;
+    std::size_t count = 0;  // as written
+    bool counted = true;    // unless a list of lags is wrong, or a range stands for several arguments
+    bool good = true;
+  };
+  CallArguments call_arguments(ast::Call const& call);
+  // Of a function of the user's: its expression with the arguments in place of its parameters.
+  std::optional<Typed> user_call(ast::Call const& call, ast::FunctionDefinition const& function, CallArguments const& arguments);
   Typed built_in(FunctionRow const& row, std::span<UnitOperand const> arguments);
   std::optional<Typed> choice(ast::Conditional const& conditional);
 

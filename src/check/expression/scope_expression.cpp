@@ -143,60 +143,8 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
   std::string const& name = call.function.text;
   for (std::size_t i = 0; i < processes_.size(); ++i)
     if (processes_[i].definition->name.text == name) return process_call(call, i);
-  bool good = true;
-  bool counted = true;  // unless a list of lags is wrong, or a range stands for several arguments
-  std::size_t count = 0;
-  std::vector<UnitOperand> arguments;
-  for (ast::Argument const& argument : call.arguments) {
-    if (auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
-        inner != nullptr && !argument.name && (*inner)->function.text == "lags" && is_past_call(**inner)) {
-      auto const lags = lag_calls(**inner);
-      good = good && lags;
-      counted = counted && lags;
-      if (!lags) continue;
-      count += lags->values.size();
-      for (Typed const& lag : lags->values) arguments.push_back({settled(lag), &argument.value});
-      continue;
-    }
-    auto const* range = std::get_if<ast::Box<ast::Binary>>(&argument.value.node);
-    counted = counted && !(range != nullptr && (*range)->symbol == "..");
-    ++count;
-    if (argument.name) {
-      diagnostics_.add(errors::named_argument_of_function(*argument.name, name));
-      good = false;
-    }
-    auto value = expression(argument.value);
-    good = good && value;
-    if (value) arguments.push_back({settled(*value), &argument.value});
-  }
-  auto const user = functions_.find(name);
-  if (user != functions_.end()) {
-    ast::FunctionDefinition const& function = *user->second;
-    if (good && arguments.size() != function.parameters.size()) {
-      diagnostics_.add(
-          errors::argument_count(call.function, arguments.size(), function.parameters.size(), function.parameters.size()));
-      return std::nullopt;
-    }
-    if (!good) return std::nullopt;
-    std::string const key = name + "()";
-    if (auto const begin = std::find(resolving_.begin(), resolving_.end(), key); begin != resolving_.end()) {
-      std::vector<std::string> loop(begin, resolving_.end());
-      loop.push_back(key);
-      diagnostics_.add(errors::definition_cycle(call.span, loop));
-      return std::nullopt;
-    }
-    Arguments local;
-    for (std::size_t i = 0; i < arguments.size(); ++i) local.emplace(function.parameters[i].text, arguments[i].value);
-    resolving_.push_back(key);
-    auto const* outer = std::exchange(arguments_, &local);
-    units_.enter_call(call.span, name);
-    auto value = expression(function.value);
-    units_.leave_call();
-    arguments_ = outer;
-    resolving_.pop_back();
-    if (value) value->span = call.span;
-    return value;
-  }
+  CallArguments const arguments = call_arguments(call);
+  if (auto const user = functions_.find(name); user != functions_.end()) return user_call(call, *user->second, arguments);
   FunctionRow const* row = find_function(name);
   if (row == nullptr) {
     std::vector<std::string> known;
@@ -206,18 +154,74 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     diagnostics_.add(errors::unknown_function(call.function, known, find(name) != nullptr));
     return std::nullopt;
   }
-  if (counted &&
-      (count < static_cast<std::size_t>(row->minimum_arguments) || count > static_cast<std::size_t>(row->maximum_arguments))) {
-    diagnostics_.add(errors::argument_count(call.function, count, static_cast<std::size_t>(row->minimum_arguments),
-                                            static_cast<std::size_t>(row->maximum_arguments)));
+  std::size_t const count = arguments.count, least = static_cast<std::size_t>(row->minimum_arguments),
+                    most = static_cast<std::size_t>(row->maximum_arguments);
+  if (arguments.counted && (count < least || count > most)) {
+    diagnostics_.add(errors::argument_count(call.function, count, least, most));
     return std::nullopt;
   }
-  if (row->unit_rule == UnitRule::branches && counted && count % 2 == 0) {
+  if (row->unit_rule == UnitRule::branches && arguments.counted && count % 2 == 0) {
     diagnostics_.add(errors::piecewise_without_otherwise(call));
     return std::nullopt;
   }
-  if (!good) return std::nullopt;
-  return built_in(*row, arguments);
+  if (!arguments.good) return std::nullopt;
+  return built_in(*row, arguments.values);
+}
+
+Scope::CallArguments Scope::call_arguments(ast::Call const& call) {
+  CallArguments result;
+  for (ast::Argument const& argument : call.arguments) {
+    if (auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
+        inner != nullptr && !argument.name && (*inner)->function.text == "lags" && is_past_call(**inner)) {
+      auto const lags = lag_calls(**inner);
+      result.good = result.good && lags;
+      result.counted = result.counted && lags;
+      if (!lags) continue;
+      result.count += lags->values.size();
+      for (Typed const& lag : lags->values) result.values.push_back({settled(lag), &argument.value});
+      continue;
+    }
+    auto const* range = std::get_if<ast::Box<ast::Binary>>(&argument.value.node);
+    result.counted = result.counted && !(range != nullptr && (*range)->symbol == "..");
+    ++result.count;
+    if (argument.name) {
+      diagnostics_.add(errors::named_argument_of_function(*argument.name, call.function.text));
+      result.good = false;
+    }
+    auto value = expression(argument.value);
+    result.good = result.good && value;
+    if (value) result.values.push_back({settled(*value), &argument.value});
+  }
+  return result;
+}
+
+std::optional<Typed> Scope::user_call(ast::Call const& call, ast::FunctionDefinition const& function,
+                                      CallArguments const& arguments) {
+  if (!arguments.good) return std::nullopt;
+  std::size_t const wanted = function.parameters.size();
+  if (arguments.values.size() != wanted) {
+    diagnostics_.add(errors::argument_count(call.function, arguments.values.size(), wanted, wanted));
+    return std::nullopt;
+  }
+  std::string const& name = call.function.text;
+  std::string const key = name + "()";
+  if (auto const begin = std::find(resolving_.begin(), resolving_.end(), key); begin != resolving_.end()) {
+    std::vector<std::string> loop(begin, resolving_.end());
+    loop.push_back(key);
+    diagnostics_.add(errors::definition_cycle(call.span, loop));
+    return std::nullopt;
+  }
+  Arguments local;
+  for (std::size_t i = 0; i < wanted; ++i) local.emplace(function.parameters[i].text, arguments.values[i].value);
+  resolving_.push_back(key);
+  auto const* outer = std::exchange(arguments_, &local);
+  units_.enter_call(call.span, name);
+  auto value = expression(function.value);
+  units_.leave_call();
+  arguments_ = outer;
+  resolving_.pop_back();
+  if (value) value->span = call.span;
+  return value;
 }
 
 Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> arguments) {

@@ -100,8 +100,8 @@ Diagnostic no_file(ast::Name const& block);
 Diagnostic no_time(ast::Name const& block);
 Diagnostic time_and_rate(Span second, Span first);
 Diagnostic stated_twice(Span second, Span first, std::string const& what);
-Diagnostic rule_missing(Span span, std::string const& input);
-Diagnostic unknown_rule(ast::Name const& rule);
+Diagnostic rule_missing(Span span, std::string const& input, Names const& rules);
+Diagnostic unknown_rule(ast::Name const& rule, Names const& known);
 Diagnostic not_a_time(Span span, Unit const& unit);
 Diagnostic rate_not_positive(Span span);
 Diagnostic bad_rows(Span span);
@@ -110,7 +110,8 @@ Diagnostic input_not_bound(Span span, std::string const& input, std::string cons
 Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels);
 Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs);
 Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels);
-Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input);
+/// rules: those under which the derivative exists.
+Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules);
 Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit);
 
 // tasks (E60)

@@ -4,6 +4,15 @@
 #include "check/message/error_words.hpp"
 
 namespace sysid::errors {
+namespace {
+
+/// "`hold linear` or `hold cubic`".
+std::string choice_of_rules(Names rules) {
+  for (std::string& each : rules) each = "hold " + each;
+  return quoted(rules, "or");
+}
+
+}  // namespace
 
 Diagnostic no_file(ast::Name const& block) {
   return error("E4101", block.span, fmt::format("data block `{}` names no file", block.text), "add `file \"measurement.csv\"`");
@@ -23,14 +32,12 @@ Diagnostic stated_twice(Span second, Span first, std::string const& what) {
   return conflict("E4104", second, "again here", first, "first here", fmt::format("{} is given twice", what), "keep one");
 }
 
-Diagnostic rule_missing(Span span, std::string const& input) {
-  return error(
-      "E4105", span, fmt::format("what does input `{}` do between its samples?", input),
-      "add `hold zero_order`, `hold linear`, `hold cubic` or `hold band_limited`: it changes the answer more than anything else");
+Diagnostic rule_missing(Span span, std::string const& input, Names const& rules) {
+  return error("E4105", span, fmt::format("what does input `{}` do between its samples?", input),
+               fmt::format("add {}: it changes the answer more than anything else", choice_of_rules(rules)));
 }
 
-Diagnostic unknown_rule(ast::Name const& rule) {
-  Names const known = {"zero_order", "linear", "cubic", "band_limited"};
+Diagnostic unknown_rule(ast::Name const& rule, Names const& known) {
   std::string help = guess_or(rule.text, known, fmt::format("rules: {}", quoted(known)));
   if (rule.text == "zoh") help = "did you mean `zero_order`?";
   return error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help));
@@ -69,10 +76,10 @@ Diagnostic unknown_channel(Span span, std::string const& channel, std::string co
                guess_or(channel, channels, choose(channels, "channel")));
 }
 
-Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input) {
+Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules) {
   return conflict("E4112", rule, "held between samples", use, "its derivative is used here",
                   fmt::format("`{}'` does not exist: input `{}` is held constant between its samples", input, input),
-                  "choose `hold linear`, `hold cubic` or `hold band_limited`");
+                  "choose " + choice_of_rules(rules));
 }
 
 Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {

@@ -101,7 +101,7 @@ void ModelChecker::place_processes() {
         return;
       }
       process.channel = static_cast<int>(c);
-      if (channel.noise.row->name != "normal") {
+      if (!channel.noise.row->gaussian) {
         diagnostics_.add(errors::process_without_normal_noise(channel.span, channel.name, std::string(channel.noise.row->name)));
         return;
       }

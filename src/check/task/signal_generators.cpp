@@ -89,13 +89,11 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
     } else if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
       diagnostics.add(errors::stated_twice(argument.span, first->second, "`" + name + "`"));
     } else if (name == "hold") {
-      std::vector<std::string> const rules = {"zero_order", "linear", "cubic", "band_limited"};
-      auto const word = as_word(argument.value);
-      auto const rule = std::find(rules.begin(), rules.end(), word.value_or(""));
-      if (rule == rules.end())
-        diagnostics.add(errors::option_choice(argument.value.span, name, word.value_or(""), rules));
+      std::string const word = as_word(argument.value).value_or("");
+      if (auto const rule = find_input_rule(word))
+        result.rule = *rule;
       else
-        result.rule = static_cast<InputRule>(rule - rules.begin());
+        diagnostics.add(errors::option_choice(argument.value.span, name, word, input_rule_names()));
     } else {
       std::optional<Unit> unit = place->unit == "input" ? input.unit : unit_of(place->unit);
       if (unit && (name == "sd" || name == "amplitude")) unit = difference(*unit);

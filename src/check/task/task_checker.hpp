@@ -79,6 +79,18 @@ class TaskChecker {
 
   // --- task_simulate.cpp
   SimulateTask simulate();
+  struct SimulateOptions;    // what the options say, on the way to the task
+  struct SimulateOptionRow;  // an option's name with one of the functions below
+  void simulate_option(ast::Option const& option, SimulateOptions& options);
+  void simulate_input(ast::Option const& option, SimulateOptions& options);
+  static void simulate_noise(TaskChecker& checker, ast::Option const& option, SimulateOptions& options);
+  static void simulate_samples(TaskChecker& checker, ast::Option const& option, SimulateOptions& options);
+  static void simulate_spacing(TaskChecker& checker, ast::Option const& option, SimulateOptions& options);
+  static void simulate_solver(TaskChecker& checker, ast::Option const& option, SimulateOptions& options);
+  static void simulate_seed(TaskChecker& checker, ast::Option const& option, SimulateOptions& options);
+  static void simulate_file(TaskChecker& checker, ast::Option const& option, SimulateOptions& options);
+  // What is left out is taken from the model or missed; what must hold between the options.
+  void complete_simulation(SimulateOptions const& options);
   // `values(m = 1, ...)`.
   void values(ast::Call const& call, Model const& model, SimulateTask& task);
   // The names that states, channel locations and (when the model makes the noise) noise need.

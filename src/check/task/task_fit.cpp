@@ -3,6 +3,7 @@
 #include "check/model/model_checker.hpp"
 #include "check/task/task_checker.hpp"
 #include "check/task/task_options.hpp"
+#include "core/setting/table.hpp"
 
 namespace sysid {
 
@@ -61,9 +62,11 @@ void TaskChecker::suit_scales(Model const& model) {
 }
 
 void TaskChecker::suit_processes(FitTask const& task, Model const& model) {
-  if (!model.expansions.empty() && task.backend == "ml")
-    diagnostics_.add(errors::expansion_by_likelihood(tree_.subject.span, model.name));
-  if (task.backend == "map") suit_scales(model);
+  if (BackendSettings const* backend = row_named(backends_.fitting, task.backend)) {
+    if (!model.expansions.empty() && !backend->prior)
+      diagnostics_.add(errors::expansion_by_likelihood(tree_.subject.span, model.name));
+    if (backend->optimum && backend->prior) suit_scales(model);
+  }
   if (model.processes.empty()) return;
   if (model.integrated() && task.start.kind == StartRule::Kind::estimated)
     diagnostics_.add(errors::process_beside_estimated_start(tree_.subject.span, model.name));

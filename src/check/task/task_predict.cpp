@@ -4,22 +4,23 @@
 
 #include <algorithm>
 
+#include "check/checked/task_kinds.hpp"
 #include "check/message/errors.hpp"
 
 namespace sysid {
 
 std::optional<int> TaskChecker::fitted_task(ast::Name const& subject, bool or_selection) {
   std::string const& name = subject.text;
+  auto const fits = [&](TaskKindRow const& row) { return row.has_draws && (or_selection || row.kind == TaskKind::fit); };
   auto const fit = std::find_if(file_.tasks.begin(), file_.tasks.end(), [&](Task const& each) { return each.name == name; });
   if (fit != file_.tasks.end()) {
-    if (std::holds_alternative<FitTask>(fit->what) || (or_selection && std::holds_alternative<SelectTask>(fit->what)))
-      return static_cast<int>(fit - file_.tasks.begin());
+    if (fits(row_of(kind_of(*fit)))) return static_cast<int>(fit - file_.tasks.begin());
     diagnostics_.add(errors::not_a_fit(subject, tree_.verb.text));
     return std::nullopt;
   }
   std::vector<std::string> known;
   for (ast::Task const* each : all_tasks_)
-    if (each->verb.text == "fit" || (or_selection && each->verb.text == "select")) known.push_back(task_name(*each));
+    if (fits(*find_task_kind(each->verb.text))) known.push_back(task_name(*each));
   auto const self = std::find(all_tasks_.begin(), all_tasks_.end(), &tree_);
   auto const written = std::find_if(all_tasks_.begin(), all_tasks_.end(),
                                     [&](ast::Task const* each) { return each != &tree_ && task_name(*each) == name; });
@@ -49,7 +50,7 @@ PredictTask TaskChecker::predict() {
   for (std::size_t c = 0; c < fits.size() && !diagnostics_.has_errors(before_); ++c) {
     auto uses = experiments(&file_.models[static_cast<std::size_t>(models[c])], "on");
     if (c == 0) task.experiments = uses;
-    if (std::holds_alternative<SelectTask>(file_.tasks[static_cast<std::size_t>(task.fit)].what))
+    if (kind_of(file_.tasks[static_cast<std::size_t>(task.fit)]) == TaskKind::select)
       task.candidate_experiments.push_back(std::move(uses));
   }
   for (ExperimentUse const& use : task.experiments) {

@@ -7,6 +7,7 @@
 #include "check/message/errors.hpp"
 #include "check/task/signal_generators.hpp"
 #include "check/task/task_options.hpp"
+#include "core/setting/table.hpp"
 
 namespace sysid {
 namespace {
@@ -15,6 +16,21 @@ namespace {
 constexpr int most_drawn = 5000;
 
 }  // namespace
+
+struct TaskChecker::SimulateOptions {
+  Model const& model;
+  SimulateTask& task;
+  std::vector<bool> given;   // of the inputs
+  std::vector<Span> places;  // of their signals
+  std::optional<Span> spacing;
+  Span noise;
+};
+
+// Every option that is written `NAME = VALUE`, with what reads it.
+struct TaskChecker::SimulateOptionRow {
+  std::string_view name;
+  void (*take)(TaskChecker&, ast::Option const&, SimulateOptions&);
+};
 
 SimulateTask TaskChecker::simulate() {
   SimulateTask task;
@@ -31,82 +47,115 @@ SimulateTask TaskChecker::simulate() {
     task.values.push_back(parameter.per_experiment && parameter.value ? model.graph.constant_value(*parameter.value)
                                                                       : std::nullopt);
   task.inputs.resize(model.inputs.size());
-  std::vector<bool> given(model.inputs.size(), false);
-  std::vector<Span> places(model.inputs.size());
-  std::optional<Span> spacing;
-  Span noise_place = tree_.verb.span;
-  for (ast::Option const& option : tree_.options) {
-    std::string const key = key_of(option);
-    if (!options_.fresh(option, key)) continue;
-    if (option.input) {
-      auto const place =
-          std::find_if(model.inputs.begin(), model.inputs.end(), [&](Quantity const& each) { return each.name == key; });
-      if (place == model.inputs.end()) {
-        std::vector<std::string> known;
-        for (Quantity const& input : model.inputs) known.push_back(input.name);
-        diagnostics_.add(errors::unknown_member(*option.key, "model `" + model.name + "`", "input", known));
-        continue;
-      }
-      auto const index = static_cast<std::size_t>(place - model.inputs.begin());
-      given[index] = true;
-      places[index] = option.value.span;
-      if (auto generated = check_generator(option, *place, options_, diagnostics_)) task.inputs[index] = std::move(*generated);
-    } else if (key == "values" && as_call(option.value) != nullptr) {
-      values(*as_call(option.value), model, task);
-    } else if (option.key && key == "noise") {
-      noise_place = option.span;
-      if (as_word(option.value) == "model")
-        task.noise_fraction = -1;
-      else if (auto const value = options_.number(option.value, key, unit_of("percent"), 0, 1e6))
-        task.noise_fraction = *value;
-    } else if (option.key && key == "samples") {
-      options_.whole(option, key, 2, 1e8, task.samples);
-    } else if (option.key && (key == "rate" || key == "step")) {
-      if (spacing) diagnostics_.add(errors::stated_twice(option.span, *spacing, "the time between samples"));
-      spacing = option.span;
-      if (auto const value = options_.number(option.value, key, unit_of(key == "rate" ? "Hz" : "s"), 1e-300, 1e300))
-        task.step = key == "rate" ? 1 / *value : *value;
-    } else if (option.key && (key == "substeps" || key == "solver")) {
-      options_.solver(option, task.solver);
-    } else if (option.key && key == "seed") {
-      options_.seed(option, task.seed);
-    } else if (option.key && key == "file") {
-      if (auto const* text = std::get_if<ast::Text>(&option.value.node);
-          text != nullptr && text->value.find('/') == std::string::npos)
-        task.file = text->value;
-      else
-        diagnostics_.add(
-            errors::option_kind(option.value.span, key, "a file name in quotes, without folders", "file = \"truth.csv\""));
-    } else {
-      options_.unknown(option, task_option_names("simulate"));
-    }
-  }
+  SimulateOptions options{.model = model,
+                          .task = task,
+                          .given = std::vector<bool>(model.inputs.size(), false),
+                          .places = std::vector<Span>(model.inputs.size()),
+                          .spacing = std::nullopt,
+                          .noise = tree_.verb.span};
+  for (ast::Option const& option : tree_.options) simulate_option(option, options);
   if (task.noise_fraction >= 0)
     for (Channel const& channel : model.channels)
       if (channel.noise.row->discrete)
-        diagnostics_.add(errors::noise_of_counts(noise_place, channel.name, std::string(channel.noise.row->name)));
+        diagnostics_.add(errors::noise_of_counts(options.noise, channel.name, std::string(channel.noise.row->name)));
   suit(task.solver, model);
   if (task.file.empty()) task.file = task_name(tree_) + ".csv";
-  if (diagnostics_.has_errors(before_)) return task;
+  if (!diagnostics_.has_errors(before_)) complete_simulation(options);
+  return task;
+}
+
+void TaskChecker::simulate_option(ast::Option const& option, SimulateOptions& options) {
+  static constexpr SimulateOptionRow rows[] = {
+      {"noise", &TaskChecker::simulate_noise},     {"samples", &TaskChecker::simulate_samples},
+      {"rate", &TaskChecker::simulate_spacing},    {"step", &TaskChecker::simulate_spacing},
+      {"substeps", &TaskChecker::simulate_solver}, {"solver", &TaskChecker::simulate_solver},
+      {"seed", &TaskChecker::simulate_seed},       {"file", &TaskChecker::simulate_file},
+  };
+  std::string const key = key_of(option);
+  if (!options_.fresh(option, key)) return;
+  SimulateOptionRow const* const row = option.key ? row_named(rows, key) : nullptr;
+  if (option.input)
+    simulate_input(option, options);
+  else if (key == "values" && as_call(option.value) != nullptr)
+    values(*as_call(option.value), options.model, options.task);
+  else if (row != nullptr)
+    row->take(*this, option, options);
+  else
+    options_.unknown(option, task_option_names("simulate"));
+}
+
+void TaskChecker::simulate_input(ast::Option const& option, SimulateOptions& options) {
+  std::vector<Quantity> const& inputs = options.model.inputs;
+  auto const place = std::find_if(inputs.begin(), inputs.end(), [&](Quantity const& each) { return each.name == key_of(option); });
+  if (place == inputs.end()) {
+    std::vector<std::string> known;
+    for (Quantity const& input : inputs) known.push_back(input.name);
+    diagnostics_.add(errors::unknown_member(*option.key, "model `" + options.model.name + "`", "input", known));
+    return;
+  }
+  auto const index = static_cast<std::size_t>(place - inputs.begin());
+  options.given[index] = true;
+  options.places[index] = option.value.span;
+  if (auto generated = check_generator(option, *place, options_, diagnostics_)) options.task.inputs[index] = std::move(*generated);
+}
+
+void TaskChecker::simulate_noise(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
+  options.noise = option.span;
+  if (as_word(option.value) == "model")
+    options.task.noise_fraction = -1;
+  else if (auto const value = checker.options_.number(option.value, key_of(option), unit_of("percent"), 0, 1e6))
+    options.task.noise_fraction = *value;
+}
+
+void TaskChecker::simulate_samples(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
+  checker.options_.whole(option, key_of(option), 2, 1e8, options.task.samples);
+}
+
+void TaskChecker::simulate_spacing(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
+  std::string const key = key_of(option);
+  if (options.spacing) checker.diagnostics_.add(errors::stated_twice(option.span, *options.spacing, "the time between samples"));
+  options.spacing = option.span;
+  if (auto const value = checker.options_.number(option.value, key, unit_of(key == "rate" ? "Hz" : "s"), 1e-300, 1e300))
+    options.task.step = key == "rate" ? 1 / *value : *value;
+}
+
+void TaskChecker::simulate_solver(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
+  checker.options_.solver(option, options.task.solver);
+}
+
+void TaskChecker::simulate_seed(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
+  checker.options_.seed(option, options.task.seed);
+}
+
+void TaskChecker::simulate_file(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
+  if (auto const* text = std::get_if<ast::Text>(&option.value.node); text != nullptr && text->value.find('/') == std::string::npos)
+    options.task.file = text->value;
+  else
+    checker.diagnostics_.add(
+        errors::option_kind(option.value.span, key_of(option), "a file name in quotes, without folders", "file = \"truth.csv\""));
+}
+
+void TaskChecker::complete_simulation(SimulateOptions const& options) {
+  Model const& model = options.model;
+  SimulateTask& task = options.task;
   if (!model.processes.empty() && task.samples > most_drawn)
     diagnostics_.add(errors::process_of_many_samples(tree_.subject.span, model.name, most_drawn));
   if (task.samples == 0) diagnostics_.add(errors::option_missing(tree_, "samples", "samples = 500"));
   if (model.step && task.step > 0 && !same_step(task.step, *model.step))
-    diagnostics_.add(errors::other_step(*spacing, task.step, *model.step, model.name));
+    diagnostics_.add(errors::other_step(*options.spacing, task.step, *model.step, model.name));
   if (task.step == 0 && model.step) task.step = *model.step;
   if (task.step == 0 && model.dynamics == Dynamics::none) task.step = 1;
   if (!model.integrated()) task.solver = {};
   if (task.step == 0) diagnostics_.add(errors::option_missing(tree_, "rate", "rate = 1000 [Hz]"));
-  for (std::size_t i = 0; i < given.size(); ++i)
-    if (!given[i])
+  for (std::size_t i = 0; i < options.given.size(); ++i)
+    if (!options.given[i])
       diagnostics_.add(
           errors::option_missing(tree_, "input " + model.inputs[i].name, "input " + model.inputs[i].name + " = gaussian(sd = 1)"));
   if (auto const missing = values_needed(model, task); !missing.empty())
     diagnostics_.add(errors::value_missing(tree_.verb.span, missing));
   if (task.samples > 0 && task.step > 0)
-    for (std::size_t i = 0; i < given.size(); ++i)
-      if (given[i]) check_band(task.inputs[i], task, places[i], diagnostics_);
-  return task;
+    for (std::size_t i = 0; i < options.given.size(); ++i)
+      if (options.given[i]) check_band(task.inputs[i], task, options.places[i], diagnostics_);
 }
 
 void TaskChecker::values(ast::Call const& call, Model const& model, SimulateTask& task) {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
+#include "check/checked/task_kinds.hpp"
 #include "check/message/errors.hpp"
 #include "check/task/task_checker.hpp"
+#include "core/setting/table.hpp"
 
 namespace sysid {
 
@@ -23,17 +25,18 @@ std::optional<Task> TaskChecker::run() {
   Task task;
   task.name = task_name(tree_);
   task.span = tree_.verb.span;
-  if (tree_.verb.text == "simulate") {
-    task.what = simulate();
-  } else if (tree_.verb.text == "fit") {
-    task.what = fit();
-  } else if (tree_.verb.text == "select") {
-    task.what = select();
-  } else if (tree_.verb.text == "discover") {
-    task.what = discover();
-  } else {
-    task.what = predict();
-  }
+  struct Row {
+    TaskKind kind;
+    decltype(Task::what) (*check)(TaskChecker&);
+  };
+  static constexpr Row rows[] = {
+      {TaskKind::simulate, [](TaskChecker& checker) -> decltype(Task::what) { return checker.simulate(); }},
+      {TaskKind::fit, [](TaskChecker& checker) -> decltype(Task::what) { return checker.fit(); }},
+      {TaskKind::select, [](TaskChecker& checker) -> decltype(Task::what) { return checker.select(); }},
+      {TaskKind::discover, [](TaskChecker& checker) -> decltype(Task::what) { return checker.discover(); }},
+      {TaskKind::predict, [](TaskChecker& checker) -> decltype(Task::what) { return checker.predict(); }},
+  };
+  task.what = row_for(rows, find_task_kind(tree_.verb.text)->kind).check(*this);
   bool const errors = diagnostics_.has_errors(before_);
   if (errors || unresolved_) return std::nullopt;
   return task;
@@ -55,8 +58,8 @@ std::optional<int> TaskChecker::item(ast::Name const& name, std::map<std::string
 void TaskChecker::suit(SolverSettings& solver, Model const& model) {
   if (!model.implicit) return;
   if (!options_.solver_span())
-    solver = {.method = "ida"};
-  else if (solver.row().stepping != Stepping::ida)
+    solver = {.method = std::string(implicit_solver().name)};
+  else if (!solver.row().implicit)
     diagnostics_.add(
         errors::explicit_solver(*options_.solver_span(), solver.method, model.implicit->equation, model.implicit->unknown));
 }
@@ -107,11 +110,9 @@ void TaskChecker::each_named(ast::Call const& call, std::string const& owner, st
 bool TaskChecker::backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
                                  std::string& backend, Settings& settings) {
   if (option.input || option.key || key.empty()) return false;
-  auto const row = std::find_if(known.begin(), known.end(), [&](BackendSettings const& each) { return each.name == key; });
-  if (row == known.end()) {
-    auto const among = [&](std::span<BackendSettings const> rows) {
-      return std::any_of(rows.begin(), rows.end(), [&](BackendSettings const& each) { return each.name == key; });
-    };
+  BackendSettings const* const row = row_named(known, key);
+  if (row == nullptr) {
+    auto const among = [&](std::span<BackendSettings const> rows) { return row_named(rows, key) != nullptr; };
     std::string const own = among(backends_.fitting)       ? "fit"
                             : among(backends_.selecting)   ? "select"
                             : among(backends_.discovering) ? "discover"

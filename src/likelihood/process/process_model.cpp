@@ -105,7 +105,7 @@ void ProcessModel::find_coefficients(std::vector<std::vector<int>>& of_channel) 
     auto const readers = std::count_if(read.begin(), read.end(), [&](std::set<int> const& each) { return each.contains(p); });
     if (!parameter.prior || parameter.value || parameter.per_experiment || elsewhere.contains(p) || readers != 1) continue;
     Distribution const& prior = *parameter.prior;
-    if (prior.row->name != "normal" || prior.lower || prior.upper || !graph.constant_value(prior.arguments[0]) ||
+    if (!prior.row->gaussian || prior.lower || prior.upper || !graph.constant_value(prior.arguments[0]) ||
         !graph.constant_value(prior.arguments[1]))
       continue;
     auto const c = static_cast<std::size_t>(

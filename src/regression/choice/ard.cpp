@@ -27,92 +27,125 @@ struct Posterior {
   Eigen::MatrixXd covariance;
 };
 
-}  // namespace
+/// The iteration: posterior of the coefficients, their precisions and the noise by it, terms of too large a precision left out.
+class Relevance {
+ public:
+  explicit Relevance(LinearProblem const& problem)
+      : problem_(problem),
+        triangle_(reduce(problem)),
+        count_(static_cast<int>(triangle_.r.cols())),
+        rows_count_(triangle_.rows),
+        unit_(std::sqrt(triangle_.total / rows_count_)),
+        gram_(triangle_.r.transpose() * triangle_.r),
+        right_(triangle_.r.transpose() * triangle_.known / unit_),
+        rest_(triangle_.rest / (unit_ * unit_)),
+        known_(triangle_.known / unit_),
+        lambda_(Eigen::VectorXd::Ones(count_)),
+        mean_(Eigen::VectorXd::Zero(count_)) {
+    double const mean_known = problem.known.sum() / unit_ / rows_count_;
+    alpha_ = 1 / (1 - mean_known * mean_known + std::numeric_limits<double>::epsilon());  // the variance of the known side
+    for (int j = 0; j < count_; ++j) {
+      if (problem.always[static_cast<std::size_t>(j)] != 0) lambda_(j) = unbound;
+      kept_.push_back(j);
+    }
+  }
 
-std::span<SettingRow const> settings() { return rows; }
+  bool empty() const { return kept_.empty(); }
+  Eigen::VectorXd const& mean() const { return mean_; }
 
-Choice choose(LinearProblem const& problem, Settings const& settings, SelectorContext const& context) {
-  Triangle const triangle = reduce(problem);
-  auto const count = static_cast<int>(triangle.r.cols());
-  double const rows_count = triangle.rows;
-  double const unit = std::sqrt(triangle.total / rows_count);  // of the known side
-  Eigen::MatrixXd const gram = triangle.r.transpose() * triangle.r;
-  Eigen::VectorXd const right = triangle.r.transpose() * triangle.known / unit;
-  double const rest = triangle.rest / (unit * unit);
-  Eigen::VectorXd const known = triangle.known / unit;
+  void iterate(double prune) {
+    Posterior const now = posterior();
+    mean_.setZero();
+    double effective = 0;
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      auto const i = static_cast<Eigen::Index>(k);
+      int const j = kept_[k];
+      mean_(j) = now.mean(i);
+      double const gamma = 1 - lambda_(j) * now.covariance(i, i);
+      effective += gamma;
+      if (problem_.always[static_cast<std::size_t>(j)] == 0) lambda_(j) = (gamma + 2 * hyper) / (mean_(j) * mean_(j) + 2 * hyper);
+    }
+    double const squares = rest_ + (known_ - triangle_.r * mean_).squaredNorm();
+    alpha_ = (rows_count_ - effective + 2 * hyper) / (squares + 2 * hyper);
+    std::erase_if(kept_, [&](int j) { return !(lambda_(j) < prune); });
+    for (int j = 0; j < count_; ++j)
+      if (!(lambda_(j) < prune)) mean_(j) = 0;
+  }
 
-  double mean_known = problem.known.sum() / unit / rows_count;
-  double alpha = 1 / (1 - mean_known * mean_known + std::numeric_limits<double>::epsilon());  // the variance of the known side
-  Eigen::VectorXd lambda = Eigen::VectorXd::Ones(count), mean = Eigen::VectorXd::Zero(count), before = mean;
-  for (int j = 0; j < count; ++j)
-    if (problem.always[static_cast<std::size_t>(j)] != 0) lambda(j) = unbound;
-  std::vector<int> kept;
-  for (int j = 0; j < count; ++j) kept.push_back(j);
+  void describe(Choice& choice) const {
+    choice.terms.resize(static_cast<std::size_t>(count_));
+    for (TermChoice& term : choice.terms) term.precision = std::numeric_limits<double>::infinity();
+    Posterior const last = posterior();
+    choice.chosen = support_of(triangle_, kept_);
+    choice.chosen.log_evidence = default_log_evidence(triangle_, problem_.always, kept_);
+    choice.chosen.probability = 1;
+    choice.noise_sd = unit_ / std::sqrt(alpha_);
+    choice.supports.push_back(choice.chosen);
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      auto const i = static_cast<Eigen::Index>(k);
+      TermChoice& term = choice.terms[static_cast<std::size_t>(kept_[k])];
+      double const back = unit_ / triangle_.scale(kept_[k]);
+      term.kept = true;
+      term.precision = lambda_(kept_[k]);
+      term.measure = std::abs(last.mean(i));  // columns and known side have unit root mean square
+      term.mean = last.mean(i) * back;
+      term.sd = std::sqrt(last.covariance(i, i)) * back;
+    }
+  }
 
-  auto const posterior = [&] {
-    auto const size = static_cast<Eigen::Index>(kept.size());
-    Posterior result{kept, Eigen::VectorXd(size), Eigen::MatrixXd(size, size)};
+ private:
+  Posterior posterior() const {
+    auto const size = static_cast<Eigen::Index>(kept_.size());
+    Posterior result{kept_, Eigen::VectorXd(size), Eigen::MatrixXd(size, size)};
     Eigen::MatrixXd precision(size, size);
     Eigen::VectorXd linear(size);
     for (Eigen::Index a = 0; a < size; ++a) {
-      linear(a) = alpha * right(kept[static_cast<std::size_t>(a)]);
+      linear(a) = alpha_ * right_(kept_[static_cast<std::size_t>(a)]);
       for (Eigen::Index b = 0; b < size; ++b)
-        precision(a, b) = alpha * gram(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
-      precision(a, a) += lambda(kept[static_cast<std::size_t>(a)]);
+        precision(a, b) = alpha_ * gram_(kept_[static_cast<std::size_t>(a)], kept_[static_cast<std::size_t>(b)]);
+      precision(a, a) += lambda_(kept_[static_cast<std::size_t>(a)]);
     }
     // Positive definite but for rounding, which a record almost without noise can bring near.
     auto const factor = cholesky(precision);
     result.covariance = factor ? solve_cholesky(*factor, Eigen::MatrixXd::Identity(size, size)) : inverse(precision);
     result.mean = factor ? solve_cholesky(*factor, linear) : result.covariance * linear;
     return result;
-  };
+  }
 
+  LinearProblem const& problem_;
+  Triangle const triangle_;
+  int const count_;
+  double const rows_count_;
+  double const unit_;  // of the known side
+  Eigen::MatrixXd const gram_;
+  Eigen::VectorXd const right_;
+  double const rest_;
+  Eigen::VectorXd const known_;
+  double alpha_ = 1;               // precision of the noise
+  Eigen::VectorXd lambda_, mean_;  // precisions and means of the coefficients
+  std::vector<int> kept_;
+};
+
+}  // namespace
+
+std::span<SettingRow const> settings() { return rows; }
+
+Choice choose(LinearProblem const& problem, Settings const& settings, SelectorContext const& context) {
+  Relevance relevance(problem);
+  Eigen::VectorXd before = relevance.mean();
   Choice choice;
   choice.converged = false;
   int const most = static_cast<int>(settings.integer("iterations"));
   double const prune = settings.real("prune"), tolerance = settings.real("tolerance");
-  for (int iteration = 0; iteration < most && !kept.empty(); ++iteration) {
+  for (int iteration = 0; iteration < most && !relevance.empty(); ++iteration) {
     if (context.interrupted && context.interrupted()) break;
-    Posterior const now = posterior();
-    mean.setZero();
-    double effective = 0;
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      auto const i = static_cast<Eigen::Index>(k);
-      int const j = kept[k];
-      mean(j) = now.mean(i);
-      double const gamma = 1 - lambda(j) * now.covariance(i, i);
-      effective += gamma;
-      if (problem.always[static_cast<std::size_t>(j)] == 0) lambda(j) = (gamma + 2 * hyper) / (mean(j) * mean(j) + 2 * hyper);
-    }
-    double const squares = rest + (known - triangle.r * mean).squaredNorm();
-    alpha = (rows_count - effective + 2 * hyper) / (squares + 2 * hyper);
-    std::erase_if(kept, [&](int j) { return !(lambda(j) < prune); });
-    for (int j = 0; j < count; ++j)
-      if (!(lambda(j) < prune)) mean(j) = 0;
+    relevance.iterate(prune);
     choice.iterations = iteration + 1;
-    choice.converged = iteration > 0 && (mean - before).cwiseAbs().sum() < tolerance;
+    choice.converged = iteration > 0 && (relevance.mean() - before).cwiseAbs().sum() < tolerance;
     if (choice.converged) break;
-    before = mean;
+    before = relevance.mean();
   }
-
-  choice.terms.resize(static_cast<std::size_t>(count));
-  for (TermChoice& term : choice.terms) term.precision = std::numeric_limits<double>::infinity();
-  Posterior const last = posterior();
-  choice.chosen = support_of(triangle, kept);
-  choice.chosen.log_evidence = default_log_evidence(triangle, problem.always, kept);
-  choice.chosen.probability = 1;
-  choice.noise_sd = unit / std::sqrt(alpha);
-  choice.supports.push_back(choice.chosen);
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    auto const i = static_cast<Eigen::Index>(k);
-    TermChoice& term = choice.terms[static_cast<std::size_t>(kept[k])];
-    double const back = unit / triangle.scale(kept[k]);
-    term.kept = true;
-    term.precision = lambda(kept[k]);
-    term.measure = std::abs(last.mean(i));  // columns and known side have unit root mean square
-    term.mean = last.mean(i) * back;
-    term.sd = std::sqrt(last.covariance(i, i)) * back;
-  }
+  relevance.describe(choice);
   return choice;
 }
 

@@ -1,7 +1,7 @@
 // The classical fourth-order Runge-Kutta method (Kutta 1901):
 //   k1 = f(y, t), k2 = f(y + h/2 k1, t + h/2), k3 = f(y + h/2 k2, t + h/2), k4 = f(y + h k3, t + h),  y + h/6 (k1 + 2 (k2 + k3) +
 //   k4).
-#include "program/integrator.hpp"
+#include "solver/stages.hpp"
 
 namespace sysid {
 

@@ -1,5 +1,5 @@
 // Euler's explicit method:  y + h f(y, t).
-#include "program/integrator.hpp"
+#include "solver/stages.hpp"
 
 namespace sysid {
 

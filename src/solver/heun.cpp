@@ -1,5 +1,5 @@
 // Heun's method:  k1 = f(y, t), k2 = f(y + h k1, t + h),  y + h/2 (k1 + k2).
-#include "program/integrator.hpp"
+#include "solver/stages.hpp"
 
 namespace sysid {
 

@@ -1,5 +1,5 @@
 // The table of solvers and the arithmetic of their settings.
-#include "core/setting/solver.hpp"
+#include "solver/solver.hpp"
 
 #include <fmt/format.h>
 #include <cstdlib>
@@ -11,6 +11,13 @@
 #include "core/text/diagnostic.hpp"
 
 namespace sysid {
+
+// One file each.
+std::vector<NodeId> rk4_step(Stages const& stages);
+std::vector<NodeId> heun_step(Stages const& stages);
+std::vector<NodeId> euler_step(Stages const& stages);
+EmbeddedMethod const& dopri5();
+
 namespace {
 
 constexpr SettingRow fixed_settings[] = {
@@ -32,18 +39,78 @@ double hundredth(double value) { return std::strtod(fmt::format("{:.12e}", value
 
 std::span<SolverRow const> solvers() {
   static constexpr SolverRow rows[] = {
-      {"rk4", Stepping::fixed, "the classical Runge-Kutta method of order 4", fixed_settings},
-      {"heun", Stepping::fixed, "Heun's method of order 2 (explicit trapezoidal rule)", fixed_settings},
-      {"euler", Stepping::fixed, "Euler's explicit method of order 1", fixed_settings},
-      {"dopri5", Stepping::lanes, "the adaptive method of Dormand and Prince of order 5, each lane with its own steps",
-       adaptive_settings},
-      {"cvode", Stepping::cvode, "backward differentiation of order 1 to 5, for stiff equations", adaptive_settings},
-      {"ida", Stepping::ida, "backward differentiation for implicit and differential-algebraic equations", adaptive_settings},
+      {.name = "rk4",
+       .summary = "the classical Runge-Kutta method of order 4",
+       .settings = fixed_settings,
+       .stepping = Stepping::fixed,
+       .order = 4,
+       .in_program = true,
+       .step = &rk4_step},
+      {.name = "heun",
+       .summary = "Heun's method of order 2 (explicit trapezoidal rule)",
+       .settings = fixed_settings,
+       .stepping = Stepping::fixed,
+       .order = 2,
+       .in_program = true,
+       .step = &heun_step},
+      {.name = "euler",
+       .summary = "Euler's explicit method of order 1",
+       .settings = fixed_settings,
+       .stepping = Stepping::fixed,
+       .order = 1,
+       .in_program = true,
+       .step = &euler_step},
+      {.name = "dopri5",
+       .summary = "the adaptive method of Dormand and Prince of order 5, each lane with its own steps",
+       .settings = adaptive_settings,
+       .stepping = Stepping::lanes,
+       .order = 5,
+       .adaptive = true,
+       .in_program = true,
+       .embedded = &dopri5},
+      {.name = "cvode",
+       .summary = "backward differentiation of order 1 to 5, for stiff equations",
+       .settings = adaptive_settings,
+       .stepping = Stepping::cvode,
+       .order = 0,
+       .adaptive = true,
+       .stiff = true},
+      {.name = "ida",
+       .summary = "backward differentiation for implicit and differential-algebraic equations",
+       .settings = adaptive_settings,
+       .stepping = Stepping::ida,
+       .order = 0,
+       .adaptive = true,
+       .stiff = true,
+       .implicit = true},
   };
   return rows;
 }
 
 SolverRow const* find_solver(std::string_view name) { return row_named(solvers(), name); }
+
+namespace {
+
+template <typename Wanted>
+SolverRow const& first_solver(Wanted const& wanted) {
+  for (SolverRow const& row : solvers())
+    if (wanted(row)) return row;
+  throw InternalError("no solver can do what is asked for");
+}
+
+}  // namespace
+
+SolverRow const& adaptive_solver() {
+  return first_solver([](SolverRow const& row) { return row.adaptive && row.in_program; });
+}
+
+SolverRow const& stiff_solver() {
+  return first_solver([](SolverRow const& row) { return row.stiff && !row.implicit; });
+}
+
+SolverRow const& implicit_solver() {
+  return first_solver([](SolverRow const& row) { return row.implicit; });
+}
 
 SolverRow const& SolverSettings::row() const {
   SolverRow const* found = find_solver(method);

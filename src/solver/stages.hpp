@@ -1,8 +1,7 @@
-// An explicit one-step method as a row: it writes one step of size h as expressions, and the program stage compiles them like any
-// other. One file and one row (integrator.cpp) adds another.
+// What an explicit one-step method with fixed steps writes one step of size h with, as expressions; the program stage compiles them
+// like any other. One file and one row (solver.cpp) adds a method.
 #pragma once
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "expression/graph.hpp"
@@ -28,17 +27,5 @@ struct Stages {
   /// states + by * slopes
   std::vector<NodeId> advance(std::span<NodeId const> slopes, NodeId by) const;
 };
-
-struct IntegratorRow {
-  std::string_view name;
-  int order;
-  /// The states after one step.
-  std::vector<NodeId> (*step)(Stages const&);
-  std::string_view summary;
-};
-
-std::span<IntegratorRow const> integrators();
-/// nullptr when there is none of that name.
-IntegratorRow const* find_integrator(std::string_view name);
 
 }  // namespace sysid

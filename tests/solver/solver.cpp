@@ -1,7 +1,9 @@
 // Solvers as values: text, refinement, settings there and back.
-#include "core/setting/solver.hpp"
+#include "solver/solver.hpp"
 
 #include <doctest/doctest.h>
+
+#include <set>
 
 #include "core/text/diagnostic.hpp"
 
@@ -19,6 +21,33 @@ TEST_CASE("every solver of the table makes settings that read back as they were"
   }
   CHECK(find_solver("magic") == nullptr);
   CHECK_THROWS_AS(SolverSettings{.method = "magic"}.row(), InternalError);
+}
+
+TEST_CASE("a row of the table says what its method can do, and has what that needs") {
+  std::set<std::string_view> names;
+  std::set<Stepping> steppings;
+  for (SolverRow const& row : solvers()) {
+    CAPTURE(row.name);
+    CHECK(names.insert(row.name).second);
+    steppings.insert(row.stepping);
+    CHECK(!row.summary.empty());
+    CHECK((row.step != nullptr) == (row.stepping == Stepping::fixed));
+    CHECK((row.embedded != nullptr) == (row.stepping == Stepping::lanes));
+    CHECK(row.in_program == (row.step != nullptr || row.embedded != nullptr));
+    CHECK(row.adaptive == (row.step == nullptr));
+    CHECK((row.order > 0) == row.in_program);
+    if (row.embedded != nullptr) CHECK(row.embedded().order == row.order);
+    CHECK((!row.implicit || row.stiff));
+    CHECK((find_setting(row.settings, "substeps") != nullptr) == !row.adaptive);
+    CHECK((find_setting(row.settings, "relative") != nullptr) == row.adaptive);
+  }
+  CHECK(steppings == std::set{Stepping::fixed, Stepping::lanes, Stepping::cvode, Stepping::ida});
+}
+
+TEST_CASE("solvers that are chosen by what they can do") {
+  CHECK(adaptive_solver().name == "dopri5");
+  CHECK(stiff_solver().name == "cvode");
+  CHECK(implicit_solver().name == "ida");
 }
 
 TEST_CASE("a solver is spelt as a task states it") {

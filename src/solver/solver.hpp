@@ -1,11 +1,14 @@
 // Which method integrates a model's equations between the samples of a record, and how accurately: what a task states, every layer
-// passes on, and results keep. The methods themselves live in program/ (fixed steps) and simulate/.
+// passes on, and results keep. The table has one row per method, with what it can do; code that needs a capability reads its field
+// and does not compare names. What the program runs itself is written in this folder; SUNDIALS is called by simulate/.
 #pragma once
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "core/setting/settings.hpp"
+#include "solver/embedded_method.hpp"
+#include "solver/stages.hpp"
 
 namespace sysid {
 
@@ -19,15 +22,29 @@ enum class Stepping {
 
 struct SolverRow {
   std::string_view name;
-  Stepping stepping;
   std::string_view summary;
   std::span<SettingRow const> settings;
+  Stepping stepping;
+  int order;                // of its error; 0: variable
+  bool adaptive = false;    // chooses its own steps, within the tolerances; else `substeps` equal steps in every interval
+  bool in_program = false;  // its step is a part of the compiled program, all lanes together; else lane by lane
+  bool stiff = false;       // suits stiff equations: it solves for each step with a Jacobian
+  bool implicit = false;    // solves for derivatives that are given implicitly, and for algebraic states
+  /// The states after one step of a method with fixed steps.
+  std::vector<NodeId> (*step)(Stages const&) = nullptr;
+  /// The coefficients of an embedded method.
+  EmbeddedMethod const& (*embedded)() = nullptr;
 };
 
 /// In the order that `sysid list solvers` prints.
 std::span<SolverRow const> solvers();
 /// nullptr when there is none of that name.
 SolverRow const* find_solver(std::string_view name);
+
+/// The first of the table with adaptive steps in the program; for stiff equations; for implicit ones.
+SolverRow const& adaptive_solver();
+SolverRow const& stiff_solver();
+SolverRow const& implicit_solver();
 
 /// Stands for the size of a state that has never moved, so that its error of 0 may be divided by something: far below any quantity
 /// in any unit, with squares of its inverse still finite.
@@ -42,7 +59,7 @@ struct SolverSettings {
   int steps = 10000;       // adaptive: most steps between two samples, the work budget of a solve
 
   SolverRow const& row() const;
-  bool fixed_step() const { return row().stepping == Stepping::fixed; }
+  bool fixed_step() const { return !row().adaptive; }
   /// What the tolerance guard compares with: half the step, or a hundredth of the tolerances.
   SolverSettings finer() const;
   /// What `finer` does, in words: "half the step".
