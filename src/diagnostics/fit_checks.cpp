@@ -18,6 +18,17 @@ namespace {
 constexpr double gain_per_sample = 0.2;  // nats
 constexpr double gain_at_least = 20;
 
+/// Over all channels, as a likelihood reads them.
+int scored_samples(Experiment const& experiment) {
+  int count = 0;
+  for (std::size_t c = 0; c < experiment.measured.size(); ++c)
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
+      bool const has_past = experiment.has_past.empty() || experiment.has_past[c].empty() || experiment.has_past[c][i] != 0;
+      count += experiment.scored[i] != 0 && has_past && !std::isnan(experiment.measured[c][i]) ? 1 : 0;
+    }
+  return count;
+}
+
 }  // namespace
 
 Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found) {
@@ -84,30 +95,29 @@ Findings check_use(Model const& model, StartRule const& start) {
   return findings;
 }
 
-Findings check_input_timing(ModelTarget const& target, Aim aim, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
-  Model const& model = target.compiled()->model;
+Findings check_input_timing(TargetOf const& target_of, Model const& model, std::vector<Experiment> const& experiments, Aim aim,
+                            Mode const& mode, std::uint64_t seed, Ledger& ledger) {
   Findings findings;
-  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) {
-    auto const at = static_cast<std::size_t>(e);
-    auto const scored = std::count_if(target.residual_places().begin(), target.residual_places().end(),
-                                      [&](auto const& place) { return place.experiment == e && place.sample >= 0; });
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    int const scored = scored_samples(experiments[e]);
     for (std::size_t i = 0; i < model.inputs.size(); ++i) {
       double best_gain = 0, best_shift = 0;
       for (double const shift : {-0.5, 0.5}) {
-        std::vector<Experiment> moved = target.experiments();
-        moved[at].inputs[i] = moved[at].inputs[i].shifted(shift);
-        ModelTarget const other(target.compiled(), target.space(), std::move(moved), target.options());
-        std::vector<Mode> const refitted = refit(other, aim, {mode}, seed, ledger);
+        std::vector<Experiment> moved = experiments;
+        moved[e].inputs[i] = moved[e].inputs[i].shifted(shift);
+        std::unique_ptr<Target> const other = target_of(std::move(moved));
+        std::vector<Mode> const refitted = refit(*other, aim, {mode}, seed, ledger);
         double const gain = refitted.front().log_density - mode.log_density;
         if (gain > best_gain) best_gain = gain, best_shift = shift;
       }
-      if (best_gain <= gain_at_least || best_gain <= gain_per_sample * static_cast<double>(scored)) continue;
+      if (best_gain <= gain_at_least || best_gain <= gain_per_sample * scored) continue;
       findings.push_back(
           {FindingCode::input_timing,
            Severity::warning,
-           {model.inputs[i].name, target.experiments()[at].name},
+           {model.inputs[i].name, experiments[e].name},
            fmt::format("input {}{} half a sample {} would fit much better (log posterior up by {:.0f} over {} samples)",
-                       model.inputs[i].name, on_experiment(target, e), best_shift > 0 ? "later" : "earlier", best_gain, scored),
+                       model.inputs[i].name, experiments.size() == 1 ? "" : " on " + experiments[e].name,
+                       best_shift > 0 ? "later" : "earlier", best_gain, scored),
            fmt::format("check the rule between input samples (hold {}) and the delay of the recording",
                        fmt::join(input_rule_names(), ", "))});
     }

@@ -75,6 +75,12 @@ struct ReportTable {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// A check of a finished fit: it ran, or did not apply.
+struct CheckRecord {
+  std::string name;     // "input_timing"
+  std::string skipped;  // why it does not apply; empty: it ran
+};
+
 struct Report {
   std::string version;  // of sysid
   std::string task;     // "posterior"
@@ -89,6 +95,7 @@ struct Report {
   std::vector<Summary> summary;  // of the draws, parameters first
   std::string verdict;           // in plain words, its first line is shown; empty: as `judge` words the findings
   Findings findings;
+  std::vector<CheckRecord> checks;        // of a fit
   std::vector<FitLine> fit;               // what the task itself has scored
   std::vector<Prediction> predictions;    // of each experiment: over the fitted rows, or of the predicted ones
   std::vector<Mode> modes;                // by falling share

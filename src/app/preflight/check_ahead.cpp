@@ -41,10 +41,15 @@ Parameter const* improper(Model const& model) {
 }  // namespace
 
 Findings check_prior_size(Session& session, FitTask const& what, std::vector<ExperimentData> const& data) {
-  if (improper(session.file.models[static_cast<std::size_t>(what.model)]) != nullptr) return {};
+  Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
+  if (improper(written) != nullptr) return {};
   Outlook page;
-  LookedAt const look(session, what, data, page);
-  describe_prior(look, draw_prior(look));
+  if (!written.processes.empty()) {
+    look_at_processes(session, what, data, page);
+  } else {
+    LookedAt const look(session, what, data, page);
+    describe_prior(look, draw_prior(look));
+  }
   std::erase_if(page.findings, [](Finding const& each) { return each.code != FindingCode::prior_far_from_data; });
   return page.findings;
 }

@@ -1,4 +1,4 @@
-// Fits of models with Gaussian processes, and what they predict.
+// Models with Gaussian processes in fits and predictions.
 #pragma once
 #include <memory>
 
@@ -12,12 +12,14 @@ namespace sysid {
 /// A model of the file taken apart, under a prediction rule.
 std::shared_ptr<ProcessModel const> process_model(Session const& session, FitTask const& fit, PredictionRule prediction);
 
-/// The target of a fit, holding its samples. data: those of the fit. solver: of differential equations, where there are any.
+/// The target of a fit, holding its samples. experiments: those of the fit. solver: of differential equations, where there are any.
 std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_ptr<ProcessModel const> model,
-                                              std::vector<ExperimentData> const& data, SolverSettings const& solver,
+                                              std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution);
 
-ExitCode run_process_fit(Session& session, int index, Task const& task, FitTask const& what);
+/// The model with every process at zero, for what the samples do not decide: derived quantities, constraints.
+std::shared_ptr<CompiledModel const> compile_white(ProcessModel const& model, bool free_start, std::string const& method);
+
 ExitCode run_process_predict(Session& session, Task const& task, PredictTask const& what);
 
 }  // namespace sysid

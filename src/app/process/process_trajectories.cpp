@@ -24,7 +24,7 @@ ProcessTrajectories::ProcessTrajectories(Session& session, PredictTask const& wh
       fitted_(fitted_model(session, what.fit)),
       fit_(std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what)),
       trained_(process_target(fit_, process_model(session, fit_, fit_.prediction),
-                              load(session, fit_, fit_.experiments, fit_.start, fit_.prediction), fitted_.solver,
+                              experiments_of(load(session, fit_, fit_.experiments, fit_.start, fit_.prediction)), fitted_.solver,
                               session.options.execution)),
       model_(process_model(session, fit_, what.prediction)),
       space_(parameter_space(model_->model(), fit_.experiments)),

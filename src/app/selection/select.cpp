@@ -72,7 +72,7 @@ class Select {
     if (context.resume)
       session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
     else
-      tell_of_data(session_, task_, candidates_.front().data, candidates_.front().compiled->model);
+      print_data_findings(session_, task_, candidates_.front().data, candidates_.front().compiled->model);
     SelectionResult result = selector.run(target, what_.settings, context);
     if (result.failure)
       throw UserError({Severity::error,

@@ -78,8 +78,6 @@ std::vector<std::string> noise_parameters(ParameterSpace const& space) {
 
 ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpoint const& checkpoint, SolverSettings const& solver,
                       Report report, std::chrono::steady_clock::time_point began, bool interrupted) {
-  if (!interrupted)
-    for (Finding& finding : check_priors(report)) report.findings.push_back(std::move(finding));
   Verdict const verdict = judge(report.findings);
   report.verdict = verdict.text;
   std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;

@@ -105,11 +105,11 @@ void add_data(CheckedFile const& file, ExperimentData const& data, Model const& 
   look_at_data(file, data, model, report.findings);
 }
 
-void tell_of_data(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model) {
-  for (ExperimentData const& each : data) tell(session, task, find_placeholders(session.file, each, model));
+void print_data_findings(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model) {
+  for (ExperimentData const& each : data) print_findings(session, task, find_placeholders(session.file, each, model));
 }
 
-void tell(Session& session, Task const& task, Findings const& findings) {
+void print_findings(Session& session, Task const& task, Findings const& findings) {
   for (Finding const& each : findings) session.notices << fmt::format("{}: warning: {}\n", task.name, each.message);
 }
 

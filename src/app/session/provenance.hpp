@@ -12,9 +12,9 @@ void look_at_data(CheckedFile const& file, ExperimentData const& data, Model con
 /// Adds file, digest, rows and columns of one experiment to the report, and what its numbers give to think (`look_at_data`).
 void add_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Report& report);
 
-/// Says what gives to think before what takes time, so that nobody need wait for it.
-void tell(Session& session, Task const& task, Findings const& findings);
+/// Prints findings as notices before the part of a task that takes time.
+void print_findings(Session& session, Task const& task, Findings const& findings);
 /// Of the numbers of a task's records.
-void tell_of_data(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model);
+void print_data_findings(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model);
 
 }  // namespace sysid

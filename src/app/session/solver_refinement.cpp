@@ -28,8 +28,8 @@ Finding not_settled(SettledSolver const& settled) {
 
 }  // namespace
 
-bool settle(Session& session, Task const& task, MakeTarget const& make, Aim aim, SolverSettings const& stated,
-            Preparation& preparation, RunContext& context) {
+bool refine_solver(Session& session, Task const& task, MakeTarget const& make, Aim aim, SolverSettings const& stated,
+                   Preparation& preparation, RunContext& context) {
   // Modes may need fewer steps than far corners of the prior.
   if (preparation.solver != stated)
     preparation.modes = refit(*make(stated), aim, preparation.modes, context.seed, context.ledger, context.interrupted);

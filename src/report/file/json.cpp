@@ -103,6 +103,16 @@ Json fit(Report const& report) {
   return out;
 }
 
+/// Those that do not apply say why.
+Json checks(std::vector<CheckRecord> const& records) {
+  Json out = Json::array();
+  for (CheckRecord const& each : records) {
+    out.push_back({{"name", each.name}, {"ran", each.skipped.empty()}});
+    if (!each.skipped.empty()) out.back()["reason"] = each.skipped;
+  }
+  return out;
+}
+
 /// The user's text may hold any bytes: what is not UTF-8 is replaced, never thrown.
 std::string dump(Json const& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
@@ -128,6 +138,7 @@ std::string summary_json(Report const& report) {
                                {"names", finding.names},
                                {"message", finding.message},
                                {"help", finding.help}});
+  if (!report.checks.empty()) out["checks"] = checks(report.checks);
   out["fit"] = fit(report);
   out["modes"] = Json::array();
   for (Mode const& mode : report.modes)

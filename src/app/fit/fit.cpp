@@ -1,0 +1,195 @@
+// Data to target, search, step size, sampling with checkpoints, checks, results.
+#include "app/fit/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "app/fit/fit_checks.hpp"
+#include "app/preflight/check_file.hpp"
+#include "app/session/fit_end.hpp"
+#include "app/session/preconditions.hpp"
+#include "app/session/preparation.hpp"
+#include "app/session/provenance.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/resolved.hpp"
+#include "app/session/search_near.hpp"
+#include "app/session/solver_record.hpp"
+#include "app/session/solver_refinement.hpp"
+#include "app/session/task_checkpoint.hpp"
+#include "data/start_rule.hpp"
+#include "diagnostics/tolerance.hpp"
+#include "diagnostics/verdict.hpp"
+#include "inference/evidence.hpp"
+#include "inference/table.hpp"
+#include "search/search.hpp"
+
+namespace sysid {
+namespace {
+
+using json = nlohmann::json;
+
+class Fit {
+ public:
+  Fit(Session& session, int index, Task const& task, FitTask const& what)
+      : session_(session),
+        index_(index),
+        task_(task),
+        what_(what),
+        checkpoint_(session, task, what.seed),
+        seed_(checkpoint_.seed()),
+        backend_(*find_backend(what.backend)),
+        data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
+                               what.prediction)),
+        likelihood_(session.file.models[static_cast<std::size_t>(what.model)].processes.empty()
+                        ? independent_likelihood(session, what, data_, seed_)
+                        : process_likelihood(session, what, data_, seed_)),
+        model_(likelihood_->model()),
+        began_(std::chrono::steady_clock::now()) {
+    checkpoint_.of_data(data_);
+  }
+
+  ExitCode run() {
+    if (auto const why = refusal(task_, what_, likelihood_->sampled_model(), data_)) throw UserError(*why);
+    RunContext context = searching(ledger_);
+    if (std::shared_ptr<json const> const stored = checkpoint_.stored()) {
+      preparation_ = restore_preparation(stored->at("preparation"));
+      if (stored->contains("state")) context.resume = std::make_shared<json const>(stored->at("state"));
+      session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+    } else if (!prepare()) {
+      return stop_early(session_, task_, checkpoint_);
+    }
+    Target const& target = likelihood_->set_target(preparation_.solver, session_.options.execution);
+    context.modes = preparation_.modes;
+    context.mode_findings = preparation_.findings;
+    context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
+    FitResult result = backend_.run(target, what_.settings, context);
+    if (result.failure) throw UserError(no_result(task_, *result.failure));
+    if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
+    return finish(std::move(result));
+  }
+
+ private:
+  // Without checkpoints and known modes.
+  RunContext searching(Ledger& ledger) {
+    return {seed_,  session_.progress,
+            ledger, [this] { return session_.interrupted(); },
+            {},     session_.options.checkpoint_interval,
+            {},     {},
+            {}};
+  }
+
+  // Search and, unless the user fixed it, the step. False: interrupted.
+  bool prepare() {
+    MakeTarget const make = [this](SolverSettings const& solver) {
+      return likelihood_->make_target(experiments_of(data_), solver, session_.interruptible());
+    };
+    RunContext context = searching(preparation_.ledger);
+    Findings const size = check_prior_size(session_, what_, data_);
+    print_data_findings(session_, task_, data_, model_);
+    print_findings(session_, task_, size);
+    preparation_.solver = what_.solver;
+    if (what_.settle && model_.integrated() && !choose_search_solver(make, context)) return false;
+    auto const target = make(preparation_.solver);
+    SearchResult found =
+        what_.near ? search_near(session_, *what_.near, *target, backend_.aim, context) : search(*target, backend_.aim, context);
+    if (found.interrupted) return false;
+    if (found.failure) throw UserError(no_result(task_, *found.failure));
+    preparation_.modes = std::move(found.modes);
+    preparation_.findings = std::move(found.findings);
+    preparation_.findings.insert(preparation_.findings.end(), size.begin(), size.end());
+    likelihood_->set_target(preparation_.solver, session_.interruptible());
+    print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared));
+    return !what_.settle || refine_solver(session_, task_, make, backend_.aim, what_.solver, preparation_, context);
+  }
+
+  // False: interrupted.
+  bool choose_search_solver(MakeTarget const& make, RunContext const& context) {
+    SearchSolver const search = search_solver(make, what_.solver, seed_);
+    if (context.stop_requested()) return false;
+    if (search.solver != what_.solver)
+      session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws leave the range of numbers\n",
+                                      task_.name, accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
+    preparation_.solver = search.solver;
+    return true;
+  }
+
+  ExitCode finish(FitResult result) {
+    bool const interrupted = result.interrupted;
+    Report report = begin(result);
+    // Sampling must not be given up on the way, the checks may.
+    Target const& target =
+        likelihood_->set_target(preparation_.solver, interrupted ? session_.options.execution : session_.interruptible());
+    FinishedFit finished{session_, what_,        *likelihood_, target, data_,  preparation_,
+                         result,   backend_.aim, ledger_,      seed_,  report, {}};
+    if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
+    for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
+      finished.rows.push_back(likelihood_->fitted_rows(report.draws, e, report.forces));
+    run_fit_checks(finished);
+    name_held(report, report.findings);
+    if (!interrupted) {
+      report.functions = likelihood_->functions(result, report.draws);
+      report.evidence = laplace_evidence(target, backend_.aim, preparation_.modes, seed_, finished.extra);
+      report.noise = noise_parameters(likelihood_->space());
+    }
+    if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
+    for (FittedRows& rows : finished.rows) report.predictions.push_back(std::move(rows.prediction));
+    report.modes = result.modes;
+    add_settings(result.settings, report);
+    report.ledger = preparation_.ledger;
+    report.ledger.merge(ledger_);
+    return conclude_fit(session_, index_, task_, checkpoint_, preparation_.solver, std::move(report), began_, interrupted);
+  }
+
+  // Priors, data, draws and what sampling itself has found. What is wrong with the record comes before what follows from it.
+  Report begin(FitResult const& result) {
+    Report report = begin_report(
+        session_, task_, what_.model,
+        fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
+    report.priors = priors_of(likelihood_->space(), report.priors);
+    for (ExperimentData const& each : data_) add_data(session_.file, each, model_, report);
+    report.findings.insert(report.findings.end(), result.findings.begin(), result.findings.end());
+    if (!result.search_told)
+      report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());
+    report.draws = likelihood_->draws(result);
+    report.summary = likelihood_->summaries(result, report.draws);
+    for (std::size_t c = static_cast<std::size_t>(report.draws.parameter_count); c < report.draws.names.size(); ++c)
+      report.summary.push_back(of_column(report.draws, c));
+    return report;
+  }
+
+  void add_settings(Settings const& settings, Report& report) const {
+    report.settings = {{"backend", what_.backend}};
+    for (auto const& [name, value] : settings.all()) report.settings.emplace_back(name, value);
+    report.settings.emplace_back("start_state", start_text(what_.start));
+    if (what_.near) report.settings.emplace_back("search", search_text(session_.file, what_));
+    if (model_.integrated()) add_solver(preparation_.solver, report.settings);
+    if (model_.dynamics == Dynamics::discrete)
+      report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
+    for (auto const& each : likelihood_->settings()) report.settings.push_back(each);
+    report.resolved_text = resolved_fit(session_, task_, what_, settings, preparation_.solver, seed_);
+  }
+
+  Session& session_;
+  int index_;
+  Task const& task_;
+  FitTask const& what_;
+  TaskCheckpoint checkpoint_;
+  std::uint64_t seed_;
+  BackendRow const& backend_;
+  std::vector<ExperimentData> data_;
+  std::unique_ptr<FitLikelihood> likelihood_;
+  Model const& model_;
+  std::chrono::steady_clock::time_point began_;
+  Preparation preparation_;
+  Ledger ledger_;
+};
+
+}  // namespace
+
+ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what) {
+  return Fit(session, index, task, what).run();
+}
+
+}  // namespace sysid

@@ -1,0 +1,140 @@
+// Rows of the table and why they do not apply.
+#include "app/fit/fit_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/session/fit_end.hpp"
+#include "diagnostics/bound_check.hpp"
+#include "diagnostics/fit_checks.hpp"
+#include "diagnostics/tolerance.hpp"
+
+namespace sysid {
+namespace {
+
+std::string always(FinishedFit const&) { return {}; }
+
+// --- before sampling
+std::string without_proper_prior(FinishedFit const& fit) {
+  for (Parameter const& each : fit.likelihood.model().parameters)
+    if (each.prior && !each.prior->row->proper) return fmt::format("the prior of `{}` is improper", each.name);
+  return {};
+}
+
+// It ran before the search: its findings are among those of the search.
+Findings prior_size(FinishedFit&) { return {}; }
+
+// --- the model and the record
+Findings parameter_use(FinishedFit& fit) { return check_use(fit.likelihood.model(), fit.what.start); }
+
+Findings residuals(FinishedFit& fit) {
+  FitCheck check = fit.likelihood.check_residuals(fit.result, fit.report.draws);
+  fit.report.fit = std::move(check.lines);
+  return std::move(check.findings);
+}
+
+std::string without_timing(FinishedFit const& fit) {
+  Model const& model = fit.likelihood.model();
+  if (model.dynamics != Dynamics::continuous) return "the model reads no input between samples";
+  if (model.inputs.empty()) return "the model has no input";
+  if (fit.preparation.modes.empty()) return "the search found no mode";
+  bool const explains = std::none_of(fit.report.findings.begin(), fit.report.findings.end(), [](Finding const& each) {
+    return each.code == FindingCode::worse_than_the_mean || each.code == FindingCode::explains_little;
+  });
+  return explains ? "" : "the fit explains too little of the record";
+}
+
+Findings input_timing(FinishedFit& fit) {
+  TargetOf const target_of = [&](std::vector<Experiment> experiments) {
+    return fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
+  };
+  return check_input_timing(target_of, fit.likelihood.model(), experiments_of(fit.data), fit.aim, fit.preparation.modes.front(),
+                            fit.seed, fit.extra);
+}
+
+// --- the solver and unknown functions
+std::string without_solver(FinishedFit const& fit) {
+  return fit.likelihood.model().integrated() ? "" : "the model has no differential equation";
+}
+
+// Draws tell by their weights, an optimum by where it moves. A solver that was chosen has been compared with finer ones before.
+Findings solver_accuracy(FinishedFit& fit) {
+  Preparation const& preparation = fit.preparation;
+  Draws const& draws = fit.result.draws;
+  auto const fine = fit.likelihood.make_target(experiments_of(fit.data), preparation.solver.finer(), fit.session.interruptible());
+  Findings findings;
+  if (draws.total() > 1)
+    findings = tolerance_findings(check_tolerance(fit.target, *fine, draws, fit.extra), preparation.solver, fit.what.settle);
+  auto const weighty =
+      std::count_if(preparation.modes.begin(), preparation.modes.end(), [](Mode const& each) { return each.share > 0.01; });
+  if (findings.empty() && !fit.what.settle && (draws.total() == 1 || weighty > 1) && !preparation.modes.empty())
+    findings = check_modes(*fine, fit.aim, preparation.modes, preparation.solver, fit.seed, fit.extra);
+  return findings;
+}
+
+std::string without_finite_sums(FinishedFit const& fit) {
+  return fit.likelihood.model().expansions.empty() ? "the model has no unknown function that stands as a finite sum" : "";
+}
+
+Findings functions(FinishedFit& fit) { return fit.likelihood.check_functions(fit.result); }
+
+// --- the posterior
+std::string without_hierarchy(FinishedFit const& fit) {
+  auto const& parameters = fit.likelihood.model().parameters;
+  bool const any =
+      std::any_of(parameters.begin(), parameters.end(), [](Parameter const& each) { return each.per_experiment && each.prior; });
+  return any ? "" : "no parameter is estimated per experiment";
+}
+
+Findings hierarchy(FinishedFit& fit) { return check_hierarchy(fit.likelihood.model(), fit.result.draws, fit.report.findings); }
+
+Findings failed_solves(FinishedFit& fit) { return failure_findings(fit.sampling); }
+
+Findings bounds(FinishedFit& fit) { return check_bounds(fit.target.parameters(), fit.result.draws); }
+
+// --- the fitted rows
+std::string without_constraints(FinishedFit const& fit) {
+  return fit.likelihood.model().invariants.empty() ? "no constraint of the model was differentiated" : "";
+}
+
+Findings all_rows(FinishedFit const& fit, Findings FittedRows::*part) {
+  Findings all;
+  for (FittedRows const& rows : fit.rows) all.insert(all.end(), (rows.*part).begin(), (rows.*part).end());
+  return all;
+}
+
+Findings constraint_drift(FinishedFit& fit) { return all_rows(fit, &FittedRows::drift); }
+Findings bands(FinishedFit& fit) { return all_rows(fit, &FittedRows::bands); }
+
+Findings priors(FinishedFit& fit) { return check_priors(fit.report); }
+
+constexpr FitCheckRow rows[] = {
+    {"prior_size", true, &without_proper_prior, &prior_size},
+    {"parameter_use", true, &always, &parameter_use},
+    {"residuals", false, &always, &residuals},
+    {"input_timing", false, &without_timing, &input_timing},
+    {"solver_accuracy", false, &without_solver, &solver_accuracy},
+    {"finite_sums", false, &without_finite_sums, &functions},
+    {"hierarchy", false, &without_hierarchy, &hierarchy},
+    {"failed_solves", true, &always, &failed_solves},
+    {"bounds", false, &always, &bounds},
+    {"constraint_drift", false, &without_constraints, &constraint_drift},
+    {"bands", false, &always, &bands},
+    {"priors", false, &always, &priors},
+};
+
+}  // namespace
+
+std::span<FitCheckRow const> fit_check_rows() { return rows; }
+
+void run_fit_checks(FinishedFit& fit) {
+  for (FitCheckRow const& row : rows) {
+    std::string const skipped = fit.result.interrupted && !row.of_interrupted ? "the fit was interrupted" : row.inapplicable(fit);
+    fit.report.checks.push_back({std::string(row.name), skipped});
+    if (!skipped.empty()) continue;
+    for (Finding& finding : row.run(fit)) fit.report.findings.push_back(std::move(finding));
+  }
+}
+
+}  // namespace sysid

@@ -1,0 +1,46 @@
+// The checks of a finished fit, of whatever likelihood: a row for each. One that does not apply says why.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/fit/fit_likelihood.hpp"
+#include "app/session/preparation.hpp"
+#include "search/aim.hpp"
+
+namespace sysid {
+
+/// What the checks read.
+struct FinishedFit {
+  Session& session;
+  FitTask const& what;
+  FitLikelihood const& likelihood;
+  Target const& target;
+  std::vector<ExperimentData> const& data;
+  Preparation const& preparation;
+  FitResult const& result;
+  Aim aim;
+  Ledger const& sampling;  // its failures
+  std::uint64_t seed;
+  Report& report;                // holds priors, draws, summary and the findings so far; scores are added
+  std::vector<FittedRows> rows;  // per experiment; empty when interrupted
+  Ledger extra = {};             // of solves for checks, which no report shows
+};
+
+struct FitCheckRow {
+  std::string_view name;
+  /// Whether the draws of an interrupted fit suffice.
+  bool of_interrupted;
+  /// Why it does not apply to this fit, one sentence; empty: it runs.
+  std::string (*inapplicable)(FinishedFit const& fit);
+  Findings (*run)(FinishedFit& fit);
+};
+
+/// In the order in which their findings are reported.
+std::span<FitCheckRow const> fit_check_rows();
+
+/// Runs those that apply: findings and a record of each go into the report.
+void run_fit_checks(FinishedFit& fit);
+
+}  // namespace sysid

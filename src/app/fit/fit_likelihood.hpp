@@ -1,0 +1,61 @@
+// What differs between the kinds of likelihood of a fit: independent noise, or Gaussian processes that are integrated out. The flow
+// and the checks are the same (fit.cpp, fit_checks.cpp).
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "app/session/session.hpp"
+#include "diagnostics/residual_checks.hpp"
+#include "experiment/experiments.hpp"
+#include "inference/backend/backend.hpp"
+#include "likelihood/parameter_space.hpp"
+#include "likelihood/target.hpp"
+#include "result/report.hpp"
+
+namespace sysid {
+
+/// The fitted rows of one experiment.
+struct FittedRows {
+  Prediction prediction;
+  Findings drift, bands;
+};
+
+class FitLikelihood {
+ public:
+  virtual ~FitLikelihood() = default;
+
+  /// As it is fitted, under its prediction rule.
+  virtual Model const& model() const = 0;
+  /// The same without parameters that are integrated out.
+  virtual Model const& sampled_model() const = 0;
+  /// All parameters of `model` that have a prior, those that are integrated out too.
+  virtual ParameterSpace const& space() const = 0;
+  virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
+                                              ExecutionOptions const& execution) const = 0;
+  /// The target of the fit's own experiments, which the functions below read.
+  virtual Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) = 0;
+
+  /// All parameters in the order of `space`, then derived quantities.
+  virtual Draws draws(FitResult const& result) const = 0;
+  /// Of the parameters in the order of `space`.
+  virtual std::vector<Summary> summaries(FitResult const& result, Draws const& draws) const = 0;
+  /// Scores per channel and what the residuals, or the samples left out one by one, show. draws: as above.
+  virtual FitCheck check_residuals(FitResult const& result, Draws const& draws) const = 0;
+  virtual std::vector<FunctionReport> functions(FitResult const& result, Draws const& draws) const = 0;
+  /// Whether finite sums that stand for unknown functions can be trusted.
+  virtual Findings check_functions(FitResult const& result) const = 0;
+  /// Where finite sums are read outside their range, with these values of the sampled parameters, declared.
+  virtual Findings check_ranges(std::vector<double> const& sampled) const = 0;
+  /// Bands along an experiment, constraints and values that are undefined there. Restoring forces are added to `forces`.
+  virtual FittedRows fitted_rows(Draws const& draws, int experiment, std::vector<RestoringForce>& forces) const = 0;
+  /// What the report's settings hold beside those of every fit.
+  virtual Facts settings() const = 0;
+};
+
+/// data: outlives the result.
+std::unique_ptr<FitLikelihood> independent_likelihood(Session& session, FitTask const& what,
+                                                      std::vector<ExperimentData> const& data, std::uint64_t seed);
+std::unique_ptr<FitLikelihood> process_likelihood(Session& session, FitTask const& what, std::vector<ExperimentData> const& data,
+                                                  std::uint64_t seed);
+
+}  // namespace sysid

@@ -1,0 +1,134 @@
+// Fits whose samples are independent given the trajectory.
+#include <algorithm>
+
+#include "app/fit/fit_likelihood.hpp"
+#include "app/session/derived_draws.hpp"
+#include "app/session/fit_end.hpp"
+#include "app/session/fit_target.hpp"
+#include "app/session/unknown_functions.hpp"
+#include "diagnostics/bands.hpp"
+#include "diagnostics/drift.hpp"
+#include "diagnostics/function_ranges.hpp"
+#include "inference/table.hpp"
+#include "likelihood/trajectory.hpp"
+#include "mechanics/restoring_force.hpp"
+
+namespace sysid {
+namespace {
+
+class IndependentLikelihood : public FitLikelihood {
+ public:
+  IndependentLikelihood(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, std::uint64_t seed)
+      : session_(session),
+        what_(what),
+        data_(data),
+        seed_(seed),
+        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+        space_(parameter_space(compiled_->model, what.experiments)) {}
+
+  Model const& model() const override { return compiled_->model; }
+  Model const& sampled_model() const override { return compiled_->model; }
+  ParameterSpace const& space() const override { return *space_; }
+
+  std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
+                                      ExecutionOptions const& execution) const override {
+    return make_fit_target(session_, what_, compiled_, space_, std::move(experiments), solver, execution);
+  }
+
+  Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) override {
+    solver_ = solver;
+    target_ = make_fit_target(session_, what_, compiled_, space_, experiments_of(data_), solver, execution);
+    return *target_;
+  }
+
+  Draws draws(FitResult const& result) const override {
+    Draws draws = result.draws;
+    add_derived(*compiled_, *space_, draws);
+    return draws;
+  }
+
+  std::vector<Summary> summaries(FitResult const& result, Draws const&) const override {
+    std::vector<Summary> summaries = summarise(result);
+    for (std::size_t p = 0; p < summaries.size(); ++p) summaries[p].coefficient = target_->parameters()[p].coefficient;
+    return summaries;
+  }
+
+  FitCheck check_residuals(FitResult const& result, Draws const&) const override {
+    return sysid::check_residuals(*target_, best_of(result));
+  }
+
+  std::vector<FunctionReport> functions(FitResult const& result, Draws const&) const override {
+    if (model().expansions.empty()) return {};
+    std::vector<FunctionReport> functions = unknown_functions(model(), function_parameters(*space_, result));
+    for (int e = 0; e < static_cast<int>(data_.size()); ++e)
+      add_visits(model(), experiment(e), solver_, start_rows(what_.start), parameters_at(best_of(result), e),
+                 session_.interruptible(), functions);
+    return functions;
+  }
+
+  Findings check_functions(FitResult const& result) const override {
+    Findings findings = check_expansions(model(), function_parameters(*space_, result).values);
+    Findings const ranges = check_ranges(best_of(result));
+    findings.insert(findings.end(), ranges.begin(), ranges.end());
+    return findings;
+  }
+
+  Findings check_ranges(std::vector<double> const& sampled) const override {
+    Findings findings;
+    for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
+      Findings const more = sysid::check_ranges(model(), experiment(e), solver_, start_rows(what_.start), parameters_at(sampled, e),
+                                                session_.interruptible());
+      findings.insert(findings.end(), more.begin(), more.end());
+    }
+    return findings;
+  }
+
+  FittedRows fitted_rows(Draws const& draws, int e, std::vector<RestoringForce>& forces) const override {
+    LaneArray const columns = spread(draws, 100);
+    LaneArray parameters(static_cast<int>(model().parameters.size()), columns.width());
+    space_->select(space_->values_of_declared(columns), e, parameters);
+    Trajectory const trajectory(compiled_, experiment(e), solver_, start_rows(what_.start), session_.interruptible());
+    Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, e));
+    FittedRows rows{bands_along(trajectory.quantities(), result, experiment(e), model()),
+                    drift_findings(session_.source, model(), result, experiment(e).name),
+                    {}};
+    rows.bands = band_findings(rows.prediction, result.failed(), result.failed(), data_.size() > 1);
+    add_restoring_forces(model(), trajectory.quantities(), result, parameters, experiment(e), forces);
+    return rows;
+  }
+
+  Facts settings() const override { return {}; }
+
+ private:
+  Experiment const& experiment(int e) const { return data_[static_cast<std::size_t>(e)].experiment; }
+
+  static std::vector<double> best_of(FitResult const& result) {
+    return result.modes.empty() ? best_draw(result.draws) : result.modes.front().declared;
+  }
+
+  // Those of the model in an experiment, SI, of the sampled ones, declared.
+  LaneArray parameters_at(std::vector<double> const& values, int e) const {
+    LaneArray declared(static_cast<int>(values.size()), 1), one(static_cast<int>(model().parameters.size()), 1);
+    for (std::size_t p = 0; p < values.size(); ++p) declared(static_cast<int>(p), 0) = values[p];
+    space_->select(space_->values_of_declared(declared), e, one);
+    return one;
+  }
+
+  Session& session_;
+  FitTask const& what_;
+  std::vector<ExperimentData> const& data_;
+  std::uint64_t seed_;
+  std::shared_ptr<CompiledModel const> compiled_;
+  std::shared_ptr<ParameterSpace const> space_;
+  SolverSettings solver_;
+  std::unique_ptr<ModelTarget> target_;
+};
+
+}  // namespace
+
+std::unique_ptr<FitLikelihood> independent_likelihood(Session& session, FitTask const& what,
+                                                      std::vector<ExperimentData> const& data, std::uint64_t seed) {
+  return std::make_unique<IndependentLikelihood>(session, what, data, seed);
+}
+
+}  // namespace sysid
