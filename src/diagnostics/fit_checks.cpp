@@ -36,7 +36,7 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
     return {{FindingCode::optimum_of_hierarchy,
              Severity::warning,
              {member->name},
-             fmt::format("the density may grow without bound as the spread of `{}` vanishes: an optimum says little about it",
+             fmt::format("the density may be unbounded where the spread of `{}` goes to 0, so that an optimum is not meaningful",
                          member->name),
              "sample it with mh"}};
   bool const unmixed = std::any_of(found.begin(), found.end(), [](Finding const& each) {
@@ -47,8 +47,9 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
   return {{FindingCode::hierarchy_narrows,
            Severity::note,
            {member->name},
-           fmt::format("the spread of `{}` is estimated: where it is small the posterior narrows, and chains pass slowly",
-                       member->name),
+           fmt::format(
+               "the spread of `{}` is estimated: the posterior is narrow where the spread is small, and chains mix slowly there",
+               member->name),
            fmt::format("write `{}` by standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
                        "spread*z` (docs/methods/several_experiments.md)",
                        member->name, member->name)}};
@@ -105,8 +106,9 @@ Findings check_input_timing(ModelTarget const& target, Aim aim, Mode const& mode
           {FindingCode::input_timing,
            Severity::warning,
            {model.inputs[i].name, target.experiments()[at].name},
-           fmt::format("input {}{} half a sample {} would fit much better (log posterior up by {:.0f} over {} samples)",
-                       model.inputs[i].name, on_experiment(target, e), best_shift > 0 ? "later" : "earlier", best_gain, scored),
+           fmt::format(
+               "the fit is much better with input {}{} shifted half a sample {} (log posterior higher by {:.0f} for {} samples)",
+               model.inputs[i].name, on_experiment(target, e), best_shift > 0 ? "later" : "earlier", best_gain, scored),
            "check the rule between input samples (hold zero_order, linear, cubic, band_limited) and the delay of the recording"});
     }
   }

@@ -70,10 +70,9 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
                       data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit,
                       suspect.rows.size() == 1 ? "row" : "rows", fmt::join(named, ", "),
                       more > 0 ? fmt::format(" and {} more", more) : ""),
-          input
-              ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a blow that left the "
-                "range of the recorder is larger than that"
-              : "leave the cell empty or write `NA`: the row is then not scored"};
+          input ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a pulse that "
+                  "saturated the recorder is larger than that"
+                : "leave the cell empty or write `NA`: the row is then not scored"};
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ TEST_CASE("a vague prior that the data do not narrow is named, a narrow one is k
            "log_normal(median = 0.1, sd = 0.5)", "half_cauchy(scale = 1)");
   auto const said = messages(checked(models / "one_compartment/published.sysid", text), "barely_narrowed");
   REQUIRE(said.size() == 1);
-  CHECK(said[0] == "the data will hardly narrow K_m: expected sd 96 to 100 % of the prior's (at 8 of 8 prior draws)");
+  CHECK(said[0] == "the data are expected to tell little about K_m: expected sd 96 to 100 % of the prior's (at 8 of 8 prior draws)");
 }
 
 TEST_CASE("a ridge along which both parameters are narrowed is told, not warned of") {
@@ -244,7 +244,7 @@ TEST_CASE("a parameter that nothing reads is told by the checker alone, one that
   CheckResult const derived =
       checked(models / "duffing/idle.sysid", with(text, "  parameter c ", "  derive twice = 2*idle\n  parameter c "));
   CHECK(messages(derived, "not_identifiable") ==
-        std::vector<std::string>{"only derived quantities read idle: the data say nothing of it"});
+        std::vector<std::string>{"only derived quantities depend on idle: the data do not inform it"});
 }
 
 TEST_CASE("a map has no solver to refine and no rule between samples, and an equation for each state") {

@@ -49,9 +49,9 @@ void check_bands(TaskPage& page) {
             {FindingCode::input_band,
              Severity::warning,
              {input.name, coverage.name},
-             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `band_limited` is exact to 0.45 of "
-                         "it only",
-                         input.name, coverage.name, input.high, input.high / coverage.rate),
+             fmt::format(
+                 "{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `band_limited` is exact only up to 0.45",
+                 input.name, coverage.name, input.high, input.high / coverage.rate),
              "was it held between the samples, or sampled without a filter against aliases?"});
 }
 
