@@ -18,6 +18,12 @@ Diagnostic conflict(std::string code, Span span, std::string label, Span other, 
   return result;
 }
 
+Diagnostic about(Names names, Diagnostic diagnostic, std::string kind) {
+  diagnostic.names = std::move(names);
+  diagnostic.kind = std::move(kind);
+  return diagnostic;
+}
+
 std::string quoted(Names const& names, std::string const& last) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
