@@ -158,7 +158,7 @@ class Description {
       NullDirection const direction{NullDirection::Kind::sum, {{static_cast<int>(i), 1, 1}, {static_cast<int>(j), slope, slope}}};
       combination = fmt::format("nearly only {} is determined, ", determined_combination(direction, asked_));
     }
-    std::string const pair = fmt::format("{} and {} trade against each other", asked_[static_cast<std::size_t>(i)].name,
+    std::string const pair = fmt::format("{} and {} are nearly confounded", asked_[static_cast<std::size_t>(i)].name,
                                          asked_[static_cast<std::size_t>(j)].name);
     std::string const size = fmt::format("expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
                                          *std::min_element(sizes.begin(), sizes.end()),
