@@ -28,11 +28,7 @@ bool is_one_of(Diagnostic const& diagnostic, Codes const& codes) {
 
 bool within(Span inner, Span outer) { return outer.begin <= inner.begin && inner.end <= outer.end; }
 
-/// The first name in quotes, without primes.
-std::string subject(Diagnostic const& diagnostic) {
-  std::size_t const begin = diagnostic.message.find('`') + 1;
-  return diagnostic.message.substr(begin, diagnostic.message.find_first_of("'`", begin) - begin);
-}
+std::string subject(Diagnostic const& diagnostic) { return diagnostic.names.empty() ? "" : diagnostic.names.front(); }
 
 /// The model a message points into, counted from 0; -1 for anywhere else, which is one space of names.
 int model_of(ast::File const& file, Diagnostic const& diagnostic) {
@@ -50,32 +46,30 @@ void remove_consequences(ast::File const& file, Diagnostics& diagnostics) {
   std::stable_sort(all.begin(), all.end(), [](Diagnostic const& a, Diagnostic const& b) {
     return (a.primary ? a.primary->span.begin : ~0U) < (b.primary ? b.primary->span.begin : ~0U);
   });
-  std::map<int, std::string> unknown_in;  // by model: what was said to do about its unknown names
+  std::map<int, std::set<std::string>> unknown_in;  // by model: the names offered in place of its unknown ones
   std::vector<Span> unknown_arguments;
   for (Diagnostic const& each : all) {
     int const model = model_of(file, each);
-    if (model >= 0 && is_one_of(each, unknown_names)) unknown_in[model] += each.help;
+    if (model >= 0 && is_one_of(each, unknown_names)) unknown_in[model].insert(each.suggested.begin(), each.suggested.end());
     if (each.code == "E2102" && each.primary) unknown_arguments.push_back(each.primary->span);
   }
-  std::set<std::tuple<int, std::string, std::string>> said;
+  std::set<std::tuple<int, std::string, std::string, std::string>> said;
   std::set<std::tuple<std::string, std::uint32_t, std::uint32_t, std::uint32_t>> units_said;
   auto const follows = [&](Diagnostic const& each) {
     int const model = model_of(file, each);
     if (is_one_of(each, unknown_names)) {
-      // "`y` is not declared" and "`y` is not a state" are one mistake: what is said is the name.
-      std::string const name = each.message.substr(0, each.message.find('`', each.message.find('`') + 1));
-      return !said.insert({model, model >= 0 ? "" : each.code, name}).second;
+      // A `y` that is not declared and a `y` that is not a state are one mistake: what counts is the name.
+      return !said.insert({model, model >= 0 ? "" : each.code, each.kind, subject(each)}).second;
     }
     // The elements of a vector are told apart by where their terms stand, and share the mistake. In a function, told at its call,
     // the place in its body tells mistakes apart.
     if (errors::is_unit_conflict(each)) {
-      bool const at_call = each.message.starts_with("in the function") && !each.secondary.empty();
+      bool const at_call = !each.function.empty() && !each.secondary.empty();
       Span const place = each.primary->span;
       return !units_said.insert({each.code, place.begin, place.end, at_call ? each.secondary.front().span.begin : 0U}).second;
     }
     if (is_one_of(each, balance)) return unknown_in.contains(model);
-    if (is_one_of(each, lacks))
-      return unknown_in.contains(model) && unknown_in[model].find("`" + subject(each) + "`") != std::string::npos;
+    if (is_one_of(each, lacks)) return unknown_in.contains(model) && unknown_in[model].contains(subject(each));
     return each.code == "E2105" && each.primary &&
            std::any_of(unknown_arguments.begin(), unknown_arguments.end(),
                        [&](Span argument) { return within(argument, each.primary->span); });

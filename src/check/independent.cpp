@@ -29,18 +29,6 @@ std::set<std::string> words_in(std::string_view text) {
   return words;
 }
 
-// What stands between `` ` `` in a message.
-std::string quoted_in(std::string_view text) {
-  std::string quoted;
-  for (std::size_t begin = text.find('`'); begin != std::string_view::npos;) {
-    std::size_t const end = text.find('`', begin + 1);
-    if (end == std::string_view::npos) break;
-    quoted += std::string(text.substr(begin + 1, end - begin - 1)) + " ";
-    begin = text.find('`', end + 1);
-  }
-  return quoted;
-}
-
 Span span_of(ast::Item const& item) {
   return std::visit([](auto const& each) { return each.span; }, item);
 }
@@ -71,7 +59,9 @@ class Damage {
   }
 
   bool bears_on(Diagnostic const& diagnostic) const {
-    if (!diagnostic.primary || has_word(quoted_in(diagnostic.message), words_)) return true;
+    if (!diagnostic.primary || std::any_of(diagnostic.names.begin(), diagnostic.names.end(),
+                                           [&](std::string const& name) { return has_word(name, words_); }))
+      return true;
     std::string const& code = diagnostic.code;
     if (code.starts_with("E1")) return false;  // in a module
     // What could not be read among the items may be a model, a function or a module under any name.

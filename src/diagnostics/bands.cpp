@@ -62,7 +62,7 @@ Findings leave_out_noise(Model const& model, Prediction& prediction) {
   if (gone.empty()) return {};
   std::string const quoted = fmt::format("`{}`", fmt::join(gone, "`, `"));
   return {{FindingCode::reads_noise, Severity::note, std::move(gone),
-           fmt::format("{} left out: a selection by distance says nothing about the noise that is read there", quoted), ""}};
+           fmt::format("{} left out: it depends on the noise, which a selection by distance does not estimate", quoted), ""}};
 }
 
 Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several) {
@@ -78,7 +78,7 @@ Findings band_findings(Prediction const& prediction, int failed, int failed_else
         {FindingCode::undefined_in_band,
          severity,
          {quantity.name},
-         fmt::format("{}{} has no value somewhere along {} of {} trajectories, and its band is that of the others", quantity.name,
+         fmt::format("{}{} is undefined somewhere along {} of {} trajectories; its band is that of the others", quantity.name,
                      several ? " on " + prediction.experiment : std::string(), left_out, widest.draws),
          "look for a root or a logarithm of what may be negative, or a division by what may be zero"});
   }

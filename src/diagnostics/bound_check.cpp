@@ -51,7 +51,7 @@ Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& dr
     findings.push_back({FindingCode::piles_up_at_bound,
                         Severity::warning,
                         {info.name},
-                        fmt::format("the posterior of {} piles up at the {} bound of its prior, {:.4g}{}", info.name,
+                        fmt::format("the posterior of {} is concentrated at the {} bound of its prior, {:.4g}{}", info.name,
                                     check.at_lower ? "lower" : "upper", check.at_lower ? info.lower : info.upper,
                                     info.unit.empty() ? "" : " " + info.unit),
                         "widen the prior, unless the bound is a physical limit"});

@@ -85,13 +85,12 @@ void check_agreement(ChainReport const& report, Findings& findings) {
   Worst const bad = worst(report.summaries, rhat_of, show, rhat_bar);
   if (bad.empty()) return;
   bool const loud = !worst(report.summaries, rhat_of, show, rhat_loud).empty();
-  findings.push_back(
-      {loud ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
-       loud ? fmt::format("the chains disagree, each tells another story: R-hat of {} is far above {}", bad.text, rhat_bar)
-            : fmt::format("the chains have not quite agreed yet: R-hat of {} is above {}", bad.text, rhat_bar),
-       loud ? "do not use the means and widths; run longer, and look for a second solution or parameters that the "
-              "data cannot tell apart"
-            : "run longer chains (samples)"});
+  findings.push_back({loud ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
+                      loud ? fmt::format("the chains disagree: R-hat of {} is far above {}", bad.text, rhat_bar)
+                           : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_bar),
+                      loud ? "do not use the means and sds; run longer chains, and look for a second mode or for parameters that "
+                             "the data cannot separate"
+                           : "run longer chains (samples)"});
 }
 
 void check_size(ChainReport const& report, Findings& findings) {
@@ -120,7 +119,7 @@ void check_defined(ChainReport const& report, Findings& findings) {
       report.summaries, undefined, [](Summary const& s) { return fmt::format("mean {:.4g}", s.mean); }, 0.5);
   if (bad.empty()) return;
   findings.push_back({FindingCode::no_diagnostics, Severity::error, bad.names,
-                      fmt::format("convergence cannot be judged, as all draws are equal, too few or not finite: {}", bad.text),
+                      fmt::format("convergence cannot be judged, because all draws are equal, too few or not finite: {}", bad.text),
                       "run longer chains (samples), and look at the failures the run counted"});
 }
 

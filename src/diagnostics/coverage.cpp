@@ -68,18 +68,19 @@ void add_source(std::filesystem::path const& fit, Report& report) {
   }
   std::string const name = summary.value("task", "");
   if (!failed.empty())
-    report.findings.push_back({FindingCode::from_doubtful_fit,
-                               Severity::error,
-                               {name},
-                               fmt::format("`{}`, whose draws these are, has failed its checks: {}", name, fmt::join(failed, ", ")),
-                               "its verdict says what to do; then predict again"});
+    report.findings.push_back(
+        {FindingCode::from_doubtful_fit,
+         Severity::error,
+         {name},
+         fmt::format("the fit `{}`, from which these draws are taken, failed its checks: {}", name, fmt::join(failed, ", ")),
+         "follow the help in the verdict of the fit, then predict again"});
   else if (!doubtful.empty())
     report.findings.push_back(
         {FindingCode::from_doubtful_fit,
          Severity::warning,
          {name},
-         fmt::format("`{}`, whose draws these are, is to be used with care: {}", name, fmt::join(doubtful, ", ")),
-         "its verdict says what there is to look at"});
+         fmt::format("the fit `{}`, from which these draws are taken, has warnings: {}", name, fmt::join(doubtful, ", ")),
+         "look at the verdict of the fit"});
 }
 
 bool add_coverage(Report& report, bool fed_back) {
@@ -99,11 +100,10 @@ bool add_coverage(Report& report, bool fed_back) {
            Severity::warning,
            {line.channel, line.experiment},
            fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
-           fed_back
-               ? "a free run leaves out the noise that feeds back into later samples: its bands are those of the parameters and "
-                 "of each sample's own noise"
-               : "the model or its noise does not carry over to these data: look at the residuals, and at inputs outside the "
-                 "range that was fitted"});
+           fed_back ? "a free run leaves out the noise that enters later samples: its bands include the parameters and the noise "
+                      "of each sample alone"
+                    : "the model or its noise does not describe these data: look at the residuals, and at inputs outside the range "
+                      "that was fitted"});
     }
   return any;
 }

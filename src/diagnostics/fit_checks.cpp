@@ -48,7 +48,7 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
     return {{FindingCode::optimum_of_hierarchy,
              Severity::warning,
              {member->name},
-             fmt::format("the density may grow without bound as the spread of `{}` vanishes: an optimum says little about it",
+             fmt::format("the density may be unbounded where the spread of `{}` goes to 0, so that an optimum is not meaningful",
                          member->name),
              "sample it with mh"}};
   bool const unmixed = std::any_of(found.begin(), found.end(), [](Finding const& each) {
@@ -59,8 +59,9 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
   return {{FindingCode::hierarchy_narrows,
            Severity::note,
            {member->name},
-           fmt::format("the spread of `{}` is estimated: where it is small the posterior narrows, and chains pass slowly",
-                       member->name),
+           fmt::format(
+               "the spread of `{}` is estimated: the posterior is narrow where the spread is small, and chains mix slowly there",
+               member->name),
            fmt::format("write `{}` by standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
                        "spread*z` (docs/methods/several_experiments.md)",
                        member->name, member->name)}};
@@ -115,9 +116,10 @@ Findings check_input_timing(TargetOf const& target_of, Model const& model, std::
           {FindingCode::input_timing,
            Severity::warning,
            {model.inputs[i].name, experiments[e].name},
-           fmt::format("input {}{} half a sample {} would fit much better (log posterior up by {:.0f} over {} samples)",
-                       model.inputs[i].name, experiments.size() == 1 ? "" : " on " + experiments[e].name,
-                       best_shift > 0 ? "later" : "earlier", best_gain, scored),
+           fmt::format(
+               "the fit is much better with input {}{} shifted half a sample {} (log posterior higher by {:.0f} for {} samples)",
+               model.inputs[i].name, experiments.size() == 1 ? "" : " on " + experiments[e].name,
+               best_shift > 0 ? "later" : "earlier", best_gain, scored),
            fmt::format("check the rule between input samples (hold {}) and the delay of the recording",
                        fmt::join(input_rule_names(), ", "))});
     }

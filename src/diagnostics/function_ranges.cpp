@@ -44,14 +44,15 @@ Finding outside(Argument const& argument, Reading const& reading, std::string co
   std::string const where = reading.runs == 1
                                 ? fmt::format("at {} of {} samples of {}", reading.beyond, reading.samples, experiment)
                                 : fmt::format("by {} of {} trajectories along {}", reading.runs_beyond, reading.runs, experiment);
-  return {FindingCode::outside_range,
-          Severity::warning,
-          {argument.expansion.name, input.name, experiment},
-          fmt::format("`{}` is read outside its range {}: {} goes from {} to {}{}, `within` from {} to {}", argument.expansion.name,
-                      where, input.name, significant(input.from_si(reading.low), 3), significant(input.from_si(reading.high), 3),
-                      input.unit ? fmt::format(" [{}]", input.unit->text) : std::string(), significant(input.from_si(input.low), 3),
-                      significant(input.from_si(input.high), 3)),
-          "widen `within`: beyond it the function is led by the shape of its sum, not by the data"};
+  return {
+      FindingCode::outside_range,
+      Severity::warning,
+      {argument.expansion.name, input.name, experiment},
+      fmt::format("`{}` is evaluated outside its range {}: {} goes from {} to {}{}, `within` from {} to {}",
+                  argument.expansion.name, where, input.name, significant(input.from_si(reading.low), 3),
+                  significant(input.from_si(reading.high), 3), input.unit ? fmt::format(" [{}]", input.unit->text) : std::string(),
+                  significant(input.from_si(input.low), 3), significant(input.from_si(input.high), 3)),
+      "widen `within`: outside it the function is determined by its basis functions, not by the data"};
 }
 
 /// So many of the columns, evenly spread.

@@ -64,7 +64,7 @@ struct ParameterWords {
 };
 std::string words(NullDirection const& direction, std::span<ParameterWords const> parameters, std::string const& output);
 
-/// "k + A", "k - 2 A", "m*c^2": what two parameters that trade against each other leave determined.
+/// "k + A", "k - 2 A", "m*c^2": what two confounded parameters leave determined.
 std::string determined_combination(NullDirection const& direction, std::span<ParameterWords const> parameters);
 
 }  // namespace sysid

@@ -48,7 +48,7 @@ std::string scaling(NullDirection const& direction, Words parameters, std::strin
 std::string sum(NullDirection const& direction, Words parameters, std::string const& output) {
   if (direction.parts.size() == 2) {
     std::string const combination = determined_combination(direction, parameters);
-    return fmt::format("{} and {} trade against each other: only {} is determined by {}", name(parameters, direction.parts[0]),
+    return fmt::format("{} and {} are confounded: only {} is determined by {}", name(parameters, direction.parts[0]),
                        name(parameters, direction.parts[1]), combination, output);
   }
   std::vector<std::string> up, down;
@@ -76,7 +76,7 @@ std::string general(NullDirection const& direction, Words parameters, std::strin
                                 parameter.unit.empty() ? "" : " " + parameter.unit));
   }
   if (parts.size() == 1) return fmt::format("moving {} leaves {} unchanged to first order", moves[0], output);
-  return fmt::format("{}{} trade against each other: moving {} together leaves {} unchanged to first order", listed(names),
+  return fmt::format("{}{} are confounded: moving {} together leaves {} unchanged to first order", listed(names),
                      parts.size() > most ? fmt::format(" (and {} more)", parts.size() - most) : std::string(), listed(moves),
                      output);
 }

@@ -161,7 +161,7 @@ void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
                                            of.name(), left, fmt::format("the fit explains nothing of this channel: {}", look)));
   else if (coloured && left > little)
     findings.push_back({FindingCode::explains_little, left > less_than_half ? Severity::error : Severity::warning, of.names(),
-                        fmt::format("the fit explains {:.2g} % of the variance of {}, and what it leaves is not noise",
+                        fmt::format("the fit explains {:.2g} % of the variance of {}, and its residuals are correlated in time",
                                     std::max(0.0, 100 - left), of.name()),
                         look});
 }
@@ -187,18 +187,16 @@ void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Find
   ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (!size.fires()) return;
-  char const* help =
-      "the noise is larger than stated, or the model misses something: estimate the noise, then look at the residuals";
+  char const* help = "the noise is larger than stated, or the model is incomplete: estimate the noise, then look at the residuals";
   if (of.noise_is_estimated())
     help =
-        "the model misses something, a prior holds it where it cannot fit, or other channels share this noise: look at the "
-        "residuals";
+        "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: look at the residuals";
   else if (size.per_sample < 1)
     help = "the stated noise is too large: estimate it";
   if (with_outliers) help = "a few samples far off make the noise look larger: look at these first";
   findings.push_back(
       {FindingCode::noise_size, Severity::error, of.names(),
-       fmt::format("residuals of {} are not of the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
+       fmt::format("the residuals of {} do not have the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
                    of.name(), size.per_sample, size.low, size.high),
        help});
 }
@@ -211,7 +209,7 @@ void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals,
     findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
                         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
                                     white.outside, white.correlation.size()),
-                        "the model misses dynamics or the noise is coloured: posterior widths are too small"});
+                        "the model misses dynamics or the noise is coloured: the posterior sds are underestimated"});
   std::vector<Quantity> const& inputs = of.model().inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     std::vector<double> input;
@@ -224,7 +222,7 @@ void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals,
           {FindingCode::input_in_residuals,
            Severity::warning,
            {inputs[i].name, of.described().name, of.data().name},
-           fmt::format("past values of input {} still show in the residuals of {} ({} of {} lags outside the 99 % band)",
+           fmt::format("past values of input {} are correlated with the residuals of {} ({} of {} lags outside the 99 % band)",
                        inputs[i].name, of.name(), crossed.outside, crossed.correlation.size()),
            "the model misses part of the response to the input"});
   }
@@ -306,14 +304,14 @@ Findings check_priors(Report const& report) {
       constexpr double tail = 0.1;  // of the density where 5 % lie beyond
       if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95)) continue;
       std::string const unit = prior.unit.empty() ? "" : " " + prior.unit;
-      findings.push_back(
-          {FindingCode::prior_contradicted,
-           Severity::warning,
-           {prior.name},
-           fmt::format("{} is at {}{}, and its prior leaves one part in 2000 to what is {} {}{}", prior.name, significant(place, 4),
-                       unit, below ? "below" : "above", significant(below ? *prior.lowest : *prior.highest, 4), unit),
-           "data and prior say different things, and the posterior is a compromise: widen the prior, or find what "
-           "pulls the parameter away"});
+      findings.push_back({FindingCode::prior_contradicted,
+                          Severity::warning,
+                          {prior.name},
+                          fmt::format("{} is estimated as {}{}, but its prior gives a probability of 0.0005 to values {} {}{}",
+                                      prior.name, significant(place, 4), unit, below ? "below" : "above",
+                                      significant(below ? *prior.lowest : *prior.highest, 4), unit),
+                          "data and prior disagree, and the posterior is a compromise: widen the prior, or find the cause in the "
+                          "data or the model"});
     }
   return findings;
 }
@@ -321,8 +319,7 @@ Findings check_priors(Report const& report) {
 Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,
                             std::string help) {
   return {FindingCode::worse_than_the_mean, severity, std::move(names),
-          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % is what the mean of the record has",
-                      channel, nmse),
+          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and that of the mean is 100 %", channel, nmse),
           std::move(help)};
 }
 

@@ -66,7 +66,7 @@ std::string move_text(double move) { return move > 5 ? "many sds" : fmt::format(
 // names: the parameters that move.
 Finding shaped(SolverSettings const& solver, bool chosen, std::vector<std::string> names, std::string const& what) {
   return {FindingCode::integration_step, Severity::error, std::move(names),
-          fmt::format("the integration {} shapes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
+          fmt::format("the integration {} changes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
                       solver.finer_words(), what),
           chosen ? fmt::format("fit again with `{}` or finer", solver.finer().option())
           : solver.fixed_step()

@@ -20,7 +20,7 @@ Finding interrupted_finding(std::string const& what) {
           Severity::error,
           {},
           "the run was interrupted: " + what,
-          "go on with --resume; it ends with the bytes of an unbroken run"};
+          "go on with --resume: the result is that of an uninterrupted run, byte for byte"};
 }
 
 Findings by_weight(Findings findings) {

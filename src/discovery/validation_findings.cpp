@@ -33,11 +33,12 @@ std::optional<Finding> given_up(JudgedReport const& judged) {
   for (JudgedStructure const& each : judged.structures)
     if (each.given_up) names.push_back(each.terms);
   if (names.empty()) return std::nullopt;
-  return Finding{FindingCode::not_refitted, Severity::warning, names,
-                 fmt::format("{} given up: implicit equations are simulated one after the other, and {} more of that than is spent "
-                             "on a judgement",
-                             quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
-                 "take fewer rows, or a smaller `top`, or leave the implicit terms out of the dictionary"};
+  return Finding{
+      FindingCode::not_refitted, Severity::warning, names,
+      fmt::format(
+          "{} given up: implicit equations are simulated one after the other, and {} more of that than is spent on a judgement",
+          quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
+      "take fewer rows, or a smaller `top`, or leave the implicit terms out of the dictionary"};
 }
 
 std::optional<Finding> idle_terms(JudgedStructure const& best) {
@@ -50,8 +51,8 @@ std::optional<Finding> idle_terms(JudgedStructure const& best) {
   if (idle.empty()) return std::nullopt;
   bool const one = idle.size() == 1;
   return Finding{FindingCode::term_idle, Severity::warning, std::move(names),
-                 fmt::format("by the motion the {} of {} {} less than two sds from zero", one ? "coefficient" : "coefficients",
-                             fmt::join(idle, ", "), one ? "is" : "are"),
+                 fmt::format("in the simulated fit the {} of {} {} less than two sds from zero",
+                             one ? "coefficient" : "coefficients", fmt::join(idle, ", "), one ? "is" : "are"),
                  fmt::format("leave {0} out of the dictionary, or take a record in which {1} more", one ? "it" : "them",
                              one ? "it moves" : "they move")};
 }
@@ -61,40 +62,37 @@ std::optional<Finding> lost_free_run(JudgedReport const& judged) {
   std::optional<double> const far = best.percent(&JudgedChannel::horizon), free = best.percent(&JudgedChannel::free_run);
   if (!free || *free < lost_percent) return std::nullopt;
   std::string const size = std::isfinite(*free) && *free <= 1e4 ? significant(*free, 3) : "more than 1e4";
-  std::string message = fmt::format("a free run on {} is off by {} % of the sd; it follows for {} s", judged.aside, size,
-                                    significant(best.follows, 3));
+  std::string message = fmt::format("the error of a free run on {} is {} % of the sd; the run follows the record for {} s",
+                                    judged.aside, size, significant(best.follows, 3));
   double noise = 0;
   for (JudgedChannel const& each : best.channels)
     if (each.sd > 0)
       noise = std::max(noise, 100 * (each.noise > 0 ? std::min(each.noise, each.residual) : each.residual) / each.sd);
-  if (noise > telling_percent)
-    message += fmt::format("; the noise of what it is compared with is {} % of that sd", significant(noise, 3));
+  if (noise > telling_percent) message += fmt::format("; the noise of the record is {} % of that sd", significant(noise, 3));
   if (far && *far < foretold_percent)
     return Finding{FindingCode::free_run_lost,
                    Severity::note,
                    {judged.aside},
                    std::move(message),
-                   "expected of a chaotic motion, which is foretold for a while only"};
-  return Finding{
-      FindingCode::free_run_lost,
-      Severity::warning,
-      {judged.aside},
-      std::move(message),
-      "not even one dominant period is foretold to half the sd: do not extrapolate, and look for what the equation lacks"};
+                   "expected of a chaotic motion, which can be predicted for a short time only"};
+  return Finding{FindingCode::free_run_lost,
+                 Severity::warning,
+                 {judged.aside},
+                 std::move(message),
+                 "the error exceeds half the sd within one dominant period: do not extrapolate, and look for missing terms"};
 }
 
 void add_overestimated_noise(JudgedStructure const& best, Findings& findings) {
   for (JudgedChannel const& each : best.channels)
     if (each.residual < small_residual * each.noise)
-      findings.push_back(
-          {FindingCode::noise_overestimated,
-           Severity::note,
-           {each.channel},
-           fmt::format(
-               "what the simulated motion leaves of `{}` is {} times the noise that the regression took: its sds are too large",
-               each.channel, significant(each.residual / each.noise, 3)),
-           fmt::format("say what it is: `noise({} = {}{})`", each.channel, significant(each.residual, 3),
-                       each.unit.empty() ? "" : fmt::format(" [{}]", each.unit))});
+      findings.push_back({FindingCode::noise_overestimated,
+                          Severity::note,
+                          {each.channel},
+                          fmt::format("the residual of `{}` in simulation is {} times the noise that the regression assumed: the "
+                                      "sds of the regression are overestimated",
+                                      each.channel, significant(each.residual / each.noise, 3)),
+                          fmt::format("say what it is: `noise({} = {}{})`", each.channel, significant(each.residual, 3),
+                                      each.unit.empty() ? "" : fmt::format(" [{}]", each.unit))});
 }
 
 }  // namespace
@@ -104,9 +102,9 @@ void temper_by_simulation(JudgedReport const& judged, Findings& of_regression) {
   for (Finding& each : of_regression) {
     if (each.code != FindingCode::unexplained_residual) continue;
     each.severity = Severity::note;
-    each.message += fmt::format("; but simulated, the motion is explained to {} times the noise",
+    each.message += fmt::format("; but the residual of the simulated motion is {} times the noise",
                                 significant(judged.structures.front().residual_over_noise, 3));
-    each.help = "the regression misses what simulation has: take the equation, the coefficients and the sds of simulation";
+    each.help = "use the equation, the coefficients and the sds of the simulation, not those of the regression";
   }
 }
 
@@ -137,7 +135,8 @@ Findings judged_findings(JudgedReport const& judged) {
   if (auto idle = idle_terms(best)) findings.push_back(std::move(*idle));
   if (!judged.whole)
     add(FindingCode::followed_in_parts, Severity::note, {},
-        fmt::format("the record is followed for {} at a time, each from a start of its own", significant(judged.longest, 3) + " s"),
+        fmt::format("the simulation follows the record for {} at a time, from a new start each time",
+                    significant(judged.longest, 3) + " s"),
         "expected of a chaotic motion; else a term or an input is missing");
   if (best.residual_over_noise > tolerable_residual)
     add(FindingCode::motion_unexplained, Severity::warning, {},

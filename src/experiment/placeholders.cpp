@@ -69,10 +69,9 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
           fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
                       data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit, plural("row", rows.size()),
                       first_listed(rows, most_named)),
-          input
-              ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a blow that left the "
-                "range of the recorder is larger than that"
-              : "leave the cell empty or write `NA`: the row is then not scored"};
+          input ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a pulse that "
+                  "saturated the recorder is larger than that"
+                : "leave the cell empty or write `NA`: the row is then not scored"};
 }
 
 }  // namespace

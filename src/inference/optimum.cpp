@@ -71,7 +71,7 @@ FitResult run(std::string_view backend, Target const& target, Aim aim, Settings 
     std::erase_if(result.findings, [](Finding const& each) { return each.code == FindingCode::flat_direction; });
     result.findings.push_back(
         {FindingCode::at_bound, Severity::warning, std::move(names),
-         fmt::format("the optimum lies at a bound of the prior: {}; its widths mean little", fmt::join(bound, ", ")),
+         fmt::format("the optimum lies at a bound of the prior: {}; its sds are not meaningful", fmt::join(bound, ", ")),
          "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
   }
   write_draw(target, best, context, result);

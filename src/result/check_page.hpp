@@ -88,7 +88,7 @@ struct InformationPage {
   };
   std::vector<Line> lines;
   std::vector<std::string> null_directions;
-  std::vector<std::string> ridges;                    // pairs that trade against each other and are known all the same
+  std::vector<std::string> ridges;                    // confounded pairs that are known all the same
   std::string refinement;                             // "half the step"
   std::vector<std::pair<std::string, double>> moves;  // solver, largest move of a parameter [sd] when it is refined
   std::string taken;                                  // the one that the task goes on with; empty: the fit chooses

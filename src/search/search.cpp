@@ -111,18 +111,18 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
   if (known) return std::nullopt;
   if (names.size() == 1)
     return Finding{FindingCode::flat_direction, Severity::warning, names,
-                   fmt::format("the data leave {} undetermined: its width is the prior's", names.front()),
-                   "fix it to a value, give it a narrower prior, or measure what tells it"};
+                   fmt::format("the data do not determine {}: its posterior is as wide as its prior", names.front()),
+                   "fix it to a value, give it a narrower prior, or measure something that depends on it"};
   if (moves.empty())
-    return Finding{FindingCode::flat_direction, Severity::warning, names,
-                   fmt::format("the data leave a combination of {} undetermined: its width is the prior's", listed(names)),
-                   "fix an amplitude or a length, or measure what tells the functions apart"};
-  return Finding{
-      FindingCode::flat_direction, Severity::warning, names,
-      fmt::format("the data leave a combination of {} undetermined: moving {} together changes next to nothing, and its width is "
-                  "the prior's",
-                  listed(names), listed(moves)),
-      "fix one of them, give them narrower priors, or measure what tells them apart"};
+    return Finding{
+        FindingCode::flat_direction, Severity::warning, names,
+        fmt::format("the data do not determine a combination of {}: its posterior is as wide as the prior", listed(names)),
+        "fix an amplitude or a length, or measure what tells the functions apart"};
+  return Finding{FindingCode::flat_direction, Severity::warning, names,
+                 fmt::format("the data do not determine a combination of {}: moving {} together leaves the fit nearly unchanged, "
+                             "and the posterior is as wide there as the prior",
+                             listed(names), listed(moves)),
+                 "fix one of them, give them narrower priors, or measure what tells them apart"};
 }
 
 void add_findings(Objective const& objective, SearchResult& result) {
@@ -332,13 +332,12 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
 
 Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
   std::string const places = failed_places(ledger);
-  return {
-      FindingCode::no_finite_start,
-      Severity::error,
-      {},
-      fmt::format("the likelihood is finite at none of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
-      "look at this part of the equations, narrow the priors towards values for which the model can be solved, or let the solver "
-      "choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff"};
+  return {FindingCode::no_finite_start,
+          Severity::error,
+          {},
+          fmt::format("the likelihood is finite at none of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
+          "look at this part of the equations, narrow the priors towards values for which the model can be solved, or let the "
+          "solver choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff"};
 }
 
 }  // namespace sysid

@@ -135,14 +135,15 @@ TEST_CASE("a vague prior that the data do not narrow is named, a narrow one is k
            "log_normal(median = 0.1, sd = 0.5)", "half_cauchy(scale = 1)");
   auto const said = messages(checked(models / "one_compartment/published.sysid", text), "barely_narrowed");
   REQUIRE(said.size() == 1);
-  CHECK(said[0] == "the data will hardly narrow K_m: expected sd 96 to 100 % of the prior's (at 8 of 8 prior draws)");
+  CHECK(said[0] ==
+        "the data are expected to tell little about K_m: expected sd 96 to 100 % of the prior's (at 8 of 8 prior draws)");
 }
 
 TEST_CASE("a ridge along which both parameters are narrowed is told, not warned of") {
   CheckResult const result = checked(models / "robertson/robertson.sysid", shipped("robertson/robertson.sysid"));
   InformationPage const& information = *outlook(result, "estimate").information;
   REQUIRE(information.ridges.size() == 1);
-  CHECK(information.ridges[0].find("k1 and k3 trade against each other, yet both are narrowed") == 0);
+  CHECK(information.ridges[0].find("k1 and k3 are nearly confounded, yet both are narrowed") == 0);
 }
 
 TEST_CASE("a model of the library and the parts of one's own are shown with their equations and priors") {
@@ -214,7 +215,7 @@ TEST_CASE("a linear spring beside a Bouc-Wen loop is nearly confounded with the 
   run_text(folder.path() / "loop.sysid", bouc_wen, options, {"simulate"});
   auto const said = messages(checked(folder.path() / "loop.sysid", bouc_wen, options), "nearly_confounded");
   REQUIRE(said.size() == 1);
-  CHECK(said[0].find("k and A trade against each other: nearly only k + A is determined") == 0);
+  CHECK(said[0].find("k and A are nearly confounded: nearly only k + A is determined") == 0);
   // Without the spring nothing is confounded.
   std::string const without = with(with(bouc_wen, "parameter k [N/m] ~ uniform(0, 2e4)", "constant k [N/m] = 0"), "k = 0, ", "");
   CheckResult const sound = checked(folder.path() / "loop.sysid", without, options);
@@ -244,7 +245,7 @@ TEST_CASE("a parameter that nothing reads is told by the checker alone, one that
   CheckResult const derived =
       checked(models / "duffing/idle.sysid", with(text, "  parameter c ", "  derive twice = 2*idle\n  parameter c "));
   CHECK(messages(derived, "not_identifiable") ==
-        std::vector<std::string>{"only derived quantities read idle: the data say nothing of it"});
+        std::vector<std::string>{"only derived quantities depend on idle: the data do not inform it"});
 }
 
 TEST_CASE("a map has no solver to refine and no rule between samples, and an equation for each state") {

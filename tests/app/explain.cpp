@@ -181,7 +181,7 @@ TEST_CASE("explain finds a code however it is written") {
 TEST_CASE("a finding is explained by its word, and listed behind the codes") {
   auto const text = explain("chains_disagree");
   REQUIRE(text);
-  CHECK(text->starts_with("chains_disagree: chains that tell different stories\n"));
+  CHECK(text->starts_with("chains_disagree: chains with different distributions\n"));
   CHECK(text->find("R-hat") != std::string::npos);
   CHECK_FALSE(explain("chains"));
   CHECK_FALSE(explain(""));

@@ -110,8 +110,8 @@ again = predict line_fit on bench with draws(200), seed = 1
   json const said = finding_in(run.summary("again"), "undefined_in_band");
   REQUIRE(!said.is_null());
   CHECK(said.at("severity") == "warning");
-  CHECK(said.at("message") == "margin has no value somewhere along " + std::to_string(below) +
-                                  " of 200 trajectories, and its band is that of the others");
+  CHECK(said.at("message") ==
+        "margin is undefined somewhere along " + std::to_string(below) + " of 200 trajectories; its band is that of the others");
   CHECK(finding_in(run.summary("again"), "failed_predictions").is_null());
   CHECK_FALSE(finding_in(run.summary("line_fit"), "undefined_in_band").is_null());
 }

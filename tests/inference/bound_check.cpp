@@ -62,5 +62,5 @@ TEST_CASE("the finding names the parameter, the bound and its unit") {
   Findings const findings = check_bounds(infos, draws);
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].code == FindingCode::piles_up_at_bound);
-  CHECK(findings[0].message == "the posterior of k piles up at the upper bound of its prior, 1e+05 N/m");
+  CHECK(findings[0].message == "the posterior of k is concentrated at the upper bound of its prior, 1e+05 N/m");
 }

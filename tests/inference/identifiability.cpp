@@ -162,9 +162,9 @@ TEST_CASE("a sum is named, with the sign and the factor it has") {
     }));
   };
   REQUIRE(pair(-1).directions.size() == 1);
-  CHECK(said(pair(-1)) == "k and k3 trade against each other: only k + k3 is determined by displacement");
-  CHECK(said(pair(1)) == "k and k3 trade against each other: only k - k3 is determined by displacement");
-  CHECK(said(pair(-0.5)) == "k and k3 trade against each other: only k + 2*k3 is determined by displacement");
+  CHECK(said(pair(-1)) == "k and k3 are confounded: only k + k3 is determined by displacement");
+  CHECK(said(pair(1)) == "k and k3 are confounded: only k - k3 is determined by displacement");
+  CHECK(said(pair(-0.5)) == "k and k3 are confounded: only k + 2*k3 is determined by displacement");
 }
 
 TEST_CASE("a scaling group and a sum side by side are both named") {
@@ -176,7 +176,7 @@ TEST_CASE("a scaling group and a sum side by side are both named") {
   }));
   REQUIRE(both.directions.size() == 2);
   CHECK(said(both, 0) == "m and c enter displacement only as m/c");
-  CHECK(said(both, 1) == "k and k3 trade against each other: only k + k3 is determined by displacement");
+  CHECK(said(both, 1) == "k and k3 are confounded: only k + k3 is determined by displacement");
 }
 
 TEST_CASE("a direction that differs from draw to draw is named by what moves most") {
@@ -188,7 +188,7 @@ TEST_CASE("a direction that differs from draw to draw is named by what moves mos
   REQUIRE(general.directions.size() == 1);
   CHECK(general.directions.front().kind == NullDirection::Kind::general);
   std::string const text = said(general);
-  CHECK(text.find("trade against each other") != std::string::npos);
+  CHECK(text.find("are confounded") != std::string::npos);
   CHECK(text.find(" k ") == std::string::npos);
 }
 

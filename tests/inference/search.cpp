@@ -138,7 +138,7 @@ TEST_CASE("a parameter that the data leave alone is named by itself") {
   Bench bench;
   SearchResult const result = search(target, Aim::likelihood, bench.context);
   REQUIRE(result.findings.size() == 1);
-  CHECK(result.findings[0].message == "the data leave idle undetermined: its width is the prior's");
+  CHECK(result.findings[0].message == "the data do not determine idle: its posterior is as wide as its prior");
 }
 
 TEST_CASE("a parameter known to a billionth leaves the others their widths") {

@@ -49,7 +49,7 @@ void check_bands(TaskPage& page) {
             {FindingCode::input_band,
              Severity::warning,
              {input.name, coverage.name},
-             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `{}` is exact to {} of it only",
+             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `{}` is exact only up to {}",
                          input.name, coverage.name, input.high, input.high / coverage.rate, input.rule, row_of(*rule).band),
              "was it held between the samples, or sampled without a filter against aliases?"});
 }
@@ -94,9 +94,8 @@ void look_at_fit(Session& session, Task const& task, Looked data, TaskPage& page
 void look_at_select(Session& session, Task const& task, Looked data, TaskPage& page) {
   SelectTask const& what = std::get<SelectTask>(task.what);
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
-  page.what =
-      fmt::format("select {} ({}) to {} with {}", set.name, counted(set.models.size(), "model"),
-                  data_names(session.file, what.fits.front().experiments), what.backend);
+  page.what = fmt::format("select {} ({}) to {} with {}", set.name, counted(set.models.size(), "model"),
+                          data_names(session.file, what.fits.front().experiments), what.backend);
   auto const experiments = cover(session, data.front(), page);
   check_bands(page);
   if (experiments) look_ahead_at_candidates(session, task, what, page);

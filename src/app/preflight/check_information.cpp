@@ -116,7 +116,8 @@ class Description {
     bool const vague = !line.relative || line.prior_width > informed;
     if (!null_[i] && vague && least > barely_narrowed)
       add(FindingCode::barely_narrowed, Severity::warning, {line.name},
-          fmt::format("the data will hardly narrow {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} prior draws)",
+          fmt::format("the data are expected to tell little about {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} "
+                      "prior draws)",
                       line.name, 100 * least, 100 * most, locals_.size(), locals_.size()),
           "its posterior will be its prior: state what is known of it, or fix it");
   }
@@ -126,7 +127,7 @@ class Description {
     if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
     if (coordinate.role == ParameterRole::none) return "used nowhere";  // the checker has warned of it
     add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},
-        fmt::format("only derived quantities read {}: the data say nothing of it", coordinate.words.name),
+        fmt::format("only derived quantities depend on {}: the data do not inform it", coordinate.words.name),
         "fix it to a value (`=` in place of `~`), or use it in an equation");
     return "read by derived quantities alone";
   }
@@ -157,7 +158,7 @@ class Description {
       NullDirection const direction{NullDirection::Kind::sum, {{static_cast<int>(i), 1, 1}, {static_cast<int>(j), slope, slope}}};
       combination = fmt::format("nearly only {} is determined, ", determined_combination(direction, asked_));
     }
-    std::string const pair = fmt::format("{} and {} trade against each other", asked_[static_cast<std::size_t>(i)].name,
+    std::string const pair = fmt::format("{} and {} are nearly confounded", asked_[static_cast<std::size_t>(i)].name,
                                          asked_[static_cast<std::size_t>(j)].name);
     std::string const size = fmt::format("expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
                                          *std::min_element(sizes.begin(), sizes.end()),

@@ -43,17 +43,18 @@ void judge_failures(LookedAt const& look) {
              fmt::format("the simulation fails at every one of {} prior draws", page.draws),
              "look at the priors, the units of the input and the equation at the place named");
   else if (share > many_failures)
-    look.add(FindingCode::prior_fails, !look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
-             fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
-                         look.candidate()
-                             ? fmt::format(": they cost the candidate a factor of {:.2g} in probability, if all else is equal",
-                                           1 / (1 - share))
-                             : ""),
-             "narrow the priors, or look at the equation at the place named");
+    look.add(
+        FindingCode::prior_fails, !look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
+        fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
+                    look.candidate()
+                        ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}, other things equal",
+                                      1 / (1 - share))
+                        : ""),
+        "narrow the priors, or look at the equation at the place named");
   if (!look.settles() && lost > many_failures)
     look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} {:.0f} % of the prior draws leave the range of numbers that adaptive steps follow",
-                         look.what.solver.text(), 100 * lost),
+             fmt::format("with {} {:.0f} % of the prior draws overflow, which adaptive steps do not", look.what.solver.text(),
+                         100 * lost),
              fmt::format("{}: take shorter steps, or `solver = dopri5` or `cvode`",
                          look.candidate() ? "what fails is never accepted" : "the search does not see what fails"));
 }
@@ -63,7 +64,8 @@ void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double a
   double const ratio = line.middle / line.measured;
   std::string size;
   if (ratio > wild || ratio < 1 / wild)
-    size = fmt::format("half of the prior draws predict a range of {} {} than the one measured", line.name, times_apart(ratio));
+    size =
+        fmt::format("the median of the prior draws predicts a range of {} {} than the one measured", line.name, times_apart(ratio));
   else if (apart >= many_wild)
     size =
         fmt::format("{:.0f} % of the prior draws predict a range of {} more than {} times larger or smaller than the one measured",

@@ -81,7 +81,7 @@ class Look {
     out.failed = draws - static_cast<int>(drawn.size());
     if (out.failed > many_failures * draws)
       add(FindingCode::prior_fails, out.failed == draws ? Severity::error : Severity::warning, {declared.name},
-          fmt::format("{} of {} prior draws leave no likelihood of {}: {}", out.failed, draws, declared.name,
+          fmt::format("{} of {} prior draws have no finite likelihood of {}: {}", out.failed, draws, declared.name,
                       model_->model().integrated() ? "the simulation fails, or a hyper-parameter is not positive"
                                                    : "a hyper-parameter or the noise is not positive"),
           "narrow the priors: amplitudes, lengths and noise are positive");
@@ -170,15 +170,14 @@ class Look {
   void lengths(Process const& process, Quantity const& input, std::vector<double> const& drawn, Places const& places) {
     if (places.distinct.size() < 2)
       return add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
-                 fmt::format("{} of `{}` is constant along the data: nothing tells its length", input.name, process.name),
+                 fmt::format("{} of `{}` is constant along the data: its length cannot be estimated", input.name, process.name),
                  "leave it out of the function, or add a record along which it changes");
     double const spacing = places.spacing(), range = places.range();
     if (double const part = share(drawn, [&](double length) { return length < spacing; }); part >= most)
       add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
-          fmt::format(
-              "{:.0f} % of the prior draws have a length of `{}` in {} below the spacing of its inputs: the function is another "
-              "noise there",
-              100 * part, process.name, input.name),
+          fmt::format("{:.0f} % of the prior draws have a length of `{}` in {} below the spacing of its inputs: the function acts "
+                      "as additional noise there",
+                      100 * part, process.name, input.name),
           "look at the unit of the input, and at the prior of the length");
     else if (double const flat = share(drawn, [&](double length) { return length > nearly_straight * range; }); flat >= most)
       add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
@@ -198,7 +197,7 @@ class Look {
     std::string const what = process != nullptr ? fmt::format("`{}`", process->name) : "the noise of " + channel;
     page_.findings.push_back(prior_far_from_data(
         std::move(names),
-        fmt::format("half of the prior draws give {} a width {} than the sd of {}", what, times_apart(ratio), channel)));
+        fmt::format("the median of the prior draws gives {} a width {} than the sd of {}", what, times_apart(ratio), channel)));
   }
 
   void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) {

@@ -43,13 +43,13 @@ void describe_distances(LookedAt const& look, PriorDraws const& prior, double re
       look.page.information->advised.empty() ? "take a finer solver" : fmt::format("take {}", look.page.information->advised);
   if (!(response_move <= gross_move))
     look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} the solver shapes the distances: {} moves the middle response by {} of its sd",
+             fmt::format("with {} the solver changes the distances: {} moves the median response by {} of its sd",
                          look.what.solver.text(), look.what.solver.finer_words(),
                          std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than all"),
              help);
   else if (prior.noise.empty() && shift > visible_shift)
     look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} the solver shapes the distances: {} moves them by {:.2g} of what the stated noise leaves",
+             fmt::format("with {} the solver changes the distances: {} moves them by {:.2g} of what the stated noise leaves",
                          look.what.solver.text(), look.what.solver.finer_words(), shift),
              help);
 }
@@ -76,7 +76,7 @@ void describe_solvers(LookedAt const& look, PriorDraws const& prior, std::vector
   }
   if (!look.what.settle && !look.candidate() && moves.front() > tolerable_move)
     look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} the solver shapes the result: with {} parameters move by up to {}", look.what.solver.text(),
+             fmt::format("with {} the solver changes the result: with {} parameters move by up to {}", look.what.solver.text(),
                          look.what.solver.finer_words(), moves.front() > 5 ? "many sds" : fmt::format("{:.2g} sd", moves.front())),
              information.advised.empty()
                  ? "leave its settings out and they are chosen"

@@ -34,14 +34,13 @@ class ProcessPredict {
             model.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model, what_.prediction)) : std::string()),
         seed_);
     if (trajectories_.fitted().draws.total() == 1)
-      report.findings.push_back(
-          {FindingCode::optimum_alone,
-           Severity::note,
-           {fit_task_.name},
-           fmt::format("`{}` is an optimum, not a posterior: the bands hold what the process leaves open, not "
-                       "how well its hyper-parameters are known",
-                       fit_task_.name),
-           "fit with mh for bands that hold both"});
+      report.findings.push_back({FindingCode::optimum_alone,
+                                 Severity::note,
+                                 {fit_task_.name},
+                                 fmt::format("`{}` is an optimum, not a posterior: the bands include the uncertainty of the "
+                                             "process, not that of its hyper-parameters",
+                                             fit_task_.name),
+                                 "fit with mh for bands that include both"});
     for (int e = 0; e < static_cast<int>(trajectories_.data().size()); ++e) predict(e, report);
     add_source(session_.result_folder(fit_task_), report);
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
@@ -69,7 +68,7 @@ class ProcessPredict {
                                  {data.experiment.name},
                                  fmt::format("{} of {} trajectories{} are left out of the bands", result.failed(),
                                              result.ledger.solves(), several ? " on " + data.experiment.name : ""),
-                                 "the free run leaves the range of numbers, or the covariance cannot be decomposed"});
+                                 "the free run overflows, or the covariance cannot be decomposed"});
     say_reach(forecast, own, several ? " on " + data.experiment.name : "", report);
   }
 
@@ -79,12 +78,13 @@ class ProcessPredict {
     std::vector<double> declared;
     for (int p = 0; p < draws.rows(); ++p) declared.push_back(draws(p, 0));
     for (auto const& each : forecast.reach(fitted_parameters(trajectories_.space(), declared), own.view().columns(0, 1)))
-      report.findings.push_back({FindingCode::far_outside,
-                                 Severity::warning,
-                                 {each.process, each.input},
-                                 fmt::format("`{}` of `{}` lies up to {:.2g} times the width of its fitted range outside it{}",
-                                             each.input, each.process, each.widths, where),
-                                 "there the process returns to the white part, and its band tells the kernel's prior, not data"});
+      report.findings.push_back(
+          {FindingCode::far_outside,
+           Severity::warning,
+           {each.process, each.input},
+           fmt::format("`{}` of `{}` lies up to {:.2g} times the width of its fitted range outside it{}", each.input, each.process,
+                       each.widths, where),
+           "there the prediction is the white part, and its band is that of the kernel's prior, not of data"});
   }
 
   Session& session_;

@@ -32,7 +32,7 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
     findings.push_back({FindingCode::duplicate_inputs,
                         Severity::note,
                         {target.model().model().channels[c].name},
-                        fmt::format("{} of {} samples of {} repeat the inputs of another one: what differs there is noise",
+                        fmt::format("{} of {} samples of {} have the inputs of another sample: what differs between them is noise",
                                     repeated, inputs.rows(), target.model().model().channels[c].name),
                         ""});
   auto const hyper_parameters = layout.covariance.hyper_parameters();
@@ -45,14 +45,13 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
     bool const scaled = hyper_parameters[k].unit.input == 1;  // of the periodic kernel it is a pure number
     if (!scaled || range <= 0 || regression.parameters[k] <= far * range || name == last) continue;
     last = name;
-    findings.push_back(
-        {FindingCode::length_beyond_range,
-         Severity::note,
-         {name.first, name.second},
-         fmt::format("the length-scale of `{}` of `{}` is {:.2g} times the range that was fitted: along it the process "
-                     "is constant or a line, and how long the length is its prior says",
-                     name.second, name.first, regression.parameters[k] / range),
-         "where leaving the input out makes the fit no worse it is constant; else put the line into the white part"});
+    findings.push_back({FindingCode::length_beyond_range,
+                        Severity::note,
+                        {name.first, name.second},
+                        fmt::format("the length-scale of `{}` of `{}` is {:.2g} times the range that was fitted: along this input "
+                                    "the process is constant or linear, and its prior determines the length",
+                                    name.second, name.first, regression.parameters[k] / range),
+                        "leave the input out if the fit is no worse without it; otherwise add a linear term to the white part"});
   }
 }
 

@@ -154,21 +154,22 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
     SolverSettings const& stated = candidates[k].fit->solver;
     if (posterior.move && *posterior.move > tolerable_offset) {
       std::string const finer = posterior.solver == stated ? stated.finer().option() : posterior.solver.option();
-      findings.push_back({FindingCode::integration_step,
-                          Severity::warning,
-                          {candidates[k].what->name},
-                          fmt::format("with {}, which its particles have, parameters of `{}` lie off by about {} of what the noise "
-                                      "leaves open",
-                                      stated.text(), candidates[k].what->name,
-                                      *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
-                          fmt::format("select again with `{}`", finer)});
+      findings.push_back(
+          {FindingCode::integration_step,
+           Severity::warning,
+           {candidates[k].what->name},
+           fmt::format("with {}, the solver of its particles, parameters of `{}` are wrong by about {} of the likelihood",
+                       stated.text(), candidates[k].what->name,
+                       *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
+           fmt::format("select again with `{}`", finer)});
     }
     if (posterior.settled) continue;
     std::string const what =
         posterior.modes.empty()
             ? fmt::format("with a finer solver than {} the likelihood of `{}` is not finite at any mode near its particles",
                           posterior.solver.text(), candidates[k].what->name)
-            : fmt::format("even {} does not settle the likelihood of `{}`", posterior.solver.text(), candidates[k].what->name);
+            : fmt::format("even with {} there is no converged likelihood of `{}`", posterior.solver.text(),
+                          candidates[k].what->name);
     findings.push_back({FindingCode::step_not_settled,
                         Severity::warning,
                         {candidates[k].what->name},

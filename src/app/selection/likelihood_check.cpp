@@ -90,12 +90,11 @@ Findings compare_probabilities(SelectionResult const& result, std::vector<std::o
     names.push_back(model.name);
     each += fmt::format("{}`{}` has probability {:.2f} by the particles and {:.2f} by the likelihood", each.empty() ? "" : "; ",
                         model.name, model.probability, *by_likelihood[difference.model]);
-    if (model.died_in > 0) each += fmt::format(", it died in population {}", model.died_in);
+    if (model.died_in > 0) each += fmt::format(", it was lost in population {}", model.died_in);
   }
-  return {
-      {FindingCode::probabilities_disagree, Severity::warning, std::move(names), each,
-       "the threshold is what the data may differ by: stop at a smaller change, take more `particles`, or believe the likelihood "
-       "where its noise is the right one"}};
+  return {{FindingCode::probabilities_disagree, Severity::warning, std::move(names), each,
+           "stop at a smaller change of the threshold, take more `particles`, or use the probabilities by the likelihood if its "
+           "noise model is right"}};
 }
 
 }  // namespace sysid

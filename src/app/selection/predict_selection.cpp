@@ -113,7 +113,7 @@ class PredictSelection {
     report.findings.push_back({FindingCode::without_noise,
                                Severity::note,
                                {},
-                               "the bands are of the response alone: a selection by distance says nothing about the noise",
+                               "the bands are of the response alone: a selection by distance does not estimate the noise",
                                ""});
   }
 

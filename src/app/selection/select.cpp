@@ -228,7 +228,7 @@ class Select {
       report.findings.push_back({FindingCode::width_of_threshold,
                                  Severity::note,
                                  {},
-                                 "the sd of particles is the width that the threshold leaves, not that of the posterior: larger "
+                                 "the sd of the particles depends on the threshold and is not that of the posterior: it is larger "
                                  "after an early stop, smaller after a late one",
                                  polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
   }

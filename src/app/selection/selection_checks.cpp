@@ -108,10 +108,10 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
   return {{FindingCode::threshold_above_noise,
            Severity::warning,
            {},
-           fmt::format("the final threshold {} is {} times what {} leaves of the distance, {}", significant(threshold, 4),
+           fmt::format("the final threshold {} is {} times the distance that {} leaves, {}", significant(threshold, 4),
                        significant(threshold / lowest->distance, 2), selection.floor_words, significant(lowest->distance, 4)),
-           "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or "
-           "none of the models is the right one"}};
+           "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or none of the "
+           "models is the right one"}};
 }
 
 FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
@@ -136,10 +136,10 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
   double const median = upper_median(std::move(shift));
   if (median <= tolerable_shift * result.threshold) return {};
   std::string const what =
-      !std::isfinite(median) ? std::string("half of the particles or more do not stay finite: what they say is the integrator's")
+      !std::isfinite(median) ? std::string("half of the particles or more overflow: their distances depend on the integrator")
       : result.threshold == 0
-          ? fmt::format("distances move by {:.2g} from a threshold of 0: they are the integrator's", median)
-          : fmt::format("distances move by {:.2g} of the threshold: part of them is the integrator's", median / result.threshold);
+          ? fmt::format("distances move by {:.2g} from a threshold of 0: they depend on the integrator", median)
+          : fmt::format("distances move by {:.2g} of the threshold: they depend on the integrator", median / result.threshold);
   return {{FindingCode::step_not_settled,
            Severity::warning,
            {selected.name},

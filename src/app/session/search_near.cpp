@@ -64,7 +64,7 @@ SearchResult search_near(Session& session, int earlier, Target const& target, Ai
     result.findings.push_back({FindingCode::searched_near,
                                Severity::note,
                                {name},
-                               fmt::format("the search began at `{}` alone: a mode elsewhere would not have been met", name),
+                               fmt::format("the search began only at the result of `{}` and may have missed other modes", name),
                                "fit once more without `search = near(...)` before the numbers are used"});
   return result;
 }

@@ -16,12 +16,12 @@ Finding not_settled(SettledSolver const& settled) {
     return {FindingCode::step_not_settled,
             Severity::error,
             {},
-            fmt::format("even {} do not settle the result", accuracy(settled.solver)),
+            fmt::format("the result has not converged with {}", accuracy(settled.solver)),
             help};
   return {FindingCode::step_not_settled,
           Severity::error,
           {},
-          fmt::format("{} do not settle the result, and finer ones were not tried: with {} {}, hardly less than before",
+          fmt::format("the result has not converged with {}, and finer ones were not tried: with {} {}, hardly less than before",
                       accuracy(settled.solver), settled.solver.finer_words(), moved(settled.moves.back())),
           help};
 }

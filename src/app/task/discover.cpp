@@ -261,7 +261,7 @@ class Discover {
     std::string const help = "a model needs as many equations as states, each with a derivative in it";
     if (written.empty())
       findings.push_back({FindingCode::equation_no_model, Severity::warning, std::move(names),
-                          "what was found is no model that can be simulated: " + left_out.front(), help});
+                          "the equation that was found is not a model that can be simulated: " + left_out.front(), help});
     else
       findings.push_back({FindingCode::candidates_left_out, Severity::warning, std::move(names),
                           fmt::format("`found.sysid` holds {} of {} structures; no model that can be simulated: {}", written.size(),

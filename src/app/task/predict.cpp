@@ -50,8 +50,9 @@ class Predict {
           {FindingCode::optimum_alone,
            Severity::note,
            {fit_task_.name},
-           fmt::format("`{}` is an optimum, not a posterior: the bands leave out how well parameters are known", fit_task_.name),
-           "fit with mh for bands that hold it"});
+           fmt::format("`{}` is an optimum, not a posterior: the bands do not include the uncertainty of the parameters",
+                       fit_task_.name),
+           "fit with mh for bands that include it"});
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
       add_data(session_.file, data_[static_cast<std::size_t>(e)], model_, report);
       predict(e, report);

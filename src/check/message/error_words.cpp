@@ -18,6 +18,12 @@ Diagnostic conflict(std::string code, Span span, std::string label, Span other, 
   return result;
 }
 
+Diagnostic about(Names names, Diagnostic diagnostic, std::string kind) {
+  diagnostic.names = std::move(names);
+  diagnostic.kind = std::move(kind);
+  return diagnostic;
+}
+
 std::string guess_or(std::string const& text, Names const& known, std::string fallback) {
   std::string guess = did_you_mean(text, known);
   return guess.empty() ? std::move(fallback) : guess;

@@ -13,6 +13,9 @@ Diagnostic error(std::string code, Span span, std::string message, std::string h
 Diagnostic conflict(std::string code, Span span, std::string label, Span other, std::string other_label, std::string message,
                     std::string help = {});
 
+/// With the names that it concerns, and what the first was looked up as.
+Diagnostic about(Names names, Diagnostic diagnostic, std::string kind = {});
+
 /// "did you mean ...", else the given fallback.
 std::string guess_or(std::string const& text, Names const& known, std::string fallback);
 /// "there are `a` and `b`".

@@ -15,12 +15,14 @@ std::string choice_of_rules(Names rules) {
 }  // namespace
 
 Diagnostic no_file(ast::Name const& block) {
-  return error("E4101", block.span, fmt::format("data block `{}` names no file", block.text), "add `file \"measurement.csv\"`");
+  return about({block.text}, error("E4101", block.span, fmt::format("data block `{}` names no file", block.text),
+                                   "add `file \"measurement.csv\"`"));
 }
 
 Diagnostic no_time(ast::Name const& block) {
-  return error("E4102", block.span, fmt::format("data block `{}` does not say when its rows were taken", block.text),
-               "add `time t [s]` (a column) or `rate 1000 [Hz]`");
+  return about({block.text},
+               error("E4102", block.span, fmt::format("data block `{}` does not say when its rows were taken", block.text),
+                     "add `time t [s]` (a column) or `rate 1000 [Hz]`"));
 }
 
 Diagnostic time_and_rate(Span second, Span first) {
@@ -33,14 +35,14 @@ Diagnostic stated_twice(Span second, Span first, std::string const& what) {
 }
 
 Diagnostic rule_missing(Span span, std::string const& input, Names const& rules) {
-  return error("E4105", span, fmt::format("what does input `{}` do between its samples?", input),
-               fmt::format("add {}: it changes the answer more than anything else", choice_of_rules(rules)));
+  return about({input}, error("E4105", span, fmt::format("what does input `{}` do between its samples?", input),
+                              fmt::format("add {}: it changes the answer more than anything else", choice_of_rules(rules))));
 }
 
 Diagnostic unknown_rule(ast::Name const& rule, Names const& known) {
   std::string help = guess_or(rule.text, known, fmt::format("rules: {}", quoted(known)));
   if (rule.text == "zoh") help = "did you mean `zero_order`?";
-  return error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help));
+  return about({rule.text}, error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help)));
 }
 
 Diagnostic not_a_time(Span span, Unit const& unit) {
@@ -58,28 +60,30 @@ Diagnostic bad_rows(Span span) {
 }
 
 Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data) {
-  return error("E4109", span, fmt::format("data `{}` does not give input `{}` of {}", data, input, owner),
-               fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input));
+  return about({data, input}, error("E4109", span, fmt::format("data `{}` does not give input `{}` of {}", data, input, owner),
+                                    fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input)));
 }
 
 Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels) {
-  return error("E4110", span, fmt::format("data `{}` measures no channel of {}", data, owner),
-               fmt::format("add `measure {} = COLUMN [unit]` to the data block", channels.empty() ? "CHANNEL" : channels.front()));
+  return about({data}, error("E4110", span, fmt::format("data `{}` measures no channel of {}", data, owner),
+                             fmt::format("add `measure {} = COLUMN [unit]` to the data block",
+                                         channels.empty() ? "CHANNEL" : channels.front())));
 }
 
 Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs) {
-  return error("E4115", span, fmt::format("{} has no input `{}`", owner, input), guess_or(input, inputs, choose(inputs, "input")));
+  return about({input}, error("E4115", span, fmt::format("{} has no input `{}`", owner, input),
+                              guess_or(input, inputs, choose(inputs, "input"))));
 }
 
 Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels) {
-  return error("E4111", span, fmt::format("{} has no channel `{}`", owner, channel),
-               guess_or(channel, channels, choose(channels, "channel")));
+  return about({channel}, error("E4111", span, fmt::format("{} has no channel `{}`", owner, channel),
+                                guess_or(channel, channels, choose(channels, "channel"))));
 }
 
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules) {
-  return conflict("E4112", rule, "held between samples", use, "its derivative is used here",
-                  fmt::format("`{}'` does not exist: input `{}` is held constant between its samples", input, input),
-                  "choose " + choice_of_rules(rules));
+  return about({input}, conflict("E4112", rule, "held between samples", use, "its derivative is used here",
+                                 fmt::format("`{}'` does not exist: input `{}` is held constant between its samples", input, input),
+                                 "choose " + choice_of_rules(rules)));
 }
 
 Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {
@@ -88,22 +92,26 @@ Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& 
 }
 
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {
-  return error("E6301", span, fmt::format("model `{}` has no parameter `{}`", model, name),
-               guess_or(name, known,
-                        known.empty() ? fmt::format("declare it in the model: `parameter {} per experiment`", name)
-                                      : fmt::format("what a data block may fix: {}", quoted(known))));
+  return about({model, name},
+               error("E6301", span, fmt::format("model `{}` has no parameter `{}`", model, name),
+                     guess_or(name, known,
+                              known.empty() ? fmt::format("declare it in the model: `parameter {} per experiment`", name)
+                                            : fmt::format("what a data block may fix: {}", quoted(known)))));
 }
 
 Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter) {
-  return conflict("E6302", span, "fixed for one experiment", declaration, "shared by all",
-                  fmt::format("parameter `{}` is shared by all experiments, a data block cannot fix it", parameter),
-                  fmt::format("declare it as `parameter {} per experiment`, or give it this value in the model", parameter));
+  return about({parameter},
+               conflict("E6302", span, "fixed for one experiment", declaration, "shared by all",
+                        fmt::format("parameter `{}` is shared by all experiments, a data block cannot fix it", parameter),
+                        fmt::format("declare it as `parameter {} per experiment`, or give it this value in the model", parameter)));
 }
 
 Diagnostic constant_missing(Span use, Span declaration, std::string const& parameter, std::string const& data) {
-  return conflict("E6303", use, "used here", declaration, "neither prior nor value",
-                  fmt::format("data `{}` does not say what `{}` is", data, parameter),
-                  fmt::format("add `constant {} = ...` to data `{}`, or give the parameter a prior or a value", parameter, data));
+  return about(
+      {data, parameter},
+      conflict("E6303", use, "used here", declaration, "neither prior nor value",
+               fmt::format("data `{}` does not say what `{}` is", data, parameter),
+               fmt::format("add `constant {} = ...` to data `{}`, or give the parameter a prior or a value", parameter, data)));
 }
 
 }  // namespace sysid::errors

@@ -16,85 +16,93 @@ std::string units(Names const& all) {
 }  // namespace
 
 Diagnostic no_target(ast::Name const& dictionary) {
-  return error("E6601", dictionary.span, fmt::format("`{}` does not say what its terms are to explain", dictionary.text),
-               "add `target = m*y'' - x`, or a derivative for each equation: `target = x', y'`");
+  return about({dictionary.text},
+               error("E6601", dictionary.span, fmt::format("`{}` does not say what its terms are to explain", dictionary.text),
+                     "add `target = m*y'' - x`, or a derivative for each equation: `target = x', y'`"));
 }
 
 Diagnostic target_twice(Span second, Span first, std::string const& text) {
-  return conflict("E6613", second, "again here", first, "first here",
-                  fmt::format("`{}` is explained twice, by the same terms", text),
-                  "each target is an equation of its own: keep one");
+  return about({text}, conflict("E6613", second, "again here", first, "first here",
+                                fmt::format("`{}` is explained twice, by the same terms", text),
+                                "each target is an equation of its own: keep one"));
 }
 
 Diagnostic no_terms(ast::Name const& dictionary) {
-  return error("E6602", dictionary.span, fmt::format("`{}` holds no term", dictionary.text),
-               "add `terms = polynomial(y, y', degree = 3), abs(y')*y', 1`");
+  return about({dictionary.text}, error("E6602", dictionary.span, fmt::format("`{}` holds no term", dictionary.text),
+                                        "add `terms = polynomial(y, y', degree = 3), abs(y')*y', 1`"));
 }
 
 Diagnostic nothing_left_of_terms(Span target, std::string const& equation) {
-  return error("E6602", target, fmt::format("no term is left for `{}`", equation),
-               "allow more units of coefficients, exclude less, or add terms");
+  return about({equation}, error("E6602", target, fmt::format("no term is left for `{}`", equation),
+                                 "allow more units of coefficients, exclude less, or add terms"));
 }
 
 Diagnostic unknown_generator(ast::Name const& name, Names const& families) {
   Names known = families;
   for (FunctionRow const& row : functions()) known.emplace_back(row.name);
-  return error("E6603", name.span, fmt::format("there is no family of terms and no function `{}`", name.text),
-               guess_or(name.text, known, fmt::format("families: {}", quoted(families))));
+  return about({name.text}, error("E6603", name.span, fmt::format("there is no family of terms and no function `{}`", name.text),
+                                  guess_or(name.text, known, fmt::format("families: {}", quoted(families)))));
 }
 
 Diagnostic generator_arguments(ast::Name const& generator, std::string const& missing, std::string const& example) {
-  return error("E6603", generator.span,
-               fmt::format("`{}` does not say {}", generator.text, missing.starts_with("what") ? missing : "`" + missing + "`"),
-               fmt::format("for example `{}`", example));
+  return about({generator.text}, error("E6603", generator.span,
+                                       fmt::format("`{}` does not say {}", generator.text,
+                                                   missing.starts_with("what") ? missing : "`" + missing + "`"),
+                                       fmt::format("for example `{}`", example)));
 }
 
 Diagnostic generator_number(Span span, std::string const& option, int most, std::string const& example) {
-  return error("E6603", span, fmt::format("`{}` must be a whole number from 1 to {}", option, most),
-               fmt::format("for example `{}`", example));
+  return about({option}, error("E6603", span, fmt::format("`{}` must be a whole number from 1 to {}", option, most),
+                               fmt::format("for example `{}`", example)));
 }
 
 Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters) {
-  return error(
-      "E6604", target,
-      fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters), parameters.size() == 1 ? "has" : "have"),
-      "what is looked for stands as a factor: `m*y'' - x`; give the others values: `parameter m [kg] = 1`");
+  return about({text}, error("E6604", target,
+                             fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
+                                         parameters.size() == 1 ? "has" : "have"),
+                             "what is looked for stands as a factor: `m*y'' - x`; give the others values: `parameter m [kg] = 1`"));
 }
 
 Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter) {
-  return error("E6604", target, fmt::format("`{}` stands in two targets, and each equation finds its own coefficients", parameter),
-               "give each equation a parameter of its own, or this one a value");
+  return about(
+      {parameter},
+      error("E6604", target, fmt::format("`{}` stands in two targets, and each equation finds its own coefficients", parameter),
+            "give each equation a parameter of its own, or this one a value"));
 }
 
 Diagnostic coefficient_inside(Span term, std::string const& text) {
-  return error("E6605", term, fmt::format("`{}` is not linear in a parameter that has no value", text),
-               "a term has at most one parameter without a value, as a factor: `k*y`; give the others values");
+  return about({text}, error("E6605", term, fmt::format("`{}` is not linear in a parameter that has no value", text),
+                             "a term has at most one parameter without a value, as a factor: `k*y`; give the others values"));
 }
 
 Diagnostic state_without_channel(Span state, std::string const& name) {
-  return error("E6606", state, fmt::format("no channel measures `{}` or a derivative of it", name),
-               fmt::format("bind it: `state {} = CHANNEL`; discovery works from measured states", name));
+  return about({name}, error("E6606", state, fmt::format("no channel measures `{}` or a derivative of it", name),
+                             fmt::format("bind it: `state {} = CHANNEL`; discovery works from measured states", name)));
 }
 
 Diagnostic derivative_of_nothing(ast::Name const& state, int primes) {
-  return error("E6607", state.span,
-               fmt::format("`{}` is bound to a channel before `{}` is declared", primed(state.text, primes), state.text),
-               fmt::format("declare the state first: `state {}, {} = CHANNEL`", state.text, primed(state.text, primes)));
+  return about({primed(state.text, primes), state.text},
+               error("E6607", state.span,
+                     fmt::format("`{}` is bound to a channel before `{}` is declared", primed(state.text, primes), state.text),
+                     fmt::format("declare the state first: `state {}, {} = CHANNEL`", state.text, primed(state.text, primes))));
 }
 
 Diagnostic derivative_without_channel(ast::Name const& state, int primes) {
-  return error("E6607", state.span, fmt::format("`{}` is named here without a channel", primed(state.text, primes)),
-               fmt::format("write `{} = CHANNEL`, or leave it out: derivatives need no declaration", primed(state.text, primes)));
+  return about(
+      {primed(state.text, primes)},
+      error("E6607", state.span, fmt::format("`{}` is named here without a channel", primed(state.text, primes)),
+            fmt::format("write `{} = CHANNEL`, or leave it out: derivatives need no declaration", primed(state.text, primes))));
 }
 
 Diagnostic channel_bound_twice(ast::Name const& channel, Span first) {
-  return conflict("E6607", channel.span, "and here", first, "here", fmt::format("channel `{}` measures two things", channel.text),
-                  "a channel measures one state, or one derivative of it");
+  return about({channel.text}, conflict("E6607", channel.span, "and here", first, "here",
+                                        fmt::format("channel `{}` measures two things", channel.text),
+                                        "a channel measures one state, or one derivative of it"));
 }
 
 Diagnostic excludes_nothing(Span span, std::string const& text, Names const& known) {
-  return error("E6608", span, fmt::format("`{}` is not among the terms", text),
-               guess_or(text, known, "leave it out here; `sysid check` lists the terms"));
+  return about({text}, error("E6608", span, fmt::format("`{}` is not among the terms", text),
+                             guess_or(text, known, "leave it out here; `sysid check` lists the terms")));
 }
 
 Diagnostic unit_of_no_term(Span span, std::string const& unit, Names const& possible) {
@@ -108,14 +116,17 @@ Diagnostic too_many_terms(Span span, std::size_t most) {
 }
 
 Diagnostic index_in_dictionary(ast::Reference const& reference) {
-  return error("E6611", reference.span, fmt::format("`{}` has no elements: a dictionary knows numbers only", reference.name.text),
-               "give each element a name: `state y1 = a[1], y2 = a[2]`");
+  return about(
+      {reference.name.text},
+      error("E6611", reference.span, fmt::format("`{}` has no elements: a dictionary knows numbers only", reference.name.text),
+            "give each element a name: `state y1 = a[1], y2 = a[2]`"));
 }
 
 Diagnostic channel_not_measured(Span data, std::string const& block, Span state, std::string const& channel,
                                 Names const& measured) {
-  Diagnostic result = error("E6612", data, fmt::format("data `{}` do not measure `{}`", block, channel),
-                            guess_or(channel, measured, fmt::format("add `measure {} = COLUMN` to the data block", channel)));
+  Diagnostic result = about(
+      {block, channel}, error("E6612", data, fmt::format("data `{}` do not measure `{}`", block, channel),
+                              guess_or(channel, measured, fmt::format("add `measure {} = COLUMN` to the data block", channel))));
   result.secondary.push_back({state, "bound here"});
   return result;
 }

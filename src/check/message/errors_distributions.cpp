@@ -31,27 +31,31 @@ constexpr Synonym argument_synonyms[] = {
 }  // namespace
 
 Diagnostic unknown_distribution(ast::Name const& name, Names const& known) {
-  return error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
-               guess_or(distribution_synonyms, name.text, known, fmt::format("distributions: {}", quoted(known))));
+  return about({name.text},
+               error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
+                     guess_or(distribution_synonyms, name.text, known, fmt::format("distributions: {}", quoted(known)))),
+               "distribution");
 }
 
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
-  return error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
-               guess_or(argument_synonyms, argument.text, known, fmt::format("its arguments are {}", quoted(known))));
+  return about({distribution, argument.text},
+               error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
+                     guess_or(argument_synonyms, argument.text, known, fmt::format("its arguments are {}", quoted(known)))));
 }
 
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other) {
   if (spelling == other)
-    return conflict("E2104", second, "again here", first, "first given here", fmt::format("`{}` is given twice", spelling),
-                    "keep one");
-  return conflict("E2104", second, fmt::format("`{}`", spelling), first, fmt::format("`{}`", other),
-                  fmt::format("`{}` and `{}` say the same thing twice", other, spelling),
-                  "keep one: precision = 1/variance, variance = sd^2");
+    return about({spelling}, conflict("E2104", second, "again here", first, "first given here",
+                                      fmt::format("`{}` is given twice", spelling), "keep one"));
+  return about({other, spelling}, conflict("E2104", second, fmt::format("`{}`", spelling), first, fmt::format("`{}`", other),
+                                           fmt::format("`{}` and `{}` say the same thing twice", other, spelling),
+                                           "keep one: precision = 1/variance, variance = sd^2"));
 }
 
 Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
-  return error("E2105", call.span, fmt::format("`{}` needs {}", call.function.text, quoted(spellings, "or")),
-               fmt::format("write for example `{} = ...`", spellings.front()));
+  return about({call.function.text},
+               error("E2105", call.span, fmt::format("`{}` needs {}", call.function.text, quoted(spellings, "or")),
+                     fmt::format("write for example `{} = ...`", spellings.front())));
 }
 
 Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings) {
@@ -60,13 +64,14 @@ Diagnostic must_be_named(Span span, std::string const& distribution, Names const
 }
 
 Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature) {
-  return error("E2107", span, fmt::format("`{}` has no further argument", distribution),
-               signature.empty() ? "it takes none" : fmt::format("its arguments are {}", quoted(signature)));
+  return about({distribution}, error("E2107", span, fmt::format("`{}` has no further argument", distribution),
+                                     signature.empty() ? "it takes none" : fmt::format("its arguments are {}", quoted(signature))));
 }
 
 Diagnostic not_a_noise(ast::Call const& call, Names const& known) {
-  return error("E2108", call.function.span, fmt::format("`{}` cannot be the noise of a channel", call.function.text),
-               fmt::format("use {}", quoted(known, "or")));
+  return about({call.function.text},
+               error("E2108", call.function.span, fmt::format("`{}` cannot be the noise of a channel", call.function.text),
+                     fmt::format("use {}", quoted(known, "or"))));
 }
 
 Diagnostic truncated_noise(ast::Call const& call) {
@@ -75,12 +80,13 @@ Diagnostic truncated_noise(ast::Call const& call) {
 }
 
 Diagnostic cannot_truncate(Span span, std::string const& distribution) {
-  return error("E2109", span, fmt::format("`{}` cannot be truncated", distribution), "leave out `lower` and `upper`");
+  return about({distribution},
+               error("E2109", span, fmt::format("`{}` cannot be truncated", distribution), "leave out `lower` and `upper`"));
 }
 
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what) {
-  return error("E2110", span, fmt::format("the prior of `{}` reads {}", parameter, what),
-               "a prior may use numbers, constants and other parameters");
+  return about({parameter}, error("E2110", span, fmt::format("the prior of `{}` reads {}", parameter, what),
+                                  "a prior may use numbers, constants and other parameters"));
 }
 
 Diagnostic prior_cycle(Span span, Names const& loop) {
@@ -89,55 +95,65 @@ Diagnostic prior_cycle(Span span, Names const& loop) {
 }
 
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason) {
-  return error("E2112", span, fmt::format("these arguments of `{}` are impossible: {}", distribution, reason),
-               "correct the numbers");
+  return about({distribution}, error("E2112", span, fmt::format("these arguments of `{}` are impossible: {}", distribution, reason),
+                                     "correct the numbers"));
 }
 
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
                          std::vector<std::string> const& names) {
-  return error("E2112", span,
-               fmt::format("`{}` of `{}` is impossible at all values that the priors allow: {}", distribution, variate, reason),
-               positive_prior(names));
+  return about({distribution, variate}, error("E2112", span,
+                                              fmt::format("`{}` of `{}` is impossible at all values that the priors allow: {}",
+                                                          distribution, variate, reason),
+                                              positive_prior(names)));
 }
 
 Diagnostic no_mass(Span span, std::string const& distribution) {
-  return error("E2115", span, fmt::format("`{}` has no mass between its bounds", distribution),
-               "widen `lower` and `upper`, or move the distribution");
+  return about({distribution}, error("E2115", span, fmt::format("`{}` has no mass between its bounds", distribution),
+                                     "widen `lower` and `upper`, or move the distribution"));
 }
 
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit) {
-  return error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, here it should give [{}]", distribution, unit),
-               fmt::format("multiply: a share with this prior, times a quantity in [{}]", unit));
+  return about(
+      {distribution},
+      error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, here it should give [{}]", distribution, unit),
+            fmt::format("multiply: a share with this prior, times a quantity in [{}]", unit)));
 }
 
 Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit) {
-  return error("E2118", span, fmt::format("`{}` counts, here it should give [{}]", distribution, unit),
-               "a count is a pure number: divide the expression by the size of one item, and leave out the unit of the channel");
+  return about(
+      {distribution},
+      error("E2118", span, fmt::format("`{}` counts, here it should give [{}]", distribution, unit),
+            "a count is a pure number: divide the expression by the size of one item, and leave out the unit of the channel"));
 }
 
 Diagnostic count_as_prior(ast::Call const& call) {
-  return error("E2119", call.function.span,
-               fmt::format("`{}` gives whole numbers: it is noise of a channel, not a prior", call.function.text),
-               "use a continuous prior, such as gamma or log_normal");
+  return about({call.function.text},
+               error("E2119", call.function.span,
+                     fmt::format("`{}` gives whole numbers: it is noise of a channel, not a prior", call.function.text),
+                     "use a continuous prior, such as gamma or log_normal"));
 }
 
 Diagnostic noise_of_counts(Span span, std::string const& channel, std::string const& distribution) {
-  return error("E6015", span, fmt::format("channel `{}` counts: noise in percent would not leave whole numbers", channel),
-               fmt::format("write `noise = model`: the counts are then drawn from `{}`", distribution));
+  return about({channel},
+               error("E6015", span, fmt::format("channel `{}` counts: noise in percent would not leave whole numbers", channel),
+                     fmt::format("write `noise = model`: the counts are then drawn from `{}`", distribution)));
 }
 
 Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter) {
   std::string const& name = parameter.name.name.text;
-  return error("E2113", parameter.name.span, fmt::format("parameter `{}` has neither a prior nor a value", name),
-               fmt::format("give a prior, `parameter {} ~ log_uniform(0.1, 10)`, or a value, `parameter {} = 1`", name, name));
+  return about({name}, error("E2113", parameter.name.span, fmt::format("parameter `{}` has neither a prior nor a value", name),
+                             fmt::format("give a prior, `parameter {} ~ log_uniform(0.1, 10)`, or a value, `parameter {} = 1`",
+                                         name, name)));
 }
 
 Diagnostic shared_prior_reads_own(Span prior, std::string const& parameter, std::string const& own) {
-  return error("E6305", prior,
-               fmt::format("the prior of `{}`, which all experiments share, reads `{}`, which each has for itself", parameter, own),
-               fmt::format("declare `{}` as `per experiment` too, or let `{}` refer to `{}`: `parameter {} per experiment ~ "
-                           "normal({}, sd = ...)`",
-                           parameter, own, parameter, own, parameter));
+  return about(
+      {parameter, own},
+      error("E6305", prior,
+            fmt::format("the prior of `{}`, which all experiments share, reads `{}`, which each has for itself", parameter, own),
+            fmt::format("declare `{}` as `per experiment` too, or let `{}` refer to `{}`: `parameter {} per experiment ~ "
+                        "normal({}, sd = ...)`",
+                        parameter, own, parameter, own, parameter)));
 }
 
 }  // namespace sysid::errors

@@ -8,6 +8,7 @@ namespace sysid::errors {
 Diagnostic explicit_solver(Span option, std::string const& solver, Span equation, std::string const& unknown) {
   Diagnostic result{Severity::error,   "E3004", fmt::format("`{}` needs equations that can be solved for `{}`", solver, unknown),
                     Label{option, {}}, {},      fmt::format("use `solver = ida`, or solve the equation for `{}` by hand", unknown)};
+  result.names = {unknown, solver};
   result.secondary.push_back({equation, fmt::format("not linear in `{}`", unknown)});
   return result;
 }
@@ -18,7 +19,8 @@ Diagnostic constraint_of_input(ast::Equation const& equation, std::string const&
           fmt::format("this constraint prescribes a motion: the force behind it needs the second derivative of input `{}`", input),
           Label{equation.span, {}},
           {},
-          fmt::format("take the acceleration as the input, or the motion itself: `{}` in place of the state", input)};
+          fmt::format("take the acceleration as the input, or the motion itself: `{}` in place of the state", input),
+          {input}};
 }
 
 Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown) {
@@ -27,7 +29,8 @@ Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string cons
           fmt::format("this equation would have to be differentiated in time, and with it `{}`, which has no derivative", unknown),
           Label{equation.span, {}},
           {},
-          fmt::format("solve it for `{}` and write that as a definition: `let {} = ...`", unknown, unknown)};
+          fmt::format("solve it for `{}` and write that as a definition: `let {} = ...`", unknown, unknown),
+          {unknown}};
 }
 
 Diagnostic start_off_constraint(Span equation, Span initial) {

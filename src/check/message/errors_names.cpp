@@ -31,57 +31,69 @@ constexpr Synonym name_synonyms[] = {
 Diagnostic unknown_name(ast::Name const& name, Names const& known) {
   for (Synonym const& each : name_synonyms)
     if (name.text == each.foreign)
-      return error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text), std::string(each.ours));
+      return about({name.text},
+                   error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text), std::string(each.ours)));
   // ydot, dydt, dy of a y that there is.
   for (std::string const& each : known)
     for (char const* pattern : {"{}dot", "{}_dot", "d{}", "d{}dt", "{}ddot", "d2{}", "{}dotdot"})
       if (name.text == fmt::format(fmt::runtime(pattern), each))
-        return error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
-                     fmt::format("a derivative is written with primes: `{0}'`, `{0}''`", each));
-  return error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
-               guess_or(name.text, known, "declare it as state, input, parameter, constant or local definition (let)"));
+        return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
+                                        fmt::format("a derivative is written with primes: `{0}'`, `{0}''`", each)));
+  Diagnostic result = about(
+      {name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
+                         guess_or(name.text, known, "declare it as state, input, parameter, constant or local definition (let)")));
+  result.suggested = nearest(name.text, known);
+  return result;
 }
 
 Diagnostic duplicate_name(ast::Name const& name, Span first) {
-  return conflict("E2002", name.span, "again here", first, "first declared here", fmt::format("`{}` is declared twice", name.text),
-                  "rename one of the two, or delete it");
+  return about({name.text}, conflict("E2002", name.span, "again here", first, "first declared here",
+                                     fmt::format("`{}` is declared twice", name.text), "rename one of the two, or delete it"));
 }
 
 Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity) {
   if (is_quantity)
-    return error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
-                 fmt::format("multiplication is written with *: `{}*(...)`", name.text));
+    return about({name.text}, error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
+                                    fmt::format("multiplication is written with *: `{}*(...)`", name.text)));
   for (std::string_view const derivative : {"der", "diff", "d", "ddt", "dt", "derivative", "D", "dot", "ddot", "Dt"})
     if (name.text == derivative)
-      return error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
-                   "a derivative is written with primes: `y'`, `y''`");
+      return about({name.text},
+                   error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
+                         "a derivative is written with primes: `y'`, `y''`"),
+                   "function");
   if (find_distribution(name.text) != nullptr)
-    return error("E2003", name.span, fmt::format("`{}` is a distribution, not a function", name.text),
-                 fmt::format("a prior is written with `~`: `parameter k ~ {}(...)`", name.text));
+    return about({name.text}, error("E2003", name.span, fmt::format("`{}` is a distribution, not a function", name.text),
+                                    fmt::format("a prior is written with `~`: `parameter k ~ {}(...)`", name.text)));
   if (name.text == "pow" || name.text == "power")
-    return error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`");
-  return error(
-      "E2003", name.span, fmt::format("there is no function `{}`", name.text),
-      guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in ones: sysid list functions"));
+    return about({name.text},
+                 error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`"),
+                 "function");
+  return about({name.text},
+               error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
+                     guess_or(function_synonyms, name.text, known,
+                              "define it: `function f(a, b) = ...`; built-in ones: sysid list functions")),
+               "function");
 }
 
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {
   std::string const wanted = least == most ? fmt::format("{}", least)
                              : most > 100  ? fmt::format("{} or more", least)
                                            : fmt::format("{} to {}", least, most);
-  return error("E2004", function.span,
-               fmt::format("`{}` takes {} argument{}, here it has {}", function.text, wanted, wanted == "1" ? "" : "s", given),
-               "give each argument once, separated by commas");
+  return about({function.text}, error("E2004", function.span,
+                                      fmt::format("`{}` takes {} argument{}, here it has {}", function.text, wanted,
+                                                  wanted == "1" ? "" : "s", given),
+                                      "give each argument once, separated by commas"));
 }
 
 Diagnostic piecewise_without_otherwise(ast::Call const& call) {
-  return error("E2004", call.span, fmt::format("`{}` has no value for when no condition holds", call.function.text),
-               "its arguments are condition, value, condition, value, ..., and last the value otherwise");
+  return about({call.function.text},
+               error("E2004", call.span, fmt::format("`{}` has no value for when no condition holds", call.function.text),
+                     "its arguments are condition, value, condition, value, ..., and last the value otherwise"));
 }
 
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function) {
-  return error("E2005", argument.span, fmt::format("arguments of the function `{}` have no names", function),
-               fmt::format("leave out `{} =`", argument.text));
+  return about({function}, error("E2005", argument.span, fmt::format("arguments of the function `{}` have no names", function),
+                                 fmt::format("leave out `{} =`", argument.text)));
 }
 
 Diagnostic definition_cycle(Span span, Names const& loop) {
@@ -90,20 +102,23 @@ Diagnostic definition_cycle(Span span, Names const& loop) {
 }
 
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what) {
-  return error("E2007", reference.span, fmt::format("`{}` is {}: it has no time derivative", reference.name.text, what),
-               fmt::format("primes belong to states and inputs; declare `state {}` if it moves", reference.name.text));
+  return about({reference.name.text},
+               error("E2007", reference.span, fmt::format("`{}` is {}: it has no time derivative", reference.name.text, what),
+                     fmt::format("primes belong to states and inputs; declare `state {}` if it moves", reference.name.text)));
 }
 
 Diagnostic beyond_highest(ast::Reference const& reference, int order) {
-  return error(
-      "E2007", reference.span,
-      fmt::format("`{}` is beyond the highest derivative of `{}` in the equations", primed(reference), reference.name.text),
-      fmt::format("the equations determine `{}`: write its time derivative out", primed(reference.name.text, order)));
+  return about(
+      {primed(reference), reference.name.text},
+      error("E2007", reference.span,
+            fmt::format("`{}` is beyond the highest derivative of `{}` in the equations", primed(reference), reference.name.text),
+            fmt::format("the equations determine `{}`: write its time derivative out", primed(reference.name.text, order))));
 }
 
 Diagnostic second_input_derivative(ast::Reference const& reference) {
-  return error("E2008", reference.span, fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
-               "bind the derivative as an input of its own");
+  return about({primed(reference)}, error("E2008", reference.span,
+                                          fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
+                                          "bind the derivative as an input of its own"));
 }
 
 Diagnostic not_a_number(Span span, std::string const& what) {
@@ -116,25 +131,27 @@ Diagnostic constant_needed(Span span, std::string const& what) {
 }
 
 Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant, std::string const& whole) {
-  if (name.text == "per") return error("E2011", name.span, "`per` is not a unit", "division is written with `/`: [N s/m]");
+  if (name.text == "per")
+    return about({name.text}, error("E2011", name.span, "`per` is not a unit", "division is written with `/`: [N s/m]"));
   std::string const message = fmt::format("`{}` is not a unit known here", name.text);
   if (name.text == "dB" || name.text == "db")
-    return error("E2011", name.span, message, "a level is a logarithm: give what it stands for, `10^(level/20)` for an amplitude");
+    return about({name.text}, error("E2011", name.span, message,
+                                    "a level is a logarithm: give what it stands for, `10^(level/20)` for an amplitude"));
   if (!meant)
-    return error("E2011", name.span, message,
-                 guess_or(unit_synonyms, name.text, common_unit_names(),
-                          "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]"));
+    return about({name.text}, error("E2011", name.span, message,
+                                    guess_or(unit_synonyms, name.text, common_unit_names(),
+                                             "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]")));
   switch (meant->kind) {
     case UnitSlip::Kind::power:
-      return error("E2011", name.span, message, fmt::format("a power is written with `^`: `{}`", whole));
+      return about({name.text}, error("E2011", name.span, message, fmt::format("a power is written with `^`: `{}`", whole)));
     case UnitSlip::Kind::product:
-      return error("E2011", name.span, message, fmt::format("a blank or `*` multiplies: `{}`", whole));
+      return about({name.text}, error("E2011", name.span, message, fmt::format("a blank or `*` multiplies: `{}`", whole)));
     case UnitSlip::Kind::capitals:
-      return error("E2011", name.span, message, fmt::format("capitals count in units: write `{}`", whole));
+      return about({name.text}, error("E2011", name.span, message, fmt::format("capitals count in units: write `{}`", whole)));
     case UnitSlip::Kind::quotient:
       break;
   }
-  return error("E2011", name.span, message, fmt::format("a quotient is written with `/`: `{}`", whole));
+  return about({name.text}, error("E2011", name.span, message, fmt::format("a quotient is written with `/`: `{}`", whole)));
 }
 
 Diagnostic unit_exponent(Span span) {

@@ -21,10 +21,12 @@ Diagnostic whole_number_needed(Span span, std::string const& what) {
                "use digits and arguments of the model: `3`, `n`, `n - 1`");
 }
 Diagnostic size_out_of_range(Span span, std::string const& name, long size, long most) {
-  return error("E2702", span, fmt::format("`{}` cannot have {} elements", name, size), fmt::format("a size is 1 to {}", most));
+  return about({name}, error("E2702", span, fmt::format("`{}` cannot have {} elements", name, size),
+                             fmt::format("a size is 1 to {}", most)));
 }
 Diagnostic too_many_sizes(Span span, std::string const& name) {
-  return error("E2703", span, fmt::format("`{}` has more than two sizes", name), "a vector is `q(3)`, a matrix `M(3, 3)`");
+  return about({name},
+               error("E2703", span, fmt::format("`{}` has more than two sizes", name), "a vector is `q(3)`, a matrix `M(3, 3)`"));
 }
 Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& left, Span left_span, Shape const& right,
                           Span right_span) {
@@ -59,20 +61,23 @@ Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span o
               other_span, other.text());
 }
 Diagnostic index_out_of_range(Span span, std::string const& name, Shape const& shape) {
-  return error("E2707", span, fmt::format("`{}` is {}: it has no such element", name, shape.text()), "elements count from 1");
+  return about(
+      {name}, error("E2707", span, fmt::format("`{}` is {}: it has no such element", name, shape.text()), "elements count from 1"));
 }
 Diagnostic index_count(Span span, std::string const& name, Shape const& shape, std::size_t given) {
-  return error("E2707", span,
-               fmt::format("`{}` is {}, and {} {} given", name, shape.text(), given, given == 1 ? "index is" : "indices are"),
-               shape.rank == 0   ? fmt::format("leave the index out, or declare `{}(n)`", name)
-               : shape.rank == 1 ? fmt::format("write `{}[i]`", name)
-                                 : fmt::format("write `{}[i, j]`: row and column", name));
+  return about({name},
+               error("E2707", span,
+                     fmt::format("`{}` is {}, and {} {} given", name, shape.text(), given, given == 1 ? "index is" : "indices are"),
+                     shape.rank == 0   ? fmt::format("leave the index out, or declare `{}(n)`", name)
+                     : shape.rank == 1 ? fmt::format("write `{}[i]`", name)
+                                       : fmt::format("write `{}[i, j]`: row and column", name)));
 }
 Diagnostic array_arguments(ast::Name const& function, std::size_t given, std::string const& usage) {
   if (function.text == "dot" && given == 1)
     return error("E2708", function.span, "`dot` multiplies two vectors, it is no derivative",
                  "a derivative is written with primes: `y'`, `y''`");
-  return error("E2708", function.span, fmt::format("`{}` does not take these arguments", function.text), usage);
+  return about({function.text},
+               error("E2708", function.span, fmt::format("`{}` does not take these arguments", function.text), usage));
 }
 Diagnostic model_too_large(Span span) {
   return error("E2709", span, "written out in numbers, this model is too large to be handled",
@@ -89,30 +94,34 @@ Diagnostic part_cycle(Span span, Names const& loop) {
                "break the loop; what both need is a third model");
 }
 Diagnostic model_argument_missing(Span span, std::string const& model, std::string const& argument) {
-  return error("E2802", span, fmt::format("model `{}` needs its argument `{}`", model, argument),
-               fmt::format("write `{}({} = 2)`, or give `{}` a default where the model is defined", model, argument, argument));
+  return about({model, argument}, error("E2802", span, fmt::format("model `{}` needs its argument `{}`", model, argument),
+                                        fmt::format("write `{}({} = 2)`, or give `{}` a default where the model is defined", model,
+                                                    argument, argument)));
 }
 Diagnostic unknown_model_argument(ast::Name const& name, std::string const& model, Names const& known) {
-  return error("E2803", name.span, fmt::format("model `{}` has no argument `{}`", model, name.text),
-               guess_or(name.text, known, known.empty() ? "it takes none" : fmt::format("it takes {}", quoted(known))));
+  return about({model, name.text},
+               error("E2803", name.span, fmt::format("model `{}` has no argument `{}`", model, name.text),
+                     guess_or(name.text, known, known.empty() ? "it takes none" : fmt::format("it takes {}", quoted(known)))));
 }
 Diagnostic model_argument_by_position(Span span, std::string const& model, Names const& known) {
-  return error("E2804", span, fmt::format("arguments of model `{}` are named", model),
-               known.empty() ? "it takes none" : fmt::format("write `{} = ...`", known.front()));
+  return about({model}, error("E2804", span, fmt::format("arguments of model `{}` are named", model),
+                              known.empty() ? "it takes none" : fmt::format("write `{} = ...`", known.front())));
 }
 Diagnostic model_argument_twice(Span second, Span first, std::string const& name) {
-  return with(error("E2805", second, fmt::format("`{}` is given twice", name), "keep one", "again here"), first, "first here");
+  return with(about({name}, error("E2805", second, fmt::format("`{}` is given twice", name), "keep one", "again here")), first,
+              "first here");
 }
 Diagnostic input_of_part_unbound(Span span, std::string const& part, Names const& inputs, std::string const& model) {
-  return error("E2806", span,
-               fmt::format("part `{}` is left without its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
-               fmt::format("say what drives it: `{}({} = ...)`", model, inputs.front()));
+  return about(
+      {part},
+      error("E2806", span, fmt::format("part `{}` is left without its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
+            fmt::format("say what drives it: `{}({} = ...)`", model, inputs.front())));
 }
 Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) {
-  return with(
-      error("E2807", binding, fmt::format("the part needs the time derivative of its input `{}`, which this has not", input),
-            "bind a state, or sums, products and whole powers of states and inputs"),
-      use, "the derivative is used here");
+  return with(about({input}, error("E2807", binding,
+                                   fmt::format("the part needs the time derivative of its input `{}`, which this has not", input),
+                                   "bind a state, or sums, products and whole powers of states and inputs")),
+              use, "the derivative is used here");
 }
 Diagnostic candidate_range(Span span, long models, std::size_t most) {
   return error("E2809", span,
@@ -121,35 +130,35 @@ Diagnostic candidate_range(Span span, long models, std::size_t most) {
                models < 1 ? "write the smaller number first: `1..4`" : fmt::format("leave at most {}", most));
 }
 Diagnostic discrete_part(Span span, std::string const& part, Span declaration) {
-  return with(error("E2808", span, fmt::format("part `{}` is in discrete time, the model around it is not", part),
-                    "declare `time discrete` in both, or in neither"),
+  return with(about({part}, error("E2808", span, fmt::format("part `{}` is in discrete time, the model around it is not", part),
+                                  "declare `time discrete` in both, or in neither")),
               declaration, "declared here");
 }
 
 Diagnostic process_of_part(Span span, std::string const& part, Span declaration) {
-  return with(error("E3215", span, fmt::format("part `{}` has a Gaussian process of its own", part),
-                    "declare the process in the model around it, where its channel is"),
+  return with(about({part}, error("E3215", span, fmt::format("part `{}` has a Gaussian process of its own", part),
+                                  "declare the process in the model around it, where its channel is")),
               declaration, "declared here");
 }
 
 Diagnostic module_not_found(ast::Name const& module, std::string const& folder, Names const& known) {
-  return error(
-      "E2901", module.span,
-      fmt::format("there is no `{}.sysid` in {} and no module `{}` in the standard library", module.text, folder, module.text),
-      guess_or(module.text, known, "sysid list modules prints what the standard library holds"));
+  return about({module.text}, error("E2901", module.span,
+                                    fmt::format("there is no `{}.sysid` in {} and no module `{}` in the standard library",
+                                                module.text, folder, module.text),
+                                    guess_or(module.text, known, "sysid list modules prints what the standard library holds")));
 }
 Diagnostic module_cycle(Span span, Names const& loop) {
   return error("E2902", span, fmt::format("this module uses itself: {}", fmt::join(loop, " -> ")),
                "move what both need into a third module");
 }
 Diagnostic name_of_two_modules(Span second, Span first, std::string const& kind, std::string const& name) {
-  return with(
-      error("E2903", second, fmt::format("there are two {}s named `{}` here", kind, name), "rename one of the two", "this one"),
-      first, "and this one");
+  return with(about({name}, error("E2903", second, fmt::format("there are two {}s named `{}` here", kind, name),
+                                  "rename one of the two", "this one")),
+              first, "and this one");
 }
 Diagnostic not_for_a_module(Span span, std::string const& what, std::string const& module) {
-  return error("E2904", span, fmt::format("{} cannot stand in module `{}`", what, module),
-               "a module holds models and functions; move it to the file that uses them");
+  return about({module}, error("E2904", span, fmt::format("{} cannot stand in module `{}`", what, module),
+                               "a module holds models and functions; move it to the file that uses them"));
 }
 
 }  // namespace sysid::errors

@@ -6,15 +6,17 @@
 namespace sysid::errors {
 
 Diagnostic state_without_equation(Span declaration, std::string const& state, std::string const& highest) {
-  return error("E3001", declaration, fmt::format("state `{}` has no equation", state),
-               fmt::format("write the equation that contains {}", highest));
+  return about({state}, error("E3001", declaration, fmt::format("state `{}` has no equation", state),
+                              fmt::format("write the equation that contains {}", highest)));
 }
 
 Diagnostic algebraic_state(Span declaration, std::string const& state) {
-  return error(
-      "E3002", declaration,
-      fmt::format("nothing determines `{0}`: no equation has `{0}'`, and none is left for `{0}` itself", state),
-      fmt::format("give an equation for it; what follows from other quantities is a local definition: `let {} = ...`", state));
+  return about(
+      {state},
+      error(
+          "E3002", declaration,
+          fmt::format("nothing determines `{0}`: no equation has `{0}'`, and none is left for `{0}` itself", state),
+          fmt::format("give an equation for it; what follows from other quantities is a local definition: `let {} = ...`", state)));
 }
 
 Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
@@ -23,27 +25,30 @@ Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) 
 }
 
 Diagnostic undetermined(Span declaration, std::string const& unknown) {
-  return error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
-               "two equations say the same thing about the highest derivatives");
+  return about({unknown}, error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
+                                "two equations say the same thing about the highest derivatives"));
 }
 
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {
   Names components;
   for (int k = 0; k < order; ++k) components.push_back(primed(state, k));
-  return error("E3006", reference.span, fmt::format("`{}` follows from the equations: it has no initial value", primed(reference)),
-               fmt::format("`{}` is of order {}: give {}", state, order, quoted(components)));
+  return about(
+      {primed(reference)},
+      error("E3006", reference.span, fmt::format("`{}` follows from the equations: it has no initial value", primed(reference)),
+            fmt::format("`{}` is of order {}: give {}", state, order, quoted(components))));
 }
 
 Diagnostic initial_missing(Span declaration, Names const& components) {
   bool const one = components.size() == 1;
-  return error("E3007", declaration,
-               fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
-               fmt::format("write `initial {} = 0`", fmt::join(components, " = 0, ")));
+  return about(
+      {components.front().substr(0, components.front().find('\''))},
+      error("E3007", declaration, fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
+            fmt::format("write `initial {} = 0`", fmt::join(components, " = 0, "))));
 }
 
 Diagnostic initial_twice(Span second, Span first, std::string const& component) {
-  return conflict("E3008", second, "again here", first, "first given here",
-                  fmt::format("the initial value of `{}` is given twice", component), "keep one");
+  return about({component}, conflict("E3008", second, "again here", first, "first given here",
+                                     fmt::format("the initial value of `{}` is given twice", component), "keep one"));
 }
 
 Diagnostic initial_moves(Span span) {
@@ -51,24 +56,27 @@ Diagnostic initial_moves(Span span) {
 }
 
 Diagnostic not_a_state(ast::Name const& name, Names const& states) {
-  return error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
-               guess_or(name.text, states, choose(states, "state")));
+  Diagnostic result = about({name.text}, error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
+                                               guess_or(name.text, states, choose(states, "state"))));
+  result.suggested = nearest(name.text, states);
+  if (result.suggested.empty()) result.suggested = states;
+  return result;
 }
 
 Diagnostic channel_twice(ast::Name const& name, Span first) {
-  return conflict("E3011", name.span, "again here", first, "first observed here",
-                  fmt::format("channel `{}` is observed twice", name.text),
-                  "one `observe` per channel; two sensors are two channels");
+  return about({name.text}, conflict("E3011", name.span, "again here", first, "first observed here",
+                                     fmt::format("channel `{}` is observed twice", name.text),
+                                     "one `observe` per channel; two sensors are two channels"));
 }
 
 Diagnostic nothing_observed(ast::Name const& model) {
-  return error("E3012", model.span, fmt::format("model `{}` observes nothing", model.text),
-               "say how data arise: `observe displacement ~ normal(y, sd = sigma)`");
+  return about({model.text}, error("E3012", model.span, fmt::format("model `{}` observes nothing", model.text),
+                                   "say how data arise: `observe displacement ~ normal(y, sd = sigma)`"));
 }
 
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first) {
-  return conflict("E3013", name.span, "again here", first, "first here",
-                  fmt::format("there are two {}s named `{}`", kind, name.text), "rename one of the two");
+  return about({name.text}, conflict("E3013", name.span, "again here", first, "first here",
+                                     fmt::format("there are two {}s named `{}`", kind, name.text), "rename one of the two"));
 }
 
 namespace {

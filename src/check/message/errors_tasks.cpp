@@ -7,30 +7,39 @@ namespace sysid::errors {
 
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known) {
   if (kind == "fit" && known.empty())
-    return error("E6001", name.span, fmt::format("there is no fit `{}` in this file", name.text),
-                 "a fit is a task with a name: `posterior = fit MODEL to DATA with mh(samples = 1000)`");
-  return error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text),
-               guess_or(name.text, known, choose(known, kind)));
+    return about({name.text},
+                 error("E6001", name.span, fmt::format("there is no fit `{}` in this file", name.text),
+                       "a fit is a task with a name: `posterior = fit MODEL to DATA with mh(samples = 1000)`"),
+                 kind);
+  return about({name.text},
+               error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text),
+                     guess_or(name.text, known, choose(known, kind))),
+               kind);
 }
 
 Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::string const& kind, Names const& known) {
-  return error("E6001", name.span, fmt::format("{} has no {} `{}`", owner, kind, name.text),
-               guess_or(name.text, known, choose(known, kind)));
+  return about({name.text},
+               error("E6001", name.span, fmt::format("{} has no {} `{}`", owner, kind, name.text),
+                     guess_or(name.text, known, choose(known, kind))),
+               kind + " of " + owner);
 }
 
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
-  return error(
-      "E6002", span, fmt::format("`{}` has no option `{}`", task, option),
-      guess_or(option, known, known.empty() ? std::string("it has none") : fmt::format("its options are {}", quoted(known))));
+  return about({task, option},
+               error("E6002", span, fmt::format("`{}` has no option `{}`", task, option),
+                     guess_or(option, known,
+                              known.empty() ? std::string("it has none") : fmt::format("its options are {}", quoted(known)))));
 }
 
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example) {
-  return error("E6003", task.verb.span, fmt::format("`{}` needs the option `{}`", task.verb.text, option),
-               fmt::format("add `{}` after `with`", example));
+  return about({task.verb.text, option},
+               error("E6003", task.verb.span, fmt::format("`{}` needs the option `{}`", task.verb.text, option),
+                     fmt::format("add `{}` after `with`", example)));
 }
 
 Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example) {
-  return error("E6004", span, fmt::format("`{}` must be {}", option, wanted), fmt::format("for example `{}`", example));
+  return about({option},
+               error("E6004", span, fmt::format("`{}` must be {}", option, wanted), fmt::format("for example `{}`", example)));
 }
 
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most) {
@@ -39,17 +48,19 @@ Diagnostic option_range(Span span, std::string const& option, double given, doub
                             : least == 0               ? std::string("not be negative")
                             : least > 0                ? std::string("be positive")
                                                        : std::string("be finite");
-  return error("E6005", span, fmt::format("`{}` must {}, here it is {}", option, range, given), "correct the number");
+  return about({option},
+               error("E6005", span, fmt::format("`{}` must {}, here it is {}", option, range, given), "correct the number"));
 }
 
 Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most) {
-  return error("E6005", span, fmt::format("`{}` must be 0 or lie between {} and {}, here it is {}", option, least, most, given),
-               "correct the number");
+  return about({option}, error("E6005", span,
+                               fmt::format("`{}` must be 0 or lie between {} and {}, here it is {}", option, least, most, given),
+                               "correct the number"));
 }
 
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {
-  return error("E6006", span, fmt::format("`{}` cannot be {}", option, given.empty() ? "this" : "`" + given + "`"),
-               guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or"))));
+  return about({option}, error("E6006", span, fmt::format("`{}` cannot be {}", option, given.empty() ? "this" : "`" + given + "`"),
+                               guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or")))));
 }
 
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {
@@ -60,8 +71,8 @@ Diagnostic backend_missing(ast::Task const& task, Names const& known) {
 }
 
 Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
-  return error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
-               guess_or(name.text, known, fmt::format("back ends: {}", quoted(known))));
+  return about({name.text}, error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
+                                  guess_or(name.text, known, fmt::format("back ends: {}", quoted(known)))));
 }
 
 Diagnostic data_missing(ast::Task const& task, std::string const& preposition) {
@@ -70,18 +81,20 @@ Diagnostic data_missing(ast::Task const& task, std::string const& preposition) {
 }
 
 Diagnostic data_unused(ast::Task const& task, Span data) {
-  return error("E6013", data, fmt::format("`{}` takes no data: it makes its own inputs", task.verb.text),
-               "leave the data out, or `predict` a fit on them");
+  return about({task.verb.text}, error("E6013", data, fmt::format("`{}` takes no data: it makes its own inputs", task.verb.text),
+                                       "leave the data out, or `predict` a fit on them"));
 }
 
 Diagnostic not_a_fit(ast::Name const& name, std::string const& verb) {
-  return error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
-               verb == "predict" ? "predict needs the name of a fit task" : "a search begins near the draws of a fit");
+  return about({name.text},
+               error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
+                     verb == "predict" ? "predict needs the name of a fit task" : "a search begins near the draws of a fit"));
 }
 
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration) {
-  return conflict("E6014", name.span, "another value here", declaration, "fixed here",
-                  fmt::format("parameter `{}` has a fixed value in the model", name.text), "change it there, or give it a prior");
+  return about({name.text}, conflict("E6014", name.span, "another value here", declaration, "fixed here",
+                                     fmt::format("parameter `{}` has a fixed value in the model", name.text),
+                                     "change it there, or give it a prior"));
 }
 
 Diagnostic value_missing(Span span, Names const& parameters) {
@@ -103,17 +116,20 @@ Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, 
 }
 
 Diagnostic task_too_late(ast::Name const& name) {
-  return error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text), "tasks run in order: move it up");
+  return about({name.text}, error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text),
+                                  "tasks run in order: move it up"));
 }
 
 Diagnostic experiment_twice(Span second, Span first, std::string const& experiment) {
-  return conflict("E6304", second, "again", first, "first here",
-                  fmt::format("`{}` is used twice: its samples would count twice", experiment), "name every experiment once");
+  return about({experiment}, conflict("E6304", second, "again", first, "first here",
+                                      fmt::format("`{}` is used twice: its samples would count twice", experiment),
+                                      "name every experiment once"));
 }
 
 Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other) {
-  return conflict("E6304", second, "these rows", first, "were here already",
-                  fmt::format("`{}` and `{}` share rows, which would count twice", one, other), "give them rows of their own");
+  return about({one, other}, conflict("E6304", second, "these rows", first, "were here already",
+                                      fmt::format("`{}` and `{}` share rows, which would count twice", one, other),
+                                      "give them rows of their own"));
 }
 
 }  // namespace sysid::errors

@@ -71,7 +71,8 @@ Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
 }
 
 Diagnostic pure_argument(Label argument, std::string const& function, std::string help) {
-  return at(Severity::error, "E2206", std::move(argument), {}, fmt::format("`{}` takes a pure number", function), std::move(help));
+  return about({function}, at(Severity::error, "E2206", std::move(argument), {}, fmt::format("`{}` takes a pure number", function),
+                              std::move(help)));
 }
 Diagnostic exponent_with_unit(Label exponent, std::string help) {
   return at(Severity::error, "E2207", std::move(exponent), {}, "an exponent is a pure number", std::move(help));
@@ -127,8 +128,8 @@ Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) 
                          : fmt::format("write `2*pi*{0}` for `{0}` if it counts cycles", name));
 }
 Diagnostic cycles_in_angle(Span argument, std::string const& function) {
-  return at(Severity::warning, "E2210", {argument, "cycles"}, {}, fmt::format("`{}` takes radians, this counts cycles", function),
-            "multiply by 2*pi");
+  return about({function}, at(Severity::warning, "E2210", {argument, "cycles"}, {},
+                              fmt::format("`{}` takes radians, this counts cycles", function), "multiply by 2*pi"));
 }
 
 bool is_unit_conflict(Diagnostic const& diagnostic) {
@@ -151,6 +152,7 @@ Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string co
 }
 
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function) {
+  diagnostic.function = function;
   diagnostic.message = fmt::format("in the function `{}`: {}", function, diagnostic.message);
   diagnostic.secondary.insert(diagnostic.secondary.begin(), *diagnostic.primary);
   diagnostic.primary = Label{call, "called here"};

@@ -2,6 +2,7 @@
 // Wording lives in the file that owns the stage's messages (check/errors_*.cpp, data/errors.cpp, grammar/errors.cpp), never at the
 // place of detection.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,21 +26,32 @@ struct Diagnostic {
   std::optional<Label> primary;  // absent: the message concerns no place in the text
   std::vector<Label> secondary;  // where two places conflict
   std::string help;              // what to do; may be empty
+  // What it concerns. Rules over messages go by these, by code and by place, never by the sentences above.
+  std::vector<std::string> names = {};      // as the user wrote them; where something is unknown or lacks something, that first
+  std::string kind = {};                    // what the first of `names` was looked up as: "function", "fit"; empty: a name
+  std::vector<std::string> suggested = {};  // names offered in place of an unknown one
+  std::string function = {};                // in whose body it was found, when it is told at a call of it
 };
 
 /// Collects diagnostics of one source, in the order of detection.
 class Diagnostics {
  public:
-  void add(Diagnostic diagnostic) { all_.push_back(std::move(diagnostic)); }
+  void add(Diagnostic diagnostic) {
+    if (reword_) reword_(diagnostic);
+    all_.push_back(std::move(diagnostic));
+  }
   /// Unless its code has been said of its place: what stands in several tasks or models is said once.
   void add_once(Diagnostic diagnostic);
   /// Among those added after the first `from`.
   bool has_errors(std::size_t from = 0) const;
   std::vector<Diagnostic> const& all() const { return all_; }
   void replace(std::vector<Diagnostic> all) { all_ = std::move(all); }
+  /// Other words for all that is added from now on: tests show that no decision hangs on the sentences.
+  void reword(std::function<void(Diagnostic&)> words) { reword_ = std::move(words); }
 
  private:
   std::vector<Diagnostic> all_;
+  std::function<void(Diagnostic&)> reword_;
 };
 
 /// `file:line:col: error[E2103]: message`, the lines with carets, `help:` and `more:` lines. Sorted by place, those without one

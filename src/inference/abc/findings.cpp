@@ -25,13 +25,12 @@ void add_deaths(SelectionResult const& result, Findings& findings) {
     std::string const before =
         t == 0 ? std::string()
                : fmt::format(", after {} particles in the population before", result.populations[t - 1].models[m].particles);
-    findings.push_back(
-        {FindingCode::model_lost_by_chance,
-         Severity::warning,
-         {model.name},
-         fmt::format("`{}` died in population {} where chance may have killed it: none of {} proposals was accepted{}", model.name,
-                     model.died_in, result.populations[t].models[m].proposed, before),
-         "take more `particles`, or repeat with other seeds: its probability is not known to be none"});
+    findings.push_back({FindingCode::model_lost_by_chance,
+                        Severity::warning,
+                        {model.name},
+                        fmt::format("`{}` was lost in population {}, possibly by chance: none of {} proposals was accepted{}",
+                                    model.name, model.died_in, result.populations[t].models[m].proposed, before),
+                        "take more `particles`, or repeat with other seeds: its probability may be larger than 0"});
   }
 }
 
@@ -45,7 +44,7 @@ void add_failures(SelectionResult const& result, Findings& findings) {
     findings.push_back({FindingCode::failed_solves,
                         Severity::warning,
                         {result.models[m].name},
-                        fmt::format("{} of the {} draws of the priors of `{}` did not stay finite, so its priors end there",
+                        fmt::format("{} of the {} draws of the priors of `{}` did not stay finite, so its priors are cut off there",
                                     record.failed == record.proposed ? "all" : fmt::format("{}", record.failed), record.proposed,
                                     result.models[m].name),
                         "narrow the priors, or take a finer solver where the integration is what fails"});
@@ -70,15 +69,15 @@ std::optional<Finding> equal_distances(SelectionResult const& result) {
         FindingCode::distances_equal,
         Severity::warning,
         {},
-        fmt::format("the threshold cannot fall below {:.6g}: so many particles have this very distance", result.threshold),
-        "look whether the simulation reads the parameters at all"};
+        fmt::format("the threshold cannot fall below {:.6g}: that many particles have exactly this distance", result.threshold),
+        "check that the simulation depends on the parameters"};
   std::string const fixed = fmt::format("`{}`", fmt::join(names, "`, `"));
   return Finding{
       FindingCode::distances_equal, Severity::warning, std::move(names),
-      fmt::format("the threshold cannot fall below {:.6g}: all particles of {} have this very distance, for no parameter "
-                  "takes part in the simulation",
+      fmt::format("the threshold cannot fall below {:.6g}: all particles of {} have exactly this distance, because their "
+                  "simulation depends on no parameter",
                   result.threshold, fixed),
-      "how much nearer the others come counts no more: the likelihood tells that, or a smaller threshold by `schedule`"};
+      "smaller distances of the other models are not counted: compare the likelihoods, or set a smaller threshold by `schedule`"};
 }
 
 }  // namespace
@@ -117,7 +116,7 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
         {FindingCode::few_effective_particles,
          Severity::warning,
          {},
-         fmt::format("the last population's weights are worth {:.0f} equal particles of {}", last.ess, last.accepted),
+         fmt::format("the effective number of particles in the last population is {:.0f} of {}", last.ess, last.accepted),
          "take more `particles`"});
   bool const equal = result.populations.size() > 1 && result.threshold == result.next_threshold &&
                      result.threshold != plan.target && plan.schedule.empty();
@@ -135,8 +134,8 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
     findings.push_back({FindingCode::budget_spent,
                         Severity::warning,
                         {},
-                        fmt::format("the run did not come to its end: {}{}", result.stopped_by,
-                                    std::isfinite(result.threshold) ? "" : "; its one population is of draws of the priors"),
+                        fmt::format("the run stopped before its end: {}{}", result.stopped_by,
+                                    std::isfinite(result.threshold) ? "" : "; its only population is a sample of the priors"),
                         "allow more, take fewer `particles`, or stop at a larger `target` or `relative_change`"});
   return findings;
 }
