@@ -68,9 +68,8 @@ Figure trace_figure(Draws const& draws) {
   }
   out.script += "unset multiplot\n";
   out.caption =
-      "Draws of each chain (one colour each) in order. Chains that agree look alike, like noise around one level; a drift, steps "
-      "or "
-      "separate levels say that they have not converged.";
+      "Draws of each chain (one colour each) in order. Converged chains look alike, like noise around one level; a drift, steps or "
+      "separate levels show that they have not converged.";
   if (stride > 1) out.caption += fmt::format(" One draw in {} is shown.", stride);
   out.caption += cells_left_out(draws.names.size());
   return out;
@@ -133,9 +132,9 @@ Figure rank_figure(Draws const& draws) {
   }
   out.script += "unset multiplot\n";
   out.caption =
-      "How often each chain's draws fall into each twentieth of all draws (ranks as shares of the whole). Converged chains are "
-      "level and "
-      "inside the band, which holds for independent draws; a slope or a hump is a chain that sits elsewhere or spreads "
+      "Rank plot: how often the draws of each chain fall into each twentieth of all draws (ranks as fractions). Converged chains "
+      "are level and "
+      "inside the band, which holds for independent draws; a slope or a hump shows a chain at another level or with another spread "
       "otherwise "
       "than the rest." +
       cells_left_out(draws.names.size());

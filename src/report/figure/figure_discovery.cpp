@@ -98,8 +98,8 @@ Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation) 
       longest + 2, value_width, lines_below, lines, plots);
   out.caption =
       fmt::format("The {} of each term of the dictionary in {}; those in colour were kept.", discovery.measure, found.target);
-  out.caption += probability ? " Near 1 the data ask for the term, near 0 they speak against it; between, they do not decide."
-                             : " It is the root mean square of the term against that of all that is explained.";
+  out.caption += probability ? " Near 1 the data support the term, near 0 they contradict it; values between are undecided."
+                             : " It is the root mean square of the term relative to that of the explained signal.";
   if (all > order.size()) out.caption += fmt::format(" Shown are the first {} of {}.", order.size(), all);
   return out;
 }
@@ -156,8 +156,7 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
   }
   out.script += "unset multiplot\n";
   out.caption = fmt::format(
-      "Posterior densities of the coefficients in {} given that these terms and no others stand there; the darker part holds 90 %, "
-      "the "
+      "Posterior densities of the coefficients in {} given exactly these terms; the darker part holds 90 %, the "
       "numbers above are mean ± sd, in the unit of the axis.{}",
       discovery.equations[equation].target, cells_left_out(terms.size()));
   return out;

@@ -125,14 +125,13 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
 
   if (has_data)
     out.caption = fmt::format(
-        "Measured and modelled {}. The residuals below should scatter without pattern; {}", quantity.name,
-        has_noise
-            ? "about one in twenty lies outside the light band, which includes the noise; the darker one is that of the response."
+        "Measured and modelled {}. The residuals below should show no pattern; {}", quantity.name,
+        has_noise  ? "about 5 % lie outside the light band, which includes the noise; the darker band is that of the response."
         : has_band ? "the band is that of the response, without noise."
-                   : "one trajectory has no band.");
+                   : "a single trajectory has no band.");
   else
     out.caption =
-        fmt::format("The model's account of {}, which is not measured{}.", quantity.name, has_band ? ", with its 95 % band" : "");
+        fmt::format("The prediction of {}, which is not measured{}.", quantity.name, has_band ? ", with its 95 % band" : "");
   if (!w.whole) {
     auto const begin = prediction.scored.begin() + static_cast<std::ptrdiff_t>(w.first);
     out.caption += fmt::format(" Shown are the first {} of {} scored samples.",

@@ -36,11 +36,10 @@ Figure function_figure(FunctionReport const& function) {
   int const width = column_width, height = tall * ((count + most_columns - 1) / most_columns);
   Figure out;
   out.name = "function_" + identifier(function.name);
-  out.title = fmt::format("The function {} that was found", function.name);
+  out.title = fmt::format("The estimated function {}", function.name);
   out.caption = fmt::format(
-      "The function and the band that holds it with 90 %, given the draws of the other parameters, of an optimum their one "
-      "value{}.",
-      count == 1 ? "" : ", along each input with the others in the middle");
+      "The function and its 90 % band, given the draws of the other parameters (for an optimum, given their single value){}.",
+      count == 1 ? "" : ", along each input, with the others at a central value");
   out.script = preamble(out.name, width, height);
   std::pair<double, double> values{0, 0};
   for (auto const& cut : function.cuts)
@@ -73,7 +72,8 @@ Figure function_figure(FunctionReport const& function) {
   out.script += "unset multiplot\n";
   if (out.script.find("$visits") != std::string::npos)
     out.caption +=
-        " Bars along the bottom: how often the fitted rows read the function there; where there are none its prior speaks.";
+        " Bars along the bottom: how many of the fitted rows use the function there; without bars the curve follows from its "
+        "prior.";
   return out;
 }
 

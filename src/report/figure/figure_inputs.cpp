@@ -110,7 +110,7 @@ Figure input_figure(Prediction const& prediction, PredictedQuantity const& quant
                             has_noise  ? ", with the band that holds 95 % of the measurements"
                             : has_band ? ", with the 95 % band of the response"
                                        : "");
-  if (!curve) out.caption += " At one place of an input the others differ from row to row, so that each row has a bar of its own.";
+  if (!curve) out.caption += " At one value of an input the other inputs differ from row to row, so each row has a bar of its own.";
   if (stride > 1) out.caption += fmt::format(" One row in {} is shown.", stride);
   if (all > inputs.size()) out.caption += fmt::format(" Shown are the first {} of {} inputs.", inputs.size(), all);
   return out;

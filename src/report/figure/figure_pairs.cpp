@@ -161,8 +161,8 @@ Figure pair_figure(Draws const& draws) {
   }
   out.script += "unset multiplot\n";
   out.caption =
-      "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination the data "
-      "determine "
+      "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination that the "
+      "data determine "
       "where the two alone are not; separate clouds are several modes.";
   if (std::size_t const left_out = draws.names.size() - count; left_out > 0)
     out.caption += fmt::format(" Shown are {} of {}, {}; {} {} left out.", count, draws.names.size(),

@@ -23,8 +23,8 @@ Figure population_figure(SelectionReport const& selection) {
   out.name = "populations";
   out.title = "Models from population to population";
   out.caption =
-      "Above, the probability of each model by the weights of its particles. Below, the threshold on a logarithmic scale, falling "
-      "towards what the noise alone leaves of the distance.";
+      "Above, the probability of each model by the weights of its particles. Below, the threshold on a logarithmic scale, "
+      "decreasing towards the distance that the noise alone causes.";
   out.script = preamble(out.name, width, height);
 
   Axis x = axis(1, std::max<double>(2, static_cast<double>(populations.size())), 8, 0.02);

@@ -151,11 +151,12 @@ Figure posterior_figure(Report const& report) {
       "above are mean ± sd, in the unit of the axis.";
   if (any_prior)
     out.caption +=
-        " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; one that stands against "
-        "an edge is cut by the prior.";
-  if (any_truth) out.caption += " The upright line is the value that the data were made with.";
-  if (!far_names.empty()) out.caption += fmt::format(" Made with values outside what is shown: {}.", far_names);
-  if (!cut_names.empty()) out.caption += fmt::format(" Of {} the central 98 % are shown: the tails reach much farther.", cut_names);
+        " Dashed: the prior density. Where the posterior equals the prior, the data contain no information; where it ends at an "
+        "edge, it is truncated by the prior.";
+  if (any_truth) out.caption += " The vertical line is the value with which the data were generated.";
+  if (!far_names.empty()) out.caption += fmt::format(" Generated with values outside the shown range: {}.", far_names);
+  if (!cut_names.empty())
+    out.caption += fmt::format(" Of {} the central 98 % are shown: the tails extend much further.", cut_names);
   out.caption += cells_left_out(columns.size());
   return out;
 }

@@ -42,7 +42,7 @@ std::pair<std::size_t, std::size_t> window(RestoringForce::Path const& path) {
 
 std::string where_data_come_from(RestoringForce const& force) {
   if (!force.why_no_data.empty()) return fmt::format(" The data are not shown: {}.", force.why_no_data);
-  if (force.accelerometer) return " Points: force from the measured accelerations, at the places where the model is.";
+  if (force.accelerometer) return " Points: force from the measured accelerations, at the states of the model.";
   return fmt::format(
       " Points: from the measured samples, differentiated twice by parabolas through {} of them each, and from the input under the "
       "same smoothing.",
@@ -108,10 +108,9 @@ Figure loop_figure(RestoringForce const& force) {
   }
   out.script += "unset multiplot\n";
   out.caption = fmt::format(
-      "What pulls {} back, along the record: {}. A line or a curve over the displacement is a spring, a slope over the velocity a "
-      "damper; loops that stay open when the motion is slow are a hysteresis.{}",
-      force.displacement,
-      force.per_mass ? "minus the acceleration" : "the input less what accelerates the mass, in the unit of the input",
+      "Restoring force on {} along the record: {}. A line or a curve over the displacement shows a spring, a slope over the "
+      "velocity a damper; loops that remain open in slow motion show hysteresis.{}",
+      force.displacement, force.per_mass ? "minus the acceleration" : "the input minus the inertia force, in the unit of the input",
       where_data_come_from(force));
   if (!whole) out.caption += fmt::format(" Shown of the model are {} samples around the largest displacement.", last - first);
   return out;
@@ -131,7 +130,7 @@ Figure surface_figure(RestoringForce const& force) {
   out.title = fmt::format("Restoring-force surface of {} on {}", force.displacement, force.experiment);
   bool const has_data = !force.data.force.empty();
   RestoringForce::Path const& path = has_data ? force.data : force.model;
-  std::vector<Key> const keys = {{Key::points, has_data ? data : contrast, has_data ? "data" : "where the model moves"},
+  std::vector<Key> const keys = {{Key::points, has_data ? data : contrast, has_data ? "data" : "trajectory of the model"},
                                  {Key::line, model, "model"}};
   out.script = preamble(out.name, width, height) + legend(keys, 10, width - 14.0, height - 12.0, width, height);
   std::vector<std::vector<double>> mesh, points;
@@ -170,10 +169,9 @@ Figure surface_figure(RestoringForce const& force) {
       "splot $mesh using 1:2:3 with lines lw 0.8 lc rgb '{}'{}\nunset multiplot\n", model,
       points.empty() ? "" : fmt::format(", $points using 1:2:3 with points pt 7 ps 0.2 lc rgb '{}'", has_data ? data : contrast));
   out.caption = fmt::format(
-      "The restoring force over displacement and velocity, by the model, over what the record reaches. Where no points lie the "
-      "model "
-      "says it alone.{}",
-      has_data ? where_data_come_from(force) : where_data_come_from(force) + " Points: where the trajectory of the model goes.");
+      "The restoring force of the model over the displacement and velocity reached in the record. Without points nearby it is "
+      "extrapolated by the model.{}",
+      has_data ? where_data_come_from(force) : where_data_come_from(force) + " Points: trajectory of the model.");
   return out;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 std::string draws_line(Draws const& draws) {
   if (draws.chains.empty()) return "";
-  if (draws.total() == 1) return "one point, the optimum";
+  if (draws.total() == 1) return "optimum, a single point";
   std::size_t const chains = draws.chains.size();
   return fmt::format("{} chain{} of {} draws", chains, chains == 1 ? "" : "s", draws.chains[0].values.size());
 }
