@@ -42,12 +42,11 @@ Diagnostic expected(Span where, std::string_view wanted, std::string_view found,
 }
 
 Diagnostic semicolon_in_brackets(Span where) {
-  return expected(where, "`,` or the closing bracket", "`;`",
-                  "what stands in brackets is separated by commas; `;` ends a statement");
+  return expected(where, "`,` or the closing bracket", "`;`", "separate items in brackets by commas; `;` ends a statement");
 }
 
 Diagnostic unclosed(Token const& opener, Span noticed) {
-  Diagnostic out = error("E1102", noticed, fmt::format("the {} opened with `{}` is never closed", noun(opener.text), opener.text),
+  Diagnostic out = error("E1102", noticed, fmt::format("the {} opened with `{}` is not closed", noun(opener.text), opener.text),
                          fmt::format("close it with `{}`", closer(opener.text)));
   out.primary->text = fmt::format("`{}` is missing before this", closer(opener.text));
   out.secondary.push_back({opener.span, "opened here"});
@@ -55,7 +54,7 @@ Diagnostic unclosed(Token const& opener, Span noticed) {
 }
 
 Diagnostic unclosed_text(Span text) {
-  Diagnostic out = error("E1103", {text.end, text.end}, "the text is never closed", "end it with `\"` on the same line");
+  Diagnostic out = error("E1103", {text.end, text.end}, "the text in quotes is not closed", "end it with `\"` on the same line");
   out.primary->text = "`\"` is missing here";
   out.secondary.push_back({{text.begin, text.begin + 1}, "opened here"});
   return out;
@@ -101,10 +100,10 @@ Diagnostic unknown_statement(Token const& word, std::string_view place, std::spa
 Diagnostic unknown_item(Token const& word) {
   std::vector<std::string> known = words::list(words::items);
   for (std::string_view const verb : words::verbs) known.emplace_back(verb);
-  return error("E1110", word.span, fmt::format("nothing in a file begins with `{}`", word.text),
-               guess_or(word.text, known,
-                        fmt::format("what stands in a file begins with {}; a task begins with {}", choice(words::items),
-                                    choice(words::verbs))));
+  return error(
+      "E1110", word.span, fmt::format("nothing in a file begins with `{}`", word.text),
+      guess_or(word.text, known,
+               fmt::format("a declaration begins with {}; a task begins with {}", choice(words::items), choice(words::verbs))));
 }
 
 Diagnostic unknown_verb(Token const& word) {
@@ -113,7 +112,7 @@ Diagnostic unknown_verb(Token const& word) {
 }
 
 Diagnostic double_equals(Span where) {
-  return error("E1112", where, "`==` compares; it does not equate or define", "write a single `=`");
+  return error("E1112", where, "`==` is a comparison, not an equation or a definition", "write a single `=`");
 }
 
 Diagnostic tilde_missing(Span where, std::string_view keyword) {
@@ -123,7 +122,7 @@ Diagnostic tilde_missing(Span where, std::string_view keyword) {
 }
 
 Diagnostic tilde_without_keyword(Span where) {
-  return error("E1114", where, "`~` stands in a statement that is neither a prior nor an observation",
+  return error("E1114", where, "`~` is used in a statement that is neither a prior nor an observation",
                "begin the statement with `parameter` for a prior, with `observe` for measured data");
 }
 
@@ -152,18 +151,17 @@ Diagnostic foreign_operator(Span where, std::string_view found, std::string_view
 Diagnostic left_arrow(Span where) { return foreign_operator(where, "<-", "an equation or a definition is written with `=`"); }
 
 Diagnostic list_in_brackets(Span where) {
-  return error("E1118", where, "a list does not stand in brackets", "write it in parentheses: `(1, 2)`");
+  return error("E1118", where, "a list is not written in brackets", "write it in parentheses: `(1, 2)`");
 }
 
 Diagnostic bracket_out_of_place(Span where) {
   return error(
-      "E1118", where, "a unit cannot stand here",
+      "E1118", where, "a unit is not allowed here",
       "`[` opens a unit after a number, a declared name or a data column; elsewhere multiply by a number with a unit: `1 [m]`");
 }
 
 Diagnostic reserved_word(Token const& word) {
-  return error("E1119", word.span, fmt::format("`{}` is a word of the language and cannot be a name", word.text),
-               "choose another name");
+  return error("E1119", word.span, fmt::format("`{}` is a reserved word and cannot be a name", word.text), "choose another name");
 }
 
 Diagnostic begins_with_sign(Token const& sign) {
@@ -172,7 +170,7 @@ Diagnostic begins_with_sign(Token const& sign) {
 }
 
 Diagnostic prime_apart(Span where) {
-  return error("E1121", where, "a prime stands directly behind a name", "write the derivative of `y` as `y'`");
+  return error("E1121", where, "a prime must directly follow a name", "write the derivative of `y` as `y'`");
 }
 
 Diagnostic nesting_too_deep(Span where, int most) {
@@ -185,8 +183,8 @@ Diagnostic statement_too_long(Span where, int most) {
 }
 
 Diagnostic text_too_large(Span where, std::size_t most) {
-  return error("E1126", where, fmt::format("the text is longer than {} bytes, which is more than is read", most),
-               "numbers by the thousand belong into a data file; models that recur belong into a module, used with arguments");
+  return error("E1126", where, fmt::format("the text is longer than {} bytes, the most that can be read", most),
+               "put large tables of numbers into a data file, and repeated models into a module with arguments");
 }
 
 Diagnostic word_too_long(Span where, std::ptrdiff_t most) {
@@ -194,12 +192,12 @@ Diagnostic word_too_long(Span where, std::ptrdiff_t most) {
 }
 
 Diagnostic unknown_escape(Span where, std::string_view escape) {
-  return error("E1124", where, fmt::format("`{}` is not an escape", escape), "a text knows `\\\"`, `\\\\` and `\\n`");
+  return error("E1124", where, fmt::format("`{}` is not an escape", escape), "the escapes are `\\\"`, `\\\\` and `\\n`");
 }
 
 Diagnostic statement_incomplete(Token const& last, Token const& next) {
   Diagnostic out = error("E1125", last.span, fmt::format("the line ends in `{}`, so the next line continues it", last.text),
-                         "complete the statement, or remove what its line ends in");
+                         "complete the statement, or remove the end of its line");
   out.secondary.push_back({next.span, "a statement begins here"});
   return out;
 }

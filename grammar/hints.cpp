@@ -33,25 +33,25 @@ bool begins_with_verb(Gap const& gap) {
 
 constexpr std::array<Situation, 29> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
-     "in a dictionary a parameter is looked for, or has a value: `parameter m [kg]`, `parameter m [kg] = 1`"},
+     "in a dictionary a parameter is unknown or has a value, but no prior: `parameter m [kg]`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
      "a prior is written `parameter name ~ uniform(lower, upper)`"},
     {[](Gap const& g) { return g.wanted.starts_with("a distribution"); },
-     "say how data scatter around the model: `~ normal(y, sd = sigma)`"},
+     "write the distribution of the data around the model: `~ normal(y, sd = sigma)`"},
     {[](Gap const& g) { return g.wanted == wanted::name && g.begins_with("model") && found(g, "{"); },
      "a model has a name: `model oscillator {`"},
     {[](Gap const& g) { return g.begins_with("split"); }, "rows are written `split train = rows 1..500`"},
     {[](Gap const& g) { return g.wanted == "a text in quotes" || (found(g, "'") && g.begins_with("file")); },
-     "a text stands in double quotes on one line: `file \"measured.csv\"`"},
+     "a text is written in double quotes on one line: `file \"measured.csv\"`"},
     {[](Gap const& g) {
        return g.begins_with("input") && g.wanted == wanted::end_of_statement && g.at > 3 && found_kind(g, TokenKind::word);
      },
-     "what the input does between its samples follows `hold`: `hold linear`"},
+     "the rule between samples is written after `hold`: `hold linear`"},
     {[](Gap const& g) { return found(g, "elseif") || found(g, "elif") || found(g, "elsif"); }, "write `else if`"},
     {[](Gap const& g) { return g.wanted == "`else`"; }, "every `if` has an `else`: the value where the condition does not hold"},
     {[](Gap const& g) { return found(g, "if") && g.wanted != wanted::name && g.wanted != wanted::column; },
      "a choice is written `if condition then value else value`"},
-    {[](Gap const& g) { return found(g, "[") && g.wanted == wanted::value; }, "a list stands in parentheses: `(1, 2)`"},
+    {[](Gap const& g) { return found(g, "[") && g.wanted == wanted::value; }, "a list is written in parentheses: `(1, 2)`"},
     {[](Gap const& g) { return found(g, ".") && (g.wanted == "`]`" || g.wanted == "']'"); },
      "units are multiplied with a blank or `*`: `[N s/m]`"},
     {[](Gap const& g) { return (g.wanted == "`]`" || g.wanted == "']'") && found(g, ","); },
@@ -61,13 +61,13 @@ constexpr std::array<Situation, 29> situations{{
     {[](Gap const& g) { return found(g, "=") && g.at == 0; }, "an equation has two sides: `left = right`"},
     {[](Gap const& g) { return found(g, "%") && g.at == 0; }, "a comment begins with `#` or `//`"},
     {[](Gap const& g) { return g.begins_with("initial") && g.wanted == wanted::equals && found(g, "("); },
-     "the time is understood: `initial y = 0`"},
+     "write an initial value without the time: `initial y = 0`"},
     {[](Gap const& g) { return declares(g) && g.wanted == "')'" && found(g, "="); },
-     "what belongs to it stands apart: a unit in brackets, `initial y = 0` for where it starts, `lower = 0` inside of a prior"},
+     "write a unit in brackets, an initial value as `initial y = 0`, and a bound as `lower = 0` inside the prior"},
     {[](Gap const& g) {
        return declares(g) && g.statement.size() > 2 && g.statement[2].is("(") && g.wanted == wanted::operator_between;
      },
-     "a unit stands in brackets: `[N s/m]`"},
+     "a unit is written in brackets: `[N s/m]`"},
     {[](Gap const& g) { return g.begins_with("function") && g.wanted == "'('"; }, "a function is written `function f(a, b) = a*b`"},
     {[](Gap const& g) { return found(g, "(") && g.wanted == wanted::name && begins_with_verb(g); },
      "a task is written `fit MODEL to DATA with mh(samples = 1000)`"},
@@ -82,16 +82,16 @@ constexpr std::array<Situation, 29> situations{{
      },
      "did you mean `with`?"},
     {[](Gap const& g) { return g.wanted == wanted::verb && g.found != nullptr && g.found->kind != TokenKind::word && g.at == 2; },
-     "outside of blocks `NAME =` begins a task; quantities stand in a model: `constant g = 9.81 [m/s^2]`"},
+     "outside of blocks `NAME =` begins a task; declare quantities inside a model: `constant g = 9.81 [m/s^2]`"},
     {[](Gap const& g) { return g.wanted == wanted::end_of_statement && found(g, ",") && g.begins_with("parameter"); },
-     "a parameter has a statement of its own; where a search starts is the fit's business"},
+     "declare each parameter in a statement of its own, without a start value: the fit chooses the start"},
     {[](Gap const& g) { return g.wanted == wanted::end_of_statement && found(g, ","); }, "begin a new line, or write `;`"},
     {[](Gap const& g) { return g.wanted == wanted::equals && g.found == nullptr; },
      "an equation has two sides: `left = right`; a value under a name is written `let name = value`"},
     {[](Gap const& g) { return g.wanted == wanted::opening_brace && g.begins_with("model"); },
      "a model is written `model name { ... }`; a name is made of letters, digits and `_`"},
     {[](Gap const& g) { return g.before() != nullptr && g.before(2) != nullptr && g.before(2)->is(".") && found(g, "("); },
-     "functions stand by themselves, without a module before them"},
+     "write the function without a module before it"},
 }};
 
 /// `1_000` without its underscores, or empty.
@@ -112,7 +112,7 @@ std::string hint(Gap const& gap) {
   if (std::string const digits = grouped_digits(gap); !digits.empty())
     return fmt::format("digits are not grouped: write `{}`", digits);
   if (gap.begins_with("parameter") && gap.statement.size() > 1 && words::contains(types, gap.statement[1].text) && gap.at == 2)
-    return fmt::format("quantities have no types: leave out `{}`", gap.statement[1].text);
+    return fmt::format("quantities have no types: remove `{}`", gap.statement[1].text);
   auto const found = std::find_if(situations.begin(), situations.end(), [&](Situation const& each) { return each.holds(gap); });
   return found == situations.end() ? std::string() : found->help;
 }

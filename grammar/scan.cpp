@@ -29,16 +29,16 @@ struct Foreign {
   std::string_view symbol, help;
 };
 constexpr std::array<Foreign, 16> foreign_operators{{
-    {"...", "leave it out: a line that ends in an operator or a comma goes on, and so does one inside of parentheses"},
+    {"...", "remove it: a line continues after an operator or a comma, and inside parentheses"},
     {"**", "a power is written with `^`"},
     {".^", "powers are written with `^`"},
     {".*", "products are written with `*`"},
     {"./", "quotients are written with `/`"},
     {"~=", "write `!=`"},
     {"<>", "write `!=`"},
-    {"+=", "a name has one value for good: give the new value a name of its own"},
-    {"-=", "a name has one value for good: give the new value a name of its own"},
-    {"*=", "a name has one value for good: give the new value a name of its own"},
+    {"+=", "a name cannot be given a second value: use another name"},
+    {"-=", "a name cannot be given a second value: use another name"},
+    {"*=", "a name cannot be given a second value: use another name"},
     {"/*", "a comment begins with `#` or `//` and ends with its line"},
     {"->", "an equation or a definition is written with `=`"},
     {":=", "an equation or a definition is written with `=`"},

@@ -66,8 +66,8 @@ Judgement judge(std::string const& path, std::string const& text, UnsavedText co
   } catch (IoError const& error) {
     result.diagnostics.add(unplaced(error.what(), error.help()));
   } catch (std::exception const& error) {
-    result.diagnostics.add(
-        unplaced(std::string("this is our fault, not yours: ") + error.what(), "please send the file that shows it"));
+    result.diagnostics.add(unplaced(std::string("this is an error in sysid, not in your file: ") + error.what(),
+                                    "please report it with the file that causes it"));
   }
   return result;
 }

@@ -48,8 +48,7 @@ std::string refusal(Reading const& reading, Occurrence const& occurrence) {
     default:
       break;
   }
-  if (symbol.named_after_another)
-    return fmt::format("this task is named after what it is about; give it a name: `{} = ...`", symbol.name);
+  if (symbol.named_after_another) return fmt::format("this task has no name of its own; give it one: `{} = ...`", symbol.name);
   for (Occurrence const& each : reading.names.all_of(occurrence.symbol))
     if (of_library(reading, each.span.begin)) return fmt::format("`{}` is declared in the standard library", symbol.name);
   return {};
@@ -58,7 +57,10 @@ std::string refusal(Reading const& reading, Occurrence const& occurrence) {
 std::string wrong_name(std::string const& name) {
   bool const good = !name.empty() && words::begins_name(name.front()) &&
                     std::all_of(name.begin(), name.end(), words::continues_name) && !words::contains(words::reserved, name);
-  return good ? "" : fmt::format("`{}` is no name: letters, digits and _, a letter first, none of if then else and or not", name);
+  return good ? ""
+              : fmt::format(
+                    "`{}` is not a valid name: use letters, digits and _, a letter first, and none of if then else and or not",
+                    name);
 }
 
 /// The file itself and those beside it that use it or one of its modules: what a declaration may be named in.
@@ -172,7 +174,7 @@ Renaming rename(std::string const& path, std::string const& text, std::uint32_t 
                 UnsavedText const& unsaved) {
   auto const reading = read(path, text, unsaved);
   if (!reading || !reading->complete)
-    return {{}, "the text has mistakes in its syntax: names in what cannot be read would be missed"};
+    return {{}, "the text has syntax errors: names in the parts that cannot be read would be missed"};
   Renameable const what = can_rename(*reading, offset);
   if (!what.refusal.empty()) return {{}, what.refusal};
   if (std::string wrong = wrong_name(name); !wrong.empty()) return {{}, std::move(wrong)};
@@ -225,13 +227,13 @@ Renaming rename(std::string const& path, std::string const& text, std::uint32_t 
     std::string const& new_text = texts.contains(root) ? texts.at(root) : old_text;
     auto const after = read(root, new_text, with_new_name);
     if (!after || after->complete != before->complete)
-      return {{}, fmt::format("`{}` cannot stand in every place of `{}`: a statement would be read as another", name, what.name)};
+      return {{}, fmt::format("`{}` cannot replace `{}` everywhere: a statement would get another meaning", name, what.name)};
     if (std::string const changed = changed_meaning(*before, *after, result.places, name.size()); !changed.empty())
       return {{},
-              fmt::format("`{}` is taken where `{}` stands: {} would mean something else", name, what.name,
+              fmt::format("`{}` is already used where `{}` occurs: {} would mean something else", name, what.name,
                           changed == what.name ? "it" : "`" + changed + "`")};
     if (errors_of(root, new_text, with_new_name) != errors_of(root, old_text, unsaved))
-      return {{}, fmt::format("with `{}` in place of `{}` the file would have other mistakes", name, what.name)};
+      return {{}, fmt::format("with `{}` in place of `{}` the file would have other errors", name, what.name)};
   }
   return result;
 }

@@ -43,12 +43,12 @@ Words function_words() {
     all.push_back({WordKind::function, std::string(row.name), std::string(row.usage), std::string(row.summary)});
   // Not in a table: they are leaves of the graph, not functions of values (check/past.cpp).
   for (auto const& [name, usage, summary] :
-       {std::tuple{"lag", "lag(e, k)", "e as it was k samples back, in discrete time"},
-        {"lags", "lags(e, 1..10)", "several past samples, as inputs of an unknown function"},
-        {"measured", "measured(channel)", "what the channel measured"},
-        {"predicted", "predicted(channel)", "what the model predicts for the channel"},
-        {"residual", "residual(channel)", "measured less predicted"},
-        {"since_last", "since_last(e)", "how much e has grown since the row before, in continuous time"}})
+       {std::tuple{"lag", "lag(e, k)", "e at k samples before, in discrete time"},
+        {"lags", "lags(e, 1..10)", "past samples, as inputs of an unknown function"},
+        {"measured", "measured(channel)", "measured samples of the channel"},
+        {"predicted", "predicted(channel)", "prediction of the channel"},
+        {"residual", "residual(channel)", "measured minus predicted"},
+        {"since_last", "since_last(e)", "change of e since the previous row, in continuous time"}})
     all.push_back({WordKind::function, name, usage, summary});
   return all;
 }
@@ -92,7 +92,7 @@ Words signal_words() {
   Words all;
   for (std::string const& name : signal_names())
     all.push_back({WordKind::signal, name, fmt::format("{}({})", name, fmt::join(signal_arguments(name), ", ")),
-                   "a signal that simulate makes for an input"});
+                   "a signal that `simulate` generates for an input"});
   return all;
 }
 
@@ -165,7 +165,7 @@ std::vector<Word> settings_of(std::string_view owner) {
         all.push_back({WordKind::setting, std::string(spelling.name), fmt::format("{} = ...", spelling.name),
                        fmt::format("argument of {}", owner)});
     for (char const* bound : {"lower", "upper"})
-      all.push_back({WordKind::setting, bound, fmt::format("{} = ...", bound), "bound of a prior, which is normalised again"});
+      all.push_back({WordKind::setting, bound, fmt::format("{} = ...", bound), "bound of a prior, which is then normalised"});
   } else if (auto const* kernel = gaussian_process::find_kernel(owner)) {
     for (auto const& each : kernel->hyper_parameters)
       all.push_back({WordKind::setting, std::string(each.name), fmt::format("{} = ...", each.name),
@@ -175,7 +175,7 @@ std::vector<Word> settings_of(std::string_view owner) {
   } else {
     for (std::string const& name : signal_arguments(owner)) all.push_back({WordKind::setting, name, name + " = ...", {}});
     if (owner == "estimated")
-      all.push_back({WordKind::setting, "rows", "rows = 50", "how many rows the state at the start is fitted to"});
+      all.push_back({WordKind::setting, "rows", "rows = 50", "number of rows used to estimate the initial state"});
   }
   return all;
 }

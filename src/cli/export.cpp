@@ -63,9 +63,9 @@ ExitCode export_results(Messages const& messages, ExportOptions const& options) 
   }
   std::string const model = options.model.empty() ? found.file.string() : options.model;
   if (model.empty() || !std::filesystem::exists(model)) {
-    messages.complain(model.empty() ? fmt::format("`{}` does not say of which file its results are", options.what)
-                                    : fmt::format("`{}`, of which the results are, is not there", model),
-                      "name it with --model FILE, or export what the results hold themselves with --draws 0");
+    messages.complain(model.empty() ? fmt::format("`{}` does not record the file of its results", options.what)
+                                    : fmt::format("`{}`, the file of these results, does not exist", model),
+                      "give it with --model FILE, or export only what the results contain with --draws 0");
     return model.empty() ? ExitCode::user_error : ExitCode::io;
   }
   return with_session(messages, options, model, found.run, [&](Session& session) {
@@ -79,7 +79,7 @@ ExitCode work(Messages const& messages, ExportOptions const& options) {
   if (options.latex) return latex(messages, options.what);
   if (!options.stan || std::filesystem::is_directory(options.what)) {
     if (!options.output) return export_results(messages, options);
-    messages.complain("what is made of results goes into their folders", "leave -o out");
+    messages.complain("the exports of results are written into their folders", "remove -o");
     return ExitCode::usage;
   }
   return with_session(messages, options, options.what, options.output.value_or(options.run.output),
@@ -96,18 +96,18 @@ Work declare_export(CLI::App& verb) {
   CLI::Option* const stan = verb.add_flag("--stan", options->stan, "write fits as Stan programs with their data");
   CLI::Option* const latex = verb.add_flag("--latex", options->latex, "print the models of a .sysid file as LaTeX for amsmath");
   latex->excludes(stan);
-  verb.add_option("-o,--output", options->output, "where programs of a .sysid file go, each into its task's folder")
+  verb.add_option("-o,--output", options->output, "folder for the programs of a .sysid file, each in its task's folder")
       ->type_name("FOLDER")
       ->default_str(options->run.output.string())
       ->needs(stan);
-  verb.add_option("--model", options->model, "the .sysid file that the results are of (default: the one they were made from)")
+  verb.add_option("--model", options->model, "the .sysid file of the results (default: the one they were made from)")
       ->type_name("FILE");
-  verb.add_option("--draws", options->draws, "how many are simulated for likelihoods and predictions; 0: only what is stored")
+  verb.add_option("--draws", options->draws, "number of draws to simulate for likelihoods and predictions; 0: only what is stored")
       ->type_name("N")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str()
       ->excludes(stan, latex);
-  verb.add_flag("--force", options->run.force, "replace files that are there");
+  verb.add_flag("--force", options->run.force, "replace existing files");
   return [options](Messages const& messages) { return work(messages, *options); };
 }
 

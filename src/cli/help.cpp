@@ -83,7 +83,7 @@ std::string verbs_page(CLI::App const& app) {
   std::vector<Row> options;
   for (CLI::Option const* option : app.get_options()) options.push_back(row_of(*option));
   return out + "\nOptions:\n" + table(options) + "\nExamples:\n" + indented(app.get_footer()) +
-         "\n`sysid VERB --help` says more about each.\n";
+         "\n`sysid VERB --help` describes each verb.\n";
 }
 
 std::string verb_page(CLI::App const& verb) {

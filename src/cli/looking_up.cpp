@@ -36,7 +36,7 @@ Work declare_list(CLI::App& verb) {
 
 Work declare_explain(CLI::App& verb) {
   auto const code = std::make_shared<std::string>();
-  verb.add_option("CODE", *code, "of a message or a finding, such as E2001 or chains_disagree; none: list all");
+  verb.add_option("CODE", *code, "code of a message or a finding, such as E2001 or chains_disagree; none: list all");
   return [code](Messages const& messages) {
     if (code->empty()) return print(list_codes(), &wrapped_rows);
     std::optional<std::string> const page = explain(*code);
@@ -46,7 +46,7 @@ Work declare_explain(CLI::App& verb) {
 
 Work declare_document(CLI::App& verb) {
   auto const module = std::make_shared<std::string>();
-  verb.add_option("MODULE", *module, "one of `sysid list modules`")->required();
+  verb.add_option("MODULE", *module, "a module of `sysid list modules`")->required();
   return [module](Messages const& messages) {
     auto const page = module_page(*module);
     return page ? print(*page, &filled) : unknown(messages, "module " + *module, "list modules");

@@ -10,34 +10,33 @@ namespace {
 constexpr char const *tasks = "Tasks of a file", *files = "Files", *results = "Results", *looking_up = "Looking up";
 
 constexpr Command commands[] = {
-    {"run", tasks, "do all tasks of a file", &declare_tasks,
+    {"run", tasks, "run all tasks of a file", &declare_tasks,
      "sysid run duffing.sysid\nsysid run duffing.sysid -o results/second --seed 2\nsysid run duffing.sysid --resume"},
-    {"simulate", tasks, "do its simulate tasks: make data", &declare_tasks, "sysid simulate duffing.sysid"},
-    {"fit", tasks, "do its fit tasks", &declare_tasks, "sysid fit duffing.sysid --force\nsysid fit duffing.sysid --dump model"},
-    {"select", tasks, "do its select tasks: which candidate model, with which parameters", &declare_tasks,
-     "sysid select bouc_wen.sysid --quiet"},
-    {"discover", tasks, "do its discover tasks: which equation, from the terms of a dictionary", &declare_tasks,
+    {"simulate", tasks, "run its simulate tasks: generate data", &declare_tasks, "sysid simulate duffing.sysid"},
+    {"fit", tasks, "run its fit tasks", &declare_tasks, "sysid fit duffing.sysid --force\nsysid fit duffing.sysid --dump model"},
+    {"select", tasks, "run its select tasks: choose among candidate models", &declare_tasks, "sysid select bouc_wen.sysid --quiet"},
+    {"discover", tasks, "run its discover tasks: find equations from the terms of a dictionary", &declare_tasks,
      "sysid discover lorenz.sysid"},
-    {"predict", tasks, "do its predict tasks, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force"},
-    {"check", files, "say what is wrong with a file and what its data can tell, before any sampling", &declare_check,
+    {"predict", tasks, "run its predict tasks, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force"},
+    {"check", files, "check a file and what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
     {"fmt", files, "rewrite files in canonical layout", &declare_format,
      "sysid fmt duffing.sysid\nsysid fmt --check models/*.sysid"},
-    {"repl", files, "a prompt for exploring: statements of the language, tasks, expressions over results", &declare_repl,
+    {"repl", files, "start an interactive prompt: statements of the language, tasks, expressions over results", &declare_repl,
      "sysid repl\nsysid repl duffing.sysid --seed 1"},
     {"lsp", files, "serve an editor on standard input and output: the language server protocol", &declare_lsp, ""},
-    {"compare", results, "set fits and predictions side by side: evidence and errors", &declare_compare,
+    {"compare", results, "compare fits and predictions: evidence and errors", &declare_compare,
      "sysid compare results\nsysid compare results/linear results/cubic"},
-    {"report", results, "make the page of results anew, without fitting again", &declare_report,
+    {"report", results, "write the report page of results again, without a new fit", &declare_report,
      "sysid report results/posterior\nsysid report results -o paper.html --figures pdf"},
     {"export", results, "write results for ArviZ and xarray, a fit as a Stan program, equations as LaTeX", &declare_export,
      "sysid export results --draws 1000\nsysid export duffing.sysid --stan\nsysid export duffing.sysid --latex"},
-    {"list", looking_up, "the tables of the language: functions, distributions, backends, ...", &declare_list,
+    {"list", looking_up, "list the tables of the language: functions, distributions, backends, ...", &declare_list,
      "sysid list distributions"},
-    {"explain", looking_up, "what the code of a message or a finding means, with an example", &declare_explain,
+    {"explain", looking_up, "explain the code of a message or a finding, with an example", &declare_explain,
      "sysid explain E2103\nsysid explain chains_disagree"},
-    {"document", looking_up, "a module of the standard library as a page", &declare_document, "sysid document hysteresis"},
-    {"version", looking_up, "the version and the instruction set in use", &declare_version, ""},
+    {"document", looking_up, "print a module of the standard library as a page", &declare_document, "sysid document hysteresis"},
+    {"version", looking_up, "print the version and the instruction set in use", &declare_version, ""},
 };
 
 void add_verbs(CLI::App& app, Messages const& messages, ExitCode& exit) {
@@ -61,7 +60,7 @@ ExitCode main(int argument_count, char** arguments) {
   app.set_help_flag("-h,--help", "print this page");
   app.require_subcommand(1)->fallthrough()->footer("sysid run models/duffing/duffing.sysid\nsysid report results");
   app.add_option_function<std::string>(
-         "--error-format", [&](std::string const& format) { messages.json = format == "json"; }, "of messages: text or json")
+         "--error-format", [&](std::string const& format) { messages.json = format == "json"; }, "format of messages: text or json")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"text", "json"}))
       ->trigger_on_parse()

@@ -47,7 +47,8 @@ ExitCode guarded(Messages const& messages, Source const& source, std::function<E
     messages.complain("out of memory");
     return ExitCode::internal;
   } catch (std::exception const& error) {
-    messages.complain(fmt::format("this is our fault, not yours: {}", error.what()), "please send the file that shows it");
+    messages.complain(fmt::format("this is an error in sysid, not in your file: {}", error.what()),
+                      "please report it with the file that causes it");
     return ExitCode::internal;
   }
 }

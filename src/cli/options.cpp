@@ -13,10 +13,10 @@ namespace {
 /// Why figures cannot be drawn as this, before hours of sampling and not after; empty when they can.
 std::string refuse_figure_format(std::string const& name) {
   auto const format = find_figure_format(name);
-  if (!format) return fmt::format("`{}` is no format of figures; there are svg, png, pdf and text", name);
+  if (!format) return fmt::format("`{}` is not a format of figures; the formats are svg, png, pdf and text", name);
   // Without gnuplot there are scripts, which the page says: nobody has asked for more.
   if (*format != FigureFormat::svg && !can_draw(*format))
-    return fmt::format("gnuplot cannot draw {} here; the Debian package gnuplot-nox can", name);
+    return fmt::format("the installed gnuplot cannot draw {}; install the Debian package gnuplot-nox", name);
   return "";
 }
 
@@ -39,7 +39,7 @@ void add_output(CLI::App& verb, std::filesystem::path& folder) {
 }
 
 void add_threads(CLI::App& verb, int& threads) {
-  verb.add_option("--threads", threads, "0: one per processor; results do not depend on it")
+  verb.add_option("--threads", threads, "number of threads, 0: one per processor; results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
@@ -49,7 +49,7 @@ void add_figures(CLI::App& verb, RunOptions& run, char const* without) {
   verb.add_flag("!--no-figures", run.figures, without);
   verb.add_option_function<std::vector<std::string>>(
           "--figures", [&run](std::vector<std::string> const& names) { run.figure_formats = figure_formats(names); },
-          "how they are drawn: svg, png, pdf, text, or several with commas between")
+          "formats of figures: svg, png, pdf, text, or several separated by commas")
       ->delimiter(',')
       ->type_name("FORMATS")
       ->check(refuse_figure_format)

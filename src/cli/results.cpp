@@ -11,7 +11,7 @@ namespace sysid::cli {
 
 Work declare_compare(CLI::App& verb) {
   auto const folders = std::make_shared<std::vector<std::filesystem::path>>();
-  verb.add_option("FOLDER", *folders, "of tasks, or of whole runs")->required();
+  verb.add_option("FOLDER", *folders, "folders of tasks or of whole runs")->required();
   return [folders](Messages const& messages) {
     Comparison const comparison = sysid::compare(*folders);
     if (messages.json)
@@ -30,9 +30,9 @@ Work declare_report(CLI::App& verb) {
   };
   auto const options = std::make_shared<Options>();
   options->run.figure_formats.clear();  // drawn anew where they are asked for
-  verb.add_option("FOLDER", options->folder, "of a task, or of a whole run")->required();
+  verb.add_option("FOLDER", options->folder, "folder of a task or of a whole run")->required();
   verb.add_option("-o,--output", options->page, "the page to write (default: report.html in the folder)")->type_name("FILE");
-  add_figures(verb, options->run, "leave figures out");
+  add_figures(verb, options->run, "write no figures");
   return [options](Messages const&) {
     if (!options->run.figure_formats.empty()) redraw_figures(options->folder, options->run.figure_formats);
     std::cout << report_results(options->folder, options->page, options->run.figures).string() << '\n';

@@ -12,10 +12,11 @@ Work declare_repl(CLI::App& verb) {
     RunOptions run;
   };
   auto const options = std::make_shared<Options>();
-  verb.add_option("FILE", options->file, "a .sysid file to begin with");
+  verb.add_option("FILE", options->file, "a .sysid file to load first");
   add_output(verb, options->run.output);
-  verb.add_flag("--force", options->run.force, "replace results that are there");
-  verb.add_option("--seed", options->run.seed, "of tasks that state none (default: drawn, and written into them)")->type_name("N");
+  verb.add_flag("--force", options->run.force, "replace existing results");
+  verb.add_option("--seed", options->run.seed, "seed of tasks without one (default: drawn at random and written into them)")
+      ->type_name("N");
   options->run.execution.threads = 0;
   add_threads(verb, options->run.execution.threads);
   return [options](Messages const&) { return static_cast<ExitCode>(repl::run_prompt(options->run, options->file)); };
@@ -23,7 +24,7 @@ Work declare_repl(CLI::App& verb) {
 
 Work declare_lsp(CLI::App& verb) {
   auto const stdio = std::make_shared<bool>(true);
-  verb.add_flag("--stdio", *stdio, "standard input and output; there is no other way");
+  verb.add_flag("--stdio", *stdio, "use standard input and output (the only mode)");
   return [stdio](Messages const&) {
     std::ios::sync_with_stdio(false);  // so that what has come already can be told
     return static_cast<ExitCode>(lsp::serve(std::cin, std::cout));

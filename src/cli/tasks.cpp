@@ -21,35 +21,36 @@ struct TaskOptions {
 
 /// Empty where the processor has it.
 std::string refuse_instruction_set(std::string const& name) {
-  if (name != "avx2" && name != "avx512") return fmt::format("`{}` is none; there are avx2 and avx512", name);
+  if (name != "avx2" && name != "avx512") return fmt::format("`{}` is not an instruction set; choose avx2 or avx512", name);
   if (name == "avx512" && supported_instruction_set() != InstructionSet::avx512)
-    return "this processor has no AVX-512 instructions; results are the same bytes with avx2";
+    return "this processor has no AVX-512 instructions; avx2 gives identical results";
   return "";
 }
 
 void add_run_options(CLI::App& verb, TaskOptions& options) {
   add_file(verb, options.file);
   add_output(verb, options.run.output);
-  verb.add_flag("--force", options.run.force, "replace results that are there");
-  verb.add_flag("--resume", options.run.resume, "go on after an interruption; keep tasks that are complete");
-  verb.add_option("--seed", options.run.seed, "of all random numbers, in place of those in the file")->type_name("N");
-  verb.add_flag("-q,--quiet", options.quiet, "no progress, no notices");
-  add_figures(verb, options.run, "leave figures as scripts");
+  verb.add_flag("--force", options.run.force, "replace existing results");
+  verb.add_flag("--resume", options.run.resume, "continue after an interruption; keep tasks that are complete");
+  verb.add_option("--seed", options.run.seed, "seed of all random numbers, in place of those in the file")->type_name("N");
+  verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
+  add_figures(verb, options.run, "write figures as scripts only");
   options.run.execution.threads = 0;
   add_threads(verb, options.run.execution.threads);
-  verb.add_option("--lanes", options.run.execution.lanes, "simulations side by side, 0: chosen; results do not depend on it")
+  verb.add_option("--lanes", options.run.execution.lanes,
+                  "number of simulations in one batch, 0: automatic; results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   verb.add_option("--instruction-set", options.instruction_set,
-                  "avx2 or avx512 (default: the best there is); results do not depend on it")
+                  "avx2 or avx512 (default: the best available); results do not depend on it")
       ->type_name("NAME")
       ->check(refuse_instruction_set);
-  verb.add_option("--checkpoint-interval", options.run.checkpoint_interval, "from one checkpoint to the next")
+  verb.add_option("--checkpoint-interval", options.run.checkpoint_interval, "time between checkpoints")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber)
       ->default_str("30");
-  verb.add_option("--interrupt-after", options.run.interrupt_after, "ask for an interruption at the n-th safe point")->group("");
+  verb.add_option("--interrupt-after", options.run.interrupt_after, "interrupt the run at the n-th safe point")->group("");
   verb.add_option("--dump", options.dump, "print a stage of the compiler and run nothing: ast, flat, model or program")
       ->type_name("STAGE")
       ->check(CLI::IsMember({"ast", "flat", "model", "program"}));
@@ -77,7 +78,7 @@ ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<s
     ExitCode const exit = run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal,
                                     out, options.quiet ? nowhere : notices);
     // Nothing else may have said so: before the first draw there is no summary.
-    if (options.quiet && exit == ExitCode::interrupted) std::cerr << "sysid: interrupted; --resume goes on with what there is\n";
+    if (options.quiet && exit == ExitCode::interrupted) std::cerr << "sysid: interrupted; --resume continues from there\n";
     return exit;
   });
 }

@@ -53,7 +53,7 @@ ExitCode no_verb(Messages const& messages, CLI::App const& app) {
 ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError const& error) {
   if (app.get_subcommands().empty()) return no_verb(messages, app);
   CLI::App const& verb = *app.get_subcommands().front();
-  std::string const see = fmt::format("`sysid {} --help` lists what it takes", verb.get_name());
+  std::string const see = fmt::format("`sysid {} --help` lists its arguments and options", verb.get_name());
   std::vector<std::string> const unread = app.remaining(true);
   if (dynamic_cast<CLI::ExtrasError const*>(&error) == nullptr || unread.empty()) {
     messages.complain(reason(error), see);
@@ -61,7 +61,7 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
   }
   std::string const word = unread.front().substr(0, unread.front().find('='));
   if (!word.starts_with('-')) {
-    messages.complain(fmt::format("`sysid {}` does not know what to do with `{}`", verb.get_name(), word), see);
+    messages.complain(fmt::format("`sysid {}` takes no argument `{}`", verb.get_name(), word), see);
     return ExitCode::usage;
   }
   std::string const guess = did_you_mean(word, option_names(verb));

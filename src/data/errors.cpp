@@ -57,7 +57,7 @@ Diagnostic not_text(std::string const& file, Mention mention) {
 }
 
 Diagnostic open_quote(std::string const& file, int line, Mention mention) {
-  return error("E4004", mention, fmt::format("a quoted cell does not end as it should on line {} of `{}`", line, file),
+  return error("E4004", mention, fmt::format("a quoted cell is not closed correctly on line {} of `{}`", line, file),
                "close it with `\"` on the same line, followed by a separator; a quote inside is written `\"\"`");
 }
 
@@ -69,7 +69,8 @@ Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int
 }
 
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention) {
-  return error("E4006", mention, fmt::format("{} is a comment", place(file, row, line)), "comments stand only above the header");
+  return error("E4006", mention, fmt::format("{} is a comment", place(file, row, line)),
+               "comments are allowed only above the header");
 }
 
 Diagnostic too_few_rows(std::string const& file, int rows, Mention mention) {
@@ -103,8 +104,8 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention
 
 Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention) {
   return error("E4011", mention, fmt::format("{} holds `{}`", place(cell), shown(text)),
-               "find out what produced it; a missing sample of a measured column is an empty cell or NA, and an input needs a "
-               "number in every row");
+               "check what produced it; a missing sample of a measured column is an empty cell or NA, and an input needs a number "
+               "in every row");
 }
 
 Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention) {
@@ -119,8 +120,8 @@ Diagnostic not_a_count(Cell const& cell, double value, Mention mention) {
 }
 
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention) {
-  return error("E4013", mention, fmt::format("{} has no value, and {} needs one in every row", place(cell), what),
-               "only measured columns may miss samples: fill the gap, or cut the record there");
+  return error("E4013", mention, fmt::format("{} has no value, but {} needs one in every row", place(cell), what),
+               "only measured columns may have missing samples: fill the gap, or cut the record there");
 }
 
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention) {
@@ -131,25 +132,25 @@ Diagnostic time_not_increasing(Cell const& cell, double before, double now, Ment
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention) {
   return error(
       "E4015", mention,
-      fmt::format(
-          "`band_limited` needs equal time steps, but row {} comes {:.9g} s after the one before, on average it is {:.9g} s", row,
-          step, usual),
+      fmt::format("`band_limited` needs equal time steps, but row {} is {:.9g} s after the row before; the mean step is {:.9g} s",
+                  row, step, usual),
       "if the sampling was regular and the printed times are rounded, give `rate` instead of the time column; otherwise use "
       "`cubic` or `linear`");
 }
 
 Diagnostic rows_outside(std::string const& file, std::string const& what, int first, int last, int rows, Mention mention) {
   return error("E4016", mention,
-               fmt::format("{} wants rows {}..{}, but `{}` has {}", what, first, last, file, counted(rows, "row")),
-               fmt::format("rows count from 1 below the header; the last is {}", rows));
+               fmt::format("{} selects rows {}..{}, but `{}` has {}", what, first, last, file, counted(rows, "row")),
+               fmt::format("rows are numbered from 1 below the header; the last is {}", rows));
 }
 
 Diagnostic cycles_against_radians(std::string const& column, std::string const& column_unit, std::string const& declared_unit,
                                   Mention mention) {
-  return error("E4017", mention,
-               fmt::format("column `{}` is in [{}], the declaration says [{}]: one counts cycles, the other radians, 2 pi apart",
-                           column, column_unit, declared_unit),
-               "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
+  return error(
+      "E4017", mention,
+      fmt::format("column `{}` is in [{}], but the declared unit is [{}]: one counts cycles, the other radians, a factor of 2 pi",
+                  column, column_unit, declared_unit),
+      "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
 }
 
 }  // namespace sysid::data_errors

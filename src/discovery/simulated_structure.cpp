@@ -78,7 +78,7 @@ JudgedModel judged_model(FoundSource const& source, FoundStructure const& struct
   }
   Model const& model = file->models.front();
   if (!model.integrated()) {
-    out.failure = "no motion to simulate: nothing in it is a derivative";
+    out.failure = "it has no motion to simulate: it contains no derivative";
     return out;
   }
   out.solver = solver_of(*file);

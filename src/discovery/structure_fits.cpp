@@ -51,7 +51,7 @@ void StructureFits::run() {
 }
 
 std::string const& StructureFits::failure(std::size_t m) const {
-  static std::string const costs = "given up: an implicit equation, whose refit takes more simulations than are spent on such";
+  static std::string const costs = "skipped: the refit of this implicit equation needs too many simulations";
   if (given_up(m)) return costs;
   return models_[m].failure.empty() ? fits_[m].failure : models_[m].failure;
 }
@@ -230,7 +230,7 @@ void StructureFits::refine() {
     if (!fits_[m].fit.finite)
       fits_[m].failure = "does not stay finite";
     else if (!fits_[m].fit.determined)
-      fits_[m].failure = "the motion does not tell its coefficients apart";
+      fits_[m].failure = "the motion does not determine its coefficients";
     else if (!fits_[m].fit.converged)
       fits_[m].failure = "its fit does not converge";
   }

@@ -63,7 +63,7 @@ DistributionRow beta_distribution() {
           .draw = &draw,
           .quantile = &quantile,
           .refuse = &refuse,
-          .summary = "beta, for shares between 0 and 1"};
+          .summary = "beta, for fractions between 0 and 1"};
 }
 
 }  // namespace sysid

@@ -27,9 +27,9 @@ constexpr int tries = 32;
 double draw(DistributionRow const& row, std::span<double const> arguments, double lower, double upper, Stream& stream) {
   std::string const name(row.name);
   if (row.draw == nullptr)
-    refuse("E2114", "`" + name + "` is improper and cannot be drawn from", "use a proper prior, such as normal or log_uniform");
+    refuse("E2114", "`" + name + "` is improper and cannot be sampled", "use a proper prior, such as normal or log_uniform");
   if (std::string_view const reason = row.refuse(arguments); !reason.empty())
-    refuse("E2112", "these arguments of `" + name + "` are impossible: " + std::string(reason), "correct the numbers");
+    refuse("E2112", "these arguments of `" + name + "` are impossible: " + std::string(reason), "correct the arguments");
   if (lower == -std::numeric_limits<double>::infinity() && upper == std::numeric_limits<double>::infinity())
     return row.draw(stream, arguments);
 

@@ -21,7 +21,7 @@ DistributionRow flat_distribution() {
           .log_density = &log_density,
           .cumulative = &cumulative,
           .refuse = &refuse,
-          .summary = "improper constant density; no evidence, no prior draws"};
+          .summary = "improper constant density; allows no evidence and no prior draws"};
 }
 
 }  // namespace sysid

@@ -97,7 +97,7 @@ DistributionRow inverse_gamma_distribution() {
           .draw = &inverse_draw,
           .quantile = &inverse_quantile,
           .refuse = &refuse,
-          .summary = "inverse gamma: 1/x is gamma, for variances"};
+          .summary = "inverse gamma, for variances: 1/x is gamma-distributed"};
 }
 
 }  // namespace sysid

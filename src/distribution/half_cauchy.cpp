@@ -47,7 +47,7 @@ DistributionRow half_cauchy_distribution() {
           .draw = &draw,
           .quantile = &quantile,
           .refuse = &refuse,
-          .summary = "half-Cauchy, for scales of hierarchies"};
+          .summary = "half-Cauchy, for scales of hierarchical models"};
 }
 
 }  // namespace sysid

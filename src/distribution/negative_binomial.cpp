@@ -68,7 +68,7 @@ DistributionRow negative_binomial_distribution() {
           .saturated = &saturated,
           .draw = &draw,
           .refuse = &refuse,
-          .summary = "counts that scatter more than Poisson's, by mean and shape or overdispersion; noise only",
+          .summary = "negative binomial: overdispersed counts, by mean and shape or overdispersion; noise only",
           .discrete = true,
           .variance = &variance,
           .excess_kurtosis = &excess_kurtosis};

@@ -69,7 +69,7 @@ DistributionRow poisson_distribution() {
           .saturated = &saturated,
           .draw = &draw,
           .refuse = &refuse,
-          .summary = "counts: Poisson, by its mean; noise only",
+          .summary = "Poisson: counts, by mean; noise only",
           .discrete = true,
           .variance = &variance,
           .excess_kurtosis = &excess_kurtosis};

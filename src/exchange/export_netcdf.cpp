@@ -36,8 +36,8 @@ template <class What>
 int task_of_kind(Session& session, StoredResult const& stored, char const* kind) {
   int const index = find_task(session, stored);
   if (!std::holds_alternative<What>(session.file.tasks[static_cast<std::size_t>(index)].what))
-    throw refused(fmt::format("`{}` is no {} in `{}`", stored.task(), kind, session.source.name()),
-                  "name the file that the results are of with --model FILE");
+    throw refused(fmt::format("`{}` is not a {} in `{}`", stored.task(), kind, session.source.name()),
+                  "give the file of the results with --model FILE");
   return index;
 }
 
@@ -104,21 +104,20 @@ void require_exportable(ResultsFolder const& results, bool force) {
   bool any = false;
   for (StoredResult const& stored : results.results) {
     if (results.one_task && stored.is("predict"))
-      throw refused(fmt::format("`{}` is a prediction, which goes into the file of its fit", stored.folder.string()),
+      throw refused(fmt::format("`{}` is a prediction and is exported with its fit", stored.folder.string()),
                     "export the folder of the fit, or of the whole run");
     std::vector<fs::path> paths;
     if (stored.is("fit")) paths.push_back(fit_path(stored));
     if (stored.is("select"))
       for (std::string const& candidate : living_candidates(stored)) paths.push_back(candidate_path(stored, candidate));
     for (fs::path const& path : paths)
-      if (!force && fs::exists(path))
-        throw refused(fmt::format("`{}` is there already", path.string()), "add --force to replace it");
+      if (!force && fs::exists(path)) throw refused(fmt::format("`{}` exists already", path.string()), "add --force to replace it");
     any = any || !paths.empty();
   }
   if (!any)
     throw refused(
         fmt::format("`{}` holds no draws", results.one_task ? results.results.front().folder.string() : results.run.string()),
-        "draws are what a fit or a selection leaves");
+        "only a fit or a selection stores draws");
 }
 
 void export_netcdf(ResultsFolder const& results, Session* session, int draws, std::ostream& out) {

@@ -36,7 +36,7 @@ class StanExport {
       throw refused("there is no fit to write as a Stan program", "name a file with a fit task, or results of one");
     for (ProgramFile const& file : files_)
       if (!force && std::filesystem::exists(file.path))
-        throw refused(fmt::format("`{}` is there already", file.path.string()), "add --force to replace it");
+        throw refused(fmt::format("`{}` exists already", file.path.string()), "add --force to replace it");
   }
 
   Diagnostics write(std::ostream& out) const {

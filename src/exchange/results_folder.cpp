@@ -42,7 +42,7 @@ ResultsFolder one_task(fs::path const& folder) {
 ResultsFolder find_results(fs::path const& folder) {
   if (fs::is_regular_file(folder))
     throw refused(fmt::format("`{}` is a file, not a folder of results", folder.string()),
-                  "run it and give the folder of its results, or add --stan or --latex");
+                  "run the file and give the folder of its results, or add --stan or --latex");
   if (!fs::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
   fs::path const given = named(folder);
   if (fs::exists(given / "summary.json")) return one_task(given);
@@ -70,7 +70,7 @@ int find_task(Session& session, StoredResult const& stored) {
   }
   throw refused(
       fmt::format("`{}` has no task `{}`, whose results `{}` holds", session.source.name(), stored.task(), stored.folder.string()),
-      "name the file that they are of with --model FILE, or export what they hold themselves with --draws 0");
+      "give the file of these results with --model FILE, or export only what they contain with --draws 0");
 }
 
 }  // namespace sysid

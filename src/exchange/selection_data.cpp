@@ -82,7 +82,7 @@ std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
       candidate.data.add(std::move(group));
     }
     candidate.data.left_out.push_back(
-        "posterior_predictive, log_likelihood, prior, prior_predictive: a selection by distance says nothing about the noise");
+        "posterior_predictive, log_likelihood, prior, prior_predictive: a selection by distance does not estimate the noise");
     candidates.push_back(std::move(candidate));
   }
   return candidates;

@@ -16,13 +16,12 @@ void require_carried(Task const& task, FitTask const& what, Model const& model, 
     throw not_carried(task, fmt::format("`{}` is a Gaussian process over its rows", model.processes.front().name),
                       "its covariance is not written out");
   if (what.start.kind == StartRule::Kind::estimated)
-    throw not_carried(task, "its start is estimated within the likelihood", "state `start = record` or `start = rest`");
+    throw not_carried(task, "its start is estimated inside the likelihood", "state `start = record` or `start = rest`");
   if (model.implicit)
-    throw not_carried(task, "its equations are not solved for the highest derivatives",
-                      "write it without what is determined implicitly");
+    throw not_carried(task, "its equations are implicit in the highest derivatives", "write it without implicit equations");
   if (model.integrated() && solver.method != written_solver)
     throw not_carried(task, fmt::format("it is integrated by {}", solver.method),
-                      fmt::format("state `solver = {}`, with as many substeps as it needs", written_solver));
+                      fmt::format("use `solver = {}`, with as many substeps as needed", written_solver));
 }
 
 }  // namespace
@@ -42,7 +41,7 @@ StanFit stan_fit(Session& session, Task const& task, SolverSettings const& solve
   require_carried(task, what, model, solver);
   auto compiled = session.compiled(what.model, false, solver.method, what.prediction);
   if (!compiled->model.memories.empty())
-    throw not_carried(task, "it remembers values from row to row", "write it without `since_last` and its like");
+    throw not_carried(task, "it uses values of previous rows", "write it without `since_last` and similar functions");
   auto space = parameter_space(compiled->model, what.experiments);
   auto data = load_experiments(session, what.experiments, model, what.start, what.prediction);
   auto priors = priors_of(*space, declared_priors(session, what.model));

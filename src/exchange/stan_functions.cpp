@@ -40,15 +40,13 @@ class Functions {
       case LeafKind::time:
         return columns_.text(leaf, "d");
       default:
-        throw not_carried(fit_.task, "it reads what the equations determine beside the states",
-                          "write it without algebraic unknowns");
+        throw not_carried(fit_.task, "it depends on algebraic unknowns of the equations", "write it without algebraic unknowns");
     }
   }
 
   StanExpressions written(Graph const& graph, std::vector<NodeId> const& roots, StanLeaves const& leaves) const {
     if (auto const lacking = lacking_in_stan(graph, roots))
-      throw not_carried(fit_.task, fmt::format("`{}` has no counterpart in Stan's language", *lacking),
-                        "a distribution that is cut off by bounds may call it");
+      throw not_carried(fit_.task, fmt::format("`{}` has no equivalent in Stan", *lacking), "a truncated distribution may use it");
     return stan_expressions(graph, roots, leaves);
   }
   StanExpressions of_model(std::vector<NodeId> const& roots) {

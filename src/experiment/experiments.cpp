@@ -39,14 +39,15 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
     throw UserError(
         {Severity::error,
          "E4203",
-         model.step ? fmt::format("row {} of `{}` comes {:.9g} s after the one before, but model `{}` steps by {:.9g} s", i + 1,
-                                  block.path, step, model.name, wanted)
-                    : fmt::format("row {} of `{}` comes {:.9g} s after the one before, on average it is {:.9g} s: model "
-                                  "`{}` needs equal steps",
-                                  i + 1, block.path, step, wanted, model.name),
+         model.step
+             ? fmt::format("row {} of `{}` is {:.9g} s after the row before, but model `{}` has steps of {:.9g} s", i + 1,
+                           block.path, step, model.name, wanted)
+             : fmt::format(
+                   "row {} of `{}` is {:.9g} s after the row before, but the mean step is {:.9g} s: model `{}` needs equal steps",
+                   i + 1, block.path, step, wanted, model.name),
          Label{block.time ? block.time->span : block.span, {}},
          {},
-         "correct `time discrete`, or bring the record to equal steps; a tolerance of 1 % is allowed for rounded times"});
+         "correct `time discrete`, or resample the record to equal steps; rounded times may differ by 1 %"});
   }
 }
 
@@ -58,15 +59,15 @@ void mark_past(Experiment& experiment, Model const& model, Span place) {
     return std::isnan(measured_sample(experiment, sample.channel, row - sample.lag));
   };
   auto const refuse = [&](PastSample const& sample, int row) {
-    throw UserError({Severity::error,
-                     "E4204",
-                     fmt::format("`{}` is missing in row {}, and model `{}` goes on from it",
-                                 model.channels[static_cast<std::size_t>(sample.channel)].name,
-                                 experiment.first_row + row - sample.lag, model.name),
-                     Label{place, {}},
-                     {},
-                     "fill the gap, choose other rows, or write `with prediction = free_run`: then the model goes on from its own "
-                     "prediction"});
+    throw UserError(
+        {Severity::error,
+         "E4204",
+         fmt::format("`{}` is missing in row {}, but model `{}` needs it for later rows",
+                     model.channels[static_cast<std::size_t>(sample.channel)].name, experiment.first_row + row - sample.lag,
+                     model.name),
+         Label{place, {}},
+         {},
+         "fill the gap, choose other rows, or write `with prediction = free_run`: the model then uses its own prediction"});
   };
   for (PastSample const& sample : past_samples(model, -2))
     if (missing(sample, 0)) refuse(sample, 0);
@@ -91,9 +92,9 @@ std::string prediction_text(Model const& model, PredictionRule rule) {
   for (int c = -1; c < static_cast<int>(model.channels.size()); ++c) from_data = from_data || !past_samples(model, c).empty();
   bool const from_model = !model.states.empty();
   return fmt::format("{}: from {}", prediction_name(rule),
-                     from_data && from_model ? "measured samples and the model's own past"
+                     from_data && from_model ? "measured samples and the model's own past samples"
                      : from_data             ? "measured samples, one step ahead"
-                                             : "the model's own past, a free run");
+                                             : "the model's own past samples, a free run");
 }
 
 std::string data_name(DataBlock const& block, int part) {
@@ -149,22 +150,22 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
   if (range.last <= history)
     throw UserError({Severity::error,
                      "E4201",
-                     fmt::format("{} ends at row {}, and model `{}` looks back {} rows", what, range.last, model.name, history),
+                     fmt::format("{} ends at row {}, but model `{}` needs {} earlier rows", what, range.last, model.name, history),
                      Label{rows.span, {}},
                      {},
-                     "take more rows, or fewer lags"});
+                     "use more rows, or fewer lags"});
   range.first = std::max(range.first, history + 1);
   int from = history + 1;
   if (start.kind != StartRule::Kind::record) from = range.first;
   if (start.kind == StartRule::Kind::estimated) {
     if (range.first + start.rows > range.last)
-      throw UserError(
-          {Severity::error,
-           "E4201",
-           fmt::format("{} has {} rows, its start needs {} and more to score", what, range.last - range.first + 1, start.rows),
-           Label{rows.span, {}},
-           {},
-           "take more rows, or estimate the start from fewer"});
+      throw UserError({Severity::error,
+                       "E4201",
+                       fmt::format("{} has {} rows, but estimating the start needs {}, and more are needed to score", what,
+                                   range.last - range.first + 1, start.rows),
+                       Label{rows.span, {}},
+                       {},
+                       "use more rows, or estimate the start from fewer rows"});
     range.first += start.rows;
   }
   Experiment experiment = make_experiment(record, name, from, range, rows.span);

@@ -66,7 +66,7 @@ constexpr FunctionRow rows[] = {
     {"sign", 1, 1, none, &unary<Operation::sign>, "-1, 0 or 1"},
     {"min", 2, any, same, &chain<Operation::minimum>, "smallest of two or more"},
     {"max", 2, any, same, &chain<Operation::maximum>, "largest of two or more"},
-    {"clamp", 3, 3, same, &clamp, "clamp(x, low, high): x, but not below low or above high"},
+    {"clamp", 3, 3, same, &clamp, "clamp(x, low, high): x limited to the range from low to high"},
     {"piecewise", 3, any, branches, &piecewise, "piecewise(a < b, x, c < d, y, z): x where a < b, else y where c < d, else z"},
     {"step", 1, 1, none, &step, "1 where x >= 0, else 0"},
     {"floor", 1, 1, dimensionless, &unary<Operation::floor>, "largest integer not above x"},

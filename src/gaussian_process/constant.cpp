@@ -1,4 +1,4 @@
-// The constant kernel: an unknown level.
+// The constant kernel: an unknown constant.
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
@@ -41,7 +41,7 @@ KernelRow constant_kernel() {
           .jet = &jet,
           .state_space = &state_space,
           .features = &features,
-          .summary = "an unknown level"};
+          .summary = "an unknown constant"};
 }
 
 }  // namespace sysid::gaussian_process

@@ -62,11 +62,11 @@ Concern fatal_concern(Outcome outcome) {
   switch (outcome) {
     case Outcome::not_positive_definite:
       return {.kind = Concern::Kind::not_positive_definite,
-              .clause = "the covariance of the observations is not positive definite, with all the jitter that is allowed"};
+              .clause = "the covariance of the observations is not positive definite, even with the largest jitter allowed"};
     case Outcome::dependent_columns:
-      return {.kind = Concern::Kind::dependent_columns, .clause = "two coefficients of the mean without a prior say the same"};
+      return {.kind = Concern::Kind::dependent_columns, .clause = "two coefficients of the mean without a prior are collinear"};
     default:
-      return {.kind = Concern::Kind::not_finite, .clause = "the likelihood is finite at none of the starts"};
+      return {.kind = Concern::Kind::not_finite, .clause = "the likelihood is not finite at any start"};
   }
 }
 

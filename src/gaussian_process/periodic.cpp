@@ -70,7 +70,7 @@ KernelRow periodic_kernel() {
           .values = &values,
           .add_gradient = &add_gradient,
           .jet = &jet,
-          .summary = "functions that repeat themselves; times another kernel, that change slowly from period to period"};
+          .summary = "periodic functions; multiplied by another kernel, functions that change slowly from period to period"};
 }
 
 }  // namespace sysid::gaussian_process

@@ -98,8 +98,8 @@ double along_axes(Objective const& objective, Mode const& mode, Ledger& ledger) 
 Evidence laplace_evidence(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
                           std::function<bool()> const& stop) {
   if (aim == Aim::likelihood)
-    return {{}, "the likelihood alone was maximised, and an evidence is an average over the prior", 0, 0, true};
-  if (modes.empty() || target.dimension() == 0) return {{}, "no mode was looked for", 0, 0};
+    return {{}, "only the likelihood was maximised, but an evidence is an average over the prior", 0, 0, true};
+  if (modes.empty() || target.dimension() == 0) return {{}, "no mode was searched for", 0, 0};
   std::vector<Mode> const found = sampled_modes(target, aim, modes, seed, ledger, stop);
   if (found.empty()) return {{}, "no mode of the posterior has a finite density", 0, 0};
   auto const best =

@@ -9,7 +9,7 @@ namespace sysid {
 namespace {
 
 SelectorRow const selector_rows[] = {
-    {"abc_smc", "approximate Bayesian computation by populations of particles, over models and parameters", abc::settings(),
+    {"abc_smc", "approximate Bayesian computation (ABC) by sequential Monte Carlo, over models and parameters", abc::settings(),
      &abc::refuse, &abc::run},
 };
 

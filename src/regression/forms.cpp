@@ -8,14 +8,14 @@ namespace sysid::regression {
 namespace {
 
 Form const form_rows[] = {
-    {"weak", "integrals against test functions, derivatives moved onto them, noise covariance known", weak::settings(),
+    {"weak", "integrals with test functions, which take the derivatives; the noise covariance is known", weak::settings(),
      &weak::refuse, &weak::project},
-    {"savitzky_golay", "local polynomials, inputs filtered alike", savitzky_golay::settings(), &savitzky_golay::refuse,
+    {"savitzky_golay", "local polynomials, inputs filtered in the same way", savitzky_golay::settings(), &savitzky_golay::refuse,
      &savitzky_golay::project},
-    {"smoothing_spline", "a spline through each channel, inputs filtered alike", smoothing_spline::settings(), &no_refusal,
-     &smoothing_spline::project},
+    {"smoothing_spline", "a spline through each channel, inputs filtered in the same way", smoothing_spline::settings(),
+     &no_refusal, &smoothing_spline::project},
     {"central", "central differences, for records without noise", {}, &no_refusal, &central::project},
-    {"measured", "each derivative has its own channel", {}, &no_refusal, &measured::project},
+    {"measured", "each derivative is measured in its own channel", {}, &no_refusal, &measured::project},
 };
 
 }  // namespace

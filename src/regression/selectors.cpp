@@ -17,7 +17,7 @@ SelectorRow const selector_rows[] = {
     {"spike_slab", "posterior probabilities of supports and terms", "inclusion probability", spike_slab::settings(), &no_refusal,
      &spike_slab::choose},
     {"ard", "one prior precision per coefficient, evidence maximised", "contribution", ard::settings(), &no_refusal, &ard::choose},
-    {"threshold", "drops the term that contributes least, again and again", "contribution", threshold::settings(), &no_refusal,
+    {"threshold", "removes the term with the smallest contribution, repeatedly", "contribution", threshold::settings(), &no_refusal,
      &threshold::choose},
 };
 

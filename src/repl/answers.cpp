@@ -73,7 +73,8 @@ std::string along_time(Quantity const& quantity, PlotSize size) {
 std::string along_draws(Quantity const& quantity, PlotSize size) {
   std::vector<Curve> curves;
   curves.push_back({numbers_up_to(quantity.values.size()), quantity.all_shown(), true});
-  return plot_curves(curves, {quantity.chains.size() > 1 ? "draw, chain after chain" : "draw", ""}, axis_of(quantity), size);
+  return plot_curves(curves, {quantity.chains.size() > 1 ? "draw, one chain after the other" : "draw", ""}, axis_of(quantity),
+                     size);
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
   std::string const examples = "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)";
   auto const& arguments = call.arguments;
   if (arguments.empty() || arguments.size() > 2)
-    return refuse(call.span, "plot takes one thing, or two against each other", examples);
+    return refuse(call.span, "`plot` takes one quantity, or two to plot against each other", examples);
   std::string drawn;
   if (arguments.size() == 2) {
     auto const x = evaluator.value(arguments[0].value), y = evaluator.value(arguments[1].value);
@@ -147,7 +148,8 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
         auto const [message, help] = without_draws(*each);
         return refuse(arguments[each == &*x ? 0 : 1].value.span, message, help);
       }
-    if (auto const why = unpaired(*x, *y)) return refuse(call.span, *why, "both are draws of one fit, or samples of one record");
+    if (auto const why = unpaired(*x, *y))
+      return refuse(call.span, *why, "both must be draws of one fit, or samples of one record");
     drawn = plot_curves({{x->all_shown(), y->all_shown(), false}}, axis_of(*x), axis_of(*y), plot_size_);
   } else {
     ast::Expression const& what = arguments[0].value;
@@ -172,7 +174,7 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
         drawn = along_time(*quantity, plot_size_);
     }
   }
-  if (drawn.empty()) return refuse(call.span, "there is nothing finite to plot", examples);
+  if (drawn.empty()) return refuse(call.span, "there are no finite values to plot", examples);
   return drawn;
 }
 

@@ -85,10 +85,10 @@ bool Workbench::reload(Arguments) {
 
 bool Workbench::save(Arguments path) {
   std::filesystem::path const to = path.empty() ? loaded_ : path_of(path);
-  if (to.empty()) return refuse("save as what?", "`save work.sysid`");
+  if (to.empty()) return refuse("`save` needs the name of a file", "`save work.sysid`");
   if (work_.items.empty()) return refuse("there is nothing to save yet");
   if (std::filesystem::exists(to) && to != loaded_)
-    return refuse(fmt::format("`{}` is there already", to.string()), "take another name, or remove it");
+    return refuse(fmt::format("`{}` exists already", to.string()), "use another name, or remove the file");
   Work moved = work_;
   moved.move_to(to);
   Diagnostics diagnostics;
@@ -103,7 +103,7 @@ bool Workbench::save(Arguments path) {
 }
 
 bool Workbench::columns(Arguments path) {
-  if (path.empty()) return refuse("columns of what?", "`columns FILE.csv`");
+  if (path.empty()) return refuse("`columns` needs the name of a data file", "`columns FILE.csv`");
   auto const folder = work_.path.parent_path();
   auto const given = path_of(path);
   Table const table = Table::read((std::filesystem::exists(given) ? given : folder / given).string());

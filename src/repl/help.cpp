@@ -19,44 +19,47 @@ namespace {
 
 constexpr KeywordRow keyword_rows[] = {
     // what stands in a file
-    {"use", "use hysteresis", "takes in the models and functions of a module, of the library (`list modules`) or beside the file"},
+    {"use", "use hysteresis",
+     "imports the models and functions of a module, from the library (`list modules`) or from the folder of the file"},
     {"model", "model duffing { ... }",
      "a model: inputs, states, parameters, equations, what is observed; with arguments a family, `model law(n)`"},
-    {"data", "data bench { ... }", "a record: its file, columns and units, the rule between samples of an input, splits"},
-    {"candidates", "candidates set { linear; law(n = 2..4) }", "models among which a record selects"},
-    {"dictionary", "dictionary spring { ... }", "the terms that an unknown equation may be made of"},
+    {"data", "data bench { ... }", "a record: its file, columns and units, the rule between the samples of an input, splits"},
+    {"candidates", "candidates set { linear; law(n = 2..4) }", "candidate models for a selection"},
+    {"dictionary", "dictionary spring { ... }", "the candidate terms of an unknown equation"},
     {"function", "function f(a, b) = a*b, function d(u) ~ gp(...)",
-     "a function of one's own; with ~ an unknown one, a Gaussian process"},
+     "a user-defined function; with ~ an unknown function, a Gaussian process"},
     // tasks
     {"simulate", "made = simulate duffing with values(m = 1), input x = gaussian(sd = 10), samples = 500, rate = 1000 [Hz]",
-     "makes a record from stated values"},
+     "generates a record from given parameter values"},
     {"fit", "posterior = fit duffing to bench.train with mh(samples = 25000)",
-     "finds the parameters; `map` is quick, `mh` gives the posterior (`list backends`)"},
-    {"select", "chosen = select set to bench with abc_smc", "finds which candidate model, with which parameters"},
-    {"discover", "found = discover spring from bench with spike_slab", "finds the equation among the terms of a dictionary"},
-    {"predict", "forecast = predict posterior on bench.test with draws(200)", "carries the draws of a fit along a record"},
+     "estimates the parameters; `map` is fast, `mh` gives the posterior (`list backends`)"},
+    {"select", "chosen = select set to bench with abc_smc",
+     "estimates the probabilities of candidate models, with their parameters"},
+    {"discover", "found = discover spring from bench with spike_slab", "finds an equation from the terms of a dictionary"},
+    {"predict", "forecast = predict posterior on bench.test with draws(200)", "predicts a record with the draws of a fit"},
     {"to", "fit duffing to bench.train", "before the records of fit and select"},
     {"on", "predict posterior on bench.test", "before the records of predict"},
     {"from", "discover spring from bench", "before the records of discover"},
     {"with", "fit duffing to bench with map, seed = 1", "before the options of a task"},
     // inside a model
-    {"time", "time t [s], time discrete 0.25 [s]",
-     "in a model the name of time, or its step; in a data block the column that holds it"},
-    {"input", "input x [N]", "what drives a model; in a data block the column it is in, `input x = force [N] hold linear`"},
-    {"state", "state y [m]", "what an equation is solved for; its order is the most primes it carries"},
-    {"initial", "initial y = 0, y' = v0", "where states begin: each below its highest derivative"},
-    {"parameter", "parameter k [N/m] ~ log_uniform(1e3, 1e5)", "an unknown number with its prior, or a known one, `= 1`"},
-    {"constant", "constant g [m/s^2] = 9.81", "a number with a name; in a data block what a parameter is in this experiment"},
+    {"time", "time t [s], time discrete 0.25 [s]", "in a model the name of time, or its step; in a data block the column of time"},
+    {"input", "input x [N]", "an input of a model; in a data block its column, `input x = force [N] hold linear`"},
+    {"state", "state y [m]", "an unknown of the equations; its order is the largest number of primes on it"},
+    {"initial", "initial y = 0, y' = v0", "initial values of states and of their derivatives below the highest"},
+    {"parameter", "parameter k [N/m] ~ log_uniform(1e3, 1e5)",
+     "an unknown parameter with its prior, or one with a fixed value, `= 1`"},
+    {"constant", "constant g [m/s^2] = 9.81", "a named number; in a data block the value of a parameter in this experiment"},
     {"let", "let w0 = sqrt(k/m)", "an expression with a name"},
     {"derive", "derive fn [Hz] = sqrt(k/m)/(2*pi)", "a quantity of interest, which gets a posterior as parameters do"},
-    {"observe", "observe displacement ~ normal(y, sd = sigma)", "how the model produces a measured channel, with its noise"},
-    {"part", "part joint = bouc_wen(n = 2, displacement = y)", "another model inside this one; its names are joint.k and so on"},
+    {"observe", "observe displacement ~ normal(y, sd = sigma)",
+     "the distribution of a measured channel: the response of the model, with noise"},
+    {"part", "part joint = bouc_wen(n = 2, displacement = y)", "another model inside this one; its names are written joint.k"},
     {"discrete", "time discrete 0.25 [s]", "a model that steps from sample to sample"},
-    {"per", "parameter k per experiment [N/m] ~ normal(mu, sd = tau)", "a parameter that each experiment has its own of"},
+    {"per", "parameter k per experiment [N/m] ~ normal(mu, sd = tau)", "a parameter with a separate value in each experiment"},
     {"experiment", "parameter k per experiment [N/m] ~ normal(mu, sd = tau)", "each record that a fit joins"},
-    {"lag", "lag(measured(level), 1)", "a quantity so many samples ago, in discrete time"},
+    {"lag", "lag(measured(level), 1)", "the value of a quantity the given number of samples before, in discrete time"},
     {"lags", "lags(U, 0..4)", "a list of lags, as input of a Gaussian process"},
-    {"since_last", "poisson(since_last(-S))", "the change of a quantity since the row before"},
+    {"since_last", "poisson(since_last(-S))", "the change of a quantity since the previous row"},
     {"gp", "function d(u) ~ gp(squared_exponential(amplitude = s, length = l))",
      "a Gaussian process with its covariance (`list kernels`)"},
     {"pi", "2*pi", "3.14159..., the ratio of circumference to diameter"},
@@ -69,49 +72,50 @@ constexpr KeywordRow keyword_rows[] = {
     {"not", "if not y > 0 then k else 0", "the condition does not hold"},
     // inside a data block
     {"file", "file \"bench.csv\"", "the CSV of a record, from the folder of the .sysid file"},
-    {"rate", "rate 1000 [Hz]", "samples in a second, where no column holds the time"},
-    {"step", "step 1 [ms]", "the time between samples, where no column holds it"},
+    {"rate", "rate 1000 [Hz]", "samples per second, if no column contains the time"},
+    {"step", "step 1 [ms]", "the time between samples, if no column contains it"},
     {"measure", "measure displacement = y_noisy [mm]", "the column that holds a channel, and its unit"},
-    {"split", "split train = rows 1..500, test = rows 501..1500", "rows to fit and rows to keep aside, from 1, ends included"},
+    {"split", "split train = rows 1..500, test = rows 501..1500",
+     "named ranges of rows, for example to fit and to test, from 1, both ends included"},
     {"rows", "split train = rows 1..500", "rows of the file, from 1, both ends included"},
     {"hold", "input x = force [N] hold zero_order",
-     "what an input does between samples: zero_order, linear, cubic or band_limited"},
+     "the rule for an input between samples: zero_order, linear, cubic or band_limited"},
     // candidates and dictionaries
-    {"shared", "shared m, c", "parameters that mean the same in every candidate"},
+    {"shared", "shared m, c", "parameters that have the same meaning in every candidate"},
     {"probability", "linear probability 0.5",
-     "of a candidate before the data; at the prompt, `probability(k3 > 0)`, of a comparison over draws"},
-    {"target", "target = m*y'' - x", "what is known of an equation to be discovered"},
-    {"terms", "terms = polynomial(y, y', degree = 3), sign(y')", "what it may be made of besides"},
-    {"exclude", "exclude = y*y'", "terms that a family has and that are not wanted"},
+     "prior probability of a candidate; at the prompt, `probability(k3 > 0)` of a comparison over draws"},
+    {"target", "target = m*y'' - x", "the known part of an equation to be discovered"},
+    {"terms", "terms = polynomial(y, y', degree = 3), sign(y')", "the candidate terms of the equation"},
+    {"exclude", "exclude = y*y'", "terms of a family that are not used"},
     {"coefficients", "coefficients = [N/m], [N/m^3]", "the units that coefficients may have"},
     // options of tasks
-    {"start", "start = estimated(rows = 50)", "where a simulation begins: record, rest or estimated from so many rows"},
+    {"start", "start = estimated(rows = 50)", "how a simulation starts: record, rest or estimated from a number of rows"},
     {"record", "start = record", "from the first row of the file, in the model's initial values"},
     {"rest", "start = rest", "at the first scored row, in the model's initial values"},
-    {"estimated", "start = estimated(rows = 50)", "in the state that fits the first rows best"},
+    {"estimated", "start = estimated(rows = 50)", "in the state that best fits the first rows"},
     {"search", "search = near(posterior)", "where a fit looks for modes: everywhere, or near an earlier fit"},
-    {"near", "search = near(posterior)", "from where an earlier fit ended: quick, and blind to other modes"},
+    {"near", "search = near(posterior)", "from where an earlier fit ended: fast, but finds no other modes"},
     {"everywhere", "search = everywhere", "from draws of the prior"},
-    {"solver", "solver = cvode(relative = 1e-8)", "how equations are integrated (`list solvers`)"},
-    {"substeps", "substeps = 4", "steps of the fixed-step solver between two samples; left out, it is chosen"},
-    {"prediction", "prediction = free_run", "where lagged samples come from: as_written, one_step or free_run"},
-    {"as_written", "prediction = as_written", "lagged samples come from where the model says"},
-    {"one_step", "prediction = one_step", "lagged samples are those measured"},
-    {"free_run", "prediction = free_run", "lagged samples are the model's own"},
-    {"seed", "seed = 1", "of all random numbers of a task; at the prompt one is written into a task that has none"},
-    {"draws", "predict posterior on bench with draws(200)", "how many draws of the posterior a prediction carries along"},
-    {"redraw", "redraw = step", "whether a prediction draws parameters once a trajectory or at every step"},
-    {"distance", "distance = nmse", "how far a simulation lies from the record, in a selection"},
-    {"weights", "weights(displacement = 1)", "of channels in a distance"},
-    {"values", "values(m = 1, c = 20)", "parameters of a simulation"},
-    {"noise", "noise = 1 [percent]", "of a simulation; in a discovery the sd of channels, noise(displacement = 0.1 [mm])"},
-    {"samples", "samples = 500", "rows of a simulation"},
+    {"solver", "solver = cvode(relative = 1e-8)", "the integration method of the equations (`list solvers`)"},
+    {"substeps", "substeps = 4", "steps of the fixed-step solver between two samples; if not given, the fit chooses it"},
+    {"prediction", "prediction = free_run", "the source of lagged samples: as_written, one_step or free_run"},
+    {"as_written", "prediction = as_written", "lagged samples are measured or predicted as written in the model"},
+    {"one_step", "prediction = one_step", "lagged samples are the measured ones"},
+    {"free_run", "prediction = free_run", "lagged samples are the predicted ones"},
+    {"seed", "seed = 1", "seed of all random numbers of a task; at the prompt one is written into a task that has none"},
+    {"draws", "predict posterior on bench with draws(200)", "number of posterior draws that a prediction uses"},
+    {"redraw", "redraw = step", "whether a prediction draws parameters once per trajectory or at every step"},
+    {"distance", "distance = nmse", "the distance between a simulation and the record, in a selection"},
+    {"weights", "weights(displacement = 1)", "weights of channels in a distance"},
+    {"values", "values(m = 1, c = 20)", "values of the parameters of a simulation"},
+    {"noise", "noise = 1 [percent]", "noise of a simulation; in a discovery the sd of channels, noise(displacement = 0.1 [mm])"},
+    {"samples", "samples = 500", "number of rows of a simulation"},
     {"gaussian", "input x = gaussian(sd = 10)", "a random input for a simulation"},
     {"sine", "input x = sine(amplitude = 1, frequency = 10 [Hz])", "an input of one frequency"},
     {"multisine", "input x = multisine(sd = 1, lowest = 1 [Hz], highest = 100 [Hz])", "an input of many frequencies"},
-    {"derivatives", "spike_slab(derivatives = weak)", "how a discovery gets derivatives from a record"},
-    {"top", "top = 5", "structures that a discovery shows"},
-    {"refit", "refit = no", "whether a discovery fits what it finds again by simulation"},
+    {"derivatives", "spike_slab(derivatives = weak)", "how a discovery computes derivatives from a record"},
+    {"top", "top = 5", "number of structures that a discovery shows"},
+    {"refit", "refit = no", "whether a discovery refits its structures by simulation"},
 };
 
 std::string entry_of(KeywordRow const& row) { return fmt::format("{}\n  {}\n", row.usage, row.summary); }
@@ -187,10 +191,8 @@ std::optional<std::string> help_on(std::string const& word, int columns) {
   for (std::string_view const plot : {"plot", "trace", "histogram"})
     if (word == plot)
       add_rows(
-          "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)\n"
-          "  a plot in characters: draws in their order, how often which value, one thing against another, a series along its "
-          "record,\n"
-          "  what a fit or prediction makes of a record\n");
+          "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)\n  a plot in characters: draws "
+          "in order, a histogram, one quantity against another, a series along its record,\n  a fit or prediction of a record\n");
   for (KeywordRow const& row : keywords())
     if (row.word == word) add_rows(entry_of(row));
   for (ListRow const& topic : lists()) add_rows(from_list(topic, word));
@@ -202,17 +204,16 @@ std::optional<std::string> help_on(std::string const& word, int columns) {
 
 std::string help_overview(int columns) {
   std::string const first =
-      "Statements of the language, as in a file: a model, a data block, a task; a task is run when it is entered. Statements of a\n"
-      "model or data block, `parameter k [N/m] ~ normal(1e4, sd = 100)` or an equation, change the one that was entered last. "
-      "Lines\n"
-      "go on while a brace or bracket is open. Expressions are over results: mean(k), quantile(fn, 0.95), plot(trace(k)),\n"
-      "corr(k, k3), rms(residual(output)).\n\n";
+      "Statements of the language, as in a file: a model, a data block, a task; a task is run when it is entered. Statements of "
+      "a\nmodel or data block, `parameter k [N/m] ~ normal(1e4, sd = 100)` or an equation, change the one that was entered last. "
+      "Lines\ncontinue while a brace or bracket is open. Expressions are over results: mean(k), quantile(fn, 0.95), "
+      "plot(trace(k)),\ncorr(k, k3), rms(residual(output)).\n\n";
   std::string rows;
   std::size_t width = 0;
   for (CommandRow const& row : commands()) width = std::max(width, row.usage.size());
   for (CommandRow const& row : commands()) rows += fmt::format("  {:<{}}  {}\n", row.usage, width, row.summary);
   std::string const last =
-      "\n`help WORD` explains every word of the language and every code of a message: help log_uniform, help fit, help E2103.\n";
+      "\n`help WORD` explains each word of the language and each code of a message: help log_uniform, help fit, help E2103.\n";
   return filled(first, columns) + wrapped_rows(rows, columns) + filled(last, columns);
 }
 

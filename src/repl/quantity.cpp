@@ -54,12 +54,12 @@ std::optional<std::string> unpaired(Quantity const& a, Quantity const& b) {
                                a.record->time == b.record->time
                          : a.kind == b.kind && a.of == b.of;
   if (same && a.values.size() == b.values.size()) return std::nullopt;
-  return fmt::format("{} of {} and {} of {} do not go together one by one", article(a.kind), a.of, article(b.kind), b.of);
+  return fmt::format("{} of {} and {} of {} cannot be combined element by element", article(a.kind), a.of, article(b.kind), b.of);
 }
 
 std::pair<std::string, std::string> without_draws(Quantity const& quantity) {
   if (quantity.kind == Quantity::Kind::number) return {"this is one number", ""};
-  return {fmt::format("`{}` is an optimum, one point: it has no draws", quantity.of), "fit with mh for draws"};
+  return {fmt::format("`{}` is an optimum, a single point without draws", quantity.of), "fit with mh to get draws"};
 }
 
 std::vector<double> Quantity::all_shown() const {
@@ -171,8 +171,7 @@ std::optional<Quantity> Evaluator::series(ast::Call const& call) {
     return std::nullopt;
   }
   if (column->measured.empty() && what != "predicted") {
-    refuse(channel->span, fmt::format("`{}` is not measured", path),
-           "the states of a model and its derived quantities are predicted alone");
+    refuse(channel->span, fmt::format("`{}` is not measured", path), "states and derived quantities are only predicted");
     return std::nullopt;
   }
   Quantity quantity{Quantity::Kind::rows, {}, unit(column->unit), fmt::format("{}({})", what, path), of, {}, {}, record};
@@ -201,7 +200,7 @@ std::optional<Quantity> Evaluator::statistic(ast::Call const& call) {
     auto each = value(argument.value);
     if (!each) return std::nullopt;
     if (finite(each->values).empty()) {
-      refuse(argument.span, "there is no number in this");
+      refuse(argument.span, "this expression contains no number");
       return std::nullopt;
     }
     of.push_back(std::move(*each));
@@ -247,8 +246,8 @@ bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
       refuse(tree.span, fmt::format("there is no `{}`: no task has been run yet", path),
              !near.empty() ? near : "expressions at the prompt are over results; run a fit first");
     else if (result(path) != nullptr)
-      refuse(tree.span, fmt::format("`{}` is a task, not a number", path),
-             fmt::format("`{}.NAME` is one of its quantities, `show {}` all of it", path, path));
+      refuse(tree.span, fmt::format("`{}` is a task, not a quantity", path),
+             fmt::format("`{}.NAME` is one of its quantities; `show {}` shows all of it", path, path));
     else
       refuse(tree.span, fmt::format("no result has a `{}`", path), near);
     return false;
@@ -292,7 +291,7 @@ std::optional<Quantity> Evaluator::value(ast::Expression const& tree) {
     if (!first) {
       auto const why = unpaired(result, each);
       if (!why) continue;
-      refuse(tree.span, *why, "take `mean`, `sd` or another number of each");
+      refuse(tree.span, *why, "use `mean`, `sd` or another statistic of each");
       return std::nullopt;
     }
     result.kind = each.kind;

@@ -46,8 +46,7 @@ Value quantile(Asked const& asked) {
   if (!scatters(asked)) return {};
   Values const& part = asked.other->values;
   if (part.size() == 1 && part[0] >= 0 && part[0] <= 1) return sysid::quantile(asked.values, part[0]);
-  asked.refuse(asked.call.arguments[1].span, "a quantile is asked for by a part between 0 and 1",
-               "for example `quantile(k, 0.95)`");
+  asked.refuse(asked.call.arguments[1].span, "the level of a quantile must lie between 0 and 1", "for example `quantile(k, 0.95)`");
   return {};
 }
 
@@ -62,7 +61,7 @@ Value rms(Asked const& asked) {
 Value corr(Asked const& asked) {
   if (!scatters(asked) || !scatters(asked, 1)) return {};
   if (auto const why = unpaired(asked.of, *asked.other)) {
-    asked.refuse(asked.call.span, *why, "correlation pairs draws of one fit, or samples of one record");
+    asked.refuse(asked.call.span, *why, "a correlation needs draws of one fit, or samples of one record");
     return {};
   }
   Values a, b;
@@ -78,7 +77,7 @@ Value probability(Asked const& asked) {
   if (!scatters(asked)) return {};
   if (std::all_of(asked.values.begin(), asked.values.end(), [](double each) { return each == 0 || each == 1; }))
     return sysid::mean(asked.values);
-  asked.refuse(asked.call.arguments[0].span, "a probability is that of a comparison", "for example `probability(k3 > 0)`");
+  asked.refuse(asked.call.arguments[0].span, "`probability` takes a comparison", "for example `probability(k3 > 0)`");
   return {};
 }
 
@@ -86,21 +85,24 @@ Value count(Asked const& asked) { return static_cast<double>(asked.values.size()
 
 constexpr StatisticRow statistic_rows[] = {
     {{"mean", "mean(k)", "mean over draws, or over the samples of a record"}, 1, false, &mean},
-    {{"sd", "sd(k)", "standard deviation; of an optimum Laplace's"}, 1, false, &sd},
-    {{"median", "median(k)", "the value that half of the draws lie below"}, 1, false, &median},
-    {{"quantile", "quantile(k, 0.95)", "the value below which that part of the draws lies"}, 2, false, &quantile},
+    {{"sd", "sd(k)", "standard deviation; for an optimum by Laplace's approximation"}, 1, false, &sd},
+    {{"median", "median(k)", "median of the draws"}, 1, false, &median},
+    {{"quantile", "quantile(k, 0.95)", "quantile of the draws: the value below which the given fraction lies"},
+     2,
+     false,
+     &quantile},
     {{"min", "min(k)", "the smallest draw or sample"}, 1, false, &min},
     {{"max", "max(k)", "the largest draw or sample"}, 1, false, &max},
-    {{"rms", "rms(residual(output))", "root of the mean square"}, 1, false, &rms},
-    {{"corr", "corr(k, k3)", "correlation of two quantities, draw by draw or sample by sample"}, 2, true, &corr},
-    {{"probability", "probability(k3 > 0)", "the part of the draws for which a comparison holds"}, 1, true, &probability},
-    {{"count", "count(k)", "how many draws or samples there are"}, 1, true, &count},
+    {{"rms", "rms(residual(output))", "root mean square"}, 1, false, &rms},
+    {{"corr", "corr(k, k3)", "correlation of two quantities, over draws or samples"}, 2, true, &corr},
+    {{"probability", "probability(k3 > 0)", "fraction of the draws for which a comparison holds"}, 1, true, &probability},
+    {{"count", "count(k)", "number of draws or samples"}, 1, true, &count},
 };
 
 constexpr PromptFunction series_rows[] = {
-    {"measured", "measured(output)", "the samples of a channel on the rows that were fitted or predicted"},
-    {"predicted", "predicted(output)", "the mean prediction of a channel there, without noise"},
-    {"residual", "residual(output)", "what was measured less what was predicted"},
+    {"measured", "measured(output)", "measured samples of a channel on the rows that were fitted or predicted"},
+    {"predicted", "predicted(output)", "mean prediction of a channel on these rows, without noise"},
+    {"residual", "residual(output)", "measured minus predicted"},
 };
 
 }  // namespace

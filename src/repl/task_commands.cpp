@@ -69,14 +69,15 @@ bool Workbench::refit(Arguments arguments) {
     name = words.back();
     words.resize(words.size() - 2);
   }
-  if (words.size() > 1) return refuse("refit takes one fit", "`refit`, `refit FIT`, `refit FIT as NAME with mh(samples = 4000)`");
+  if (words.size() > 1) return refuse("`refit` takes one fit", "`refit`, `refit FIT`, `refit FIT as NAME with mh(samples = 4000)`");
   if (words.size() == 1) from = words[0];
   if (from.empty())
     for (Result const& each : results_)
       if (each.verb == "fit" && work_.find(ItemKind::task, each.task) < work_.items.size()) from = each.task;
   if (from.empty()) return refuse("no fit has been run yet", "`fit1 = fit MODEL to DATA with map`");
   std::size_t const place = work_.find(ItemKind::task, from);
-  if (place == work_.items.size() || !fitted_.contains(from)) return refuse(fmt::format("`{}` is no fit that has been run", from));
+  if (place == work_.items.size() || !fitted_.contains(from))
+    return refuse(fmt::format("`{}` is not a fit that has been run", from));
   std::string const& text = work_.items[place].text;
   ast::Task const task = std::get<ast::Task>(item_of(text));
   auto const written = [&](Span span) { return text.substr(span.begin, span.end - span.begin); };
@@ -106,10 +107,9 @@ bool Workbench::refit(Arguments arguments) {
       }
   bool const anew = !stated.contains("search");
   if (anew && name == from)
-    return refuse(
-        fmt::format("`{}` is the fit that a refit begins from: it cannot take its place", from),
-        fmt::format("give it a name of its own, `refit as {}`, or let it begin anew, `refit as {} with search = everywhere`",
-                    free_task_name(from), from));
+    return refuse(fmt::format("`{}` is the fit that the refit starts from and cannot be replaced by it", from),
+                  fmt::format("use another name, `refit as {}`, or search anew, `refit as {} with search = everywhere`",
+                              free_task_name(from), from));
   std::string kept;
   for (ast::Option const& option : task.options) {
     // Of new options the rest stays: the back end, where the simulation starts, how it is solved, the seed.
@@ -162,7 +162,7 @@ bool Workbench::resume(Arguments task) {
   if (name.empty() && interrupted_.size() == 1) name = interrupted_.begin()->first;
   auto const place = interrupted_.find(name);
   if (place == interrupted_.end())
-    return refuse(interrupted_.empty() ? "nothing has been stopped" : "which of the tasks that were stopped?",
+    return refuse(interrupted_.empty() ? "no task has been stopped" : "more than one task was stopped: give its name",
                   interrupted_.empty() ? "" : "`resume TASK`");
   return run_task(name, std::shared_ptr<Checked const>(place->second), true);
 }

@@ -73,7 +73,7 @@ bool Workbench::run_task(std::string const& name, std::shared_ptr<Checked const>
     Task const& needed = tasks[static_cast<std::size_t>(*earlier)];
     bool const there = session.fitted.contains(*earlier) || session.selected.contains(*earlier);
     if (!there && !sysid::complete(session.result_folder(needed)))
-      return refuse(fmt::format("`{}` begins from the draws of `{}`, and there are none yet", name, needed.name),
+      return refuse(fmt::format("`{}` starts from the draws of `{}`, but there are none yet", name, needed.name),
                     fmt::format("`{} {}`", interrupted_.contains(needed.name) ? "resume" : "run", needed.name));
   }
   clear_interrupt();

@@ -104,7 +104,7 @@ class Dialogue {
   }
 
   int run() {
-    std::cout << "sysid " SYSID_VERSION ": `help` says what there is, Tab completes, Ctrl-D ends\n" << std::flush;
+    std::cout << "sysid " SYSID_VERSION ": `help` lists the commands, Tab completes, Ctrl-D ends\n" << std::flush;
     while (!workbench_.over()) {
       interrupts = 0;
       errno = 0;

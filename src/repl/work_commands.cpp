@@ -53,8 +53,8 @@ bool Workbench::list(Arguments topic) {
     bool const current =
         (item.kind == ItemKind::model && item.name == model_) || (item.kind == ItemKind::data && item.name == data_);
     rows.push_back({std::string(word_of(item.kind)), item.name,
-                    current     ? "where statements typed now go"
-                    : item.kept ? "as it was when a task ran"
+                    current     ? "the next statements change this one"
+                    : item.kept ? "as it was when a task was run"
                                 : ""});
   }
   if (!rows.empty()) voices_.answers << align_columns(rows, 3);
@@ -100,7 +100,7 @@ bool Workbench::change(Arguments block) {
   for (ItemKind const kind : {ItemKind::model, ItemKind::data})
     if (work_.find(kind, block) < work_.items.size()) {
       (kind == ItemKind::model ? model_ : data_) = block;
-      say(fmt::format("statements of a {} now change `{}`", kind == ItemKind::model ? "model" : "data block", block));
+      say(fmt::format("the next statements of a {} change `{}`", kind == ItemKind::model ? "model" : "data block", block));
       return true;
     }
   std::vector<std::string> known;
@@ -113,7 +113,8 @@ bool Workbench::drop(Arguments name) {
   Work draft = work_;
   std::size_t const place = draft.find(name);
   std::size_t const model = draft.find(ItemKind::model, model_);
-  if (name.empty()) return refuse("drop what?", "`drop NAME`: a statement of the work, or a declaration of the current model");
+  if (name.empty())
+    return refuse("drop what?", "`drop NAME` removes a statement of the work, or a declaration of the current model");
   if (place < draft.items.size()) {
     draft.items.erase(draft.items.begin() + static_cast<std::ptrdiff_t>(place));
   } else if (model < draft.items.size()) {

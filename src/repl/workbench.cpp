@@ -115,7 +115,8 @@ bool Workbench::guarded(Source const& source, std::function<bool()> const& act) 
   } catch (std::bad_alloc const&) {
     return refuse("out of memory");
   } catch (std::exception const& error) {
-    return refuse(fmt::format("this is our fault, not yours: {}", error.what()), "please `save` the work and send it");
+    return refuse(fmt::format("this is an error in sysid, not in your file: {}", error.what()),
+                  "please `save` the work and report it with that file");
   }
 }
 
@@ -212,13 +213,13 @@ bool Workbench::draft(EntryPart const& part, std::string const& entry, Work& wor
   std::size_t const place = work.find(of_model ? ItemKind::model : ItemKind::data, name);
   if (name.empty() || place == work.items.size()) {
     Diagnostics diagnostics;
-    diagnostics.add(
-        {Severity::error,
-         "",
-         of_model ? "this stands in a model, and there is none yet" : "this stands in a data block, and there is none yet",
-         Label{part.span, {}},
-         {},
-         of_model ? "begin with `model NAME {`, or `load FILE`" : "begin with `data NAME {`, or `load FILE`"});
+    diagnostics.add({Severity::error,
+                     "",
+                     of_model ? "this statement belongs to a model, but there is none yet"
+                              : "this statement belongs to a data block, but there is none yet",
+                     Label{part.span, {}},
+                     {},
+                     of_model ? "begin with `model NAME {`, or `load FILE`" : "begin with `data NAME {`, or `load FILE`"});
     show(diagnostics, entry);
     return false;
   }

@@ -22,14 +22,15 @@ namespace {
 
 constexpr SettingRow fixed_settings[] = {
     {"substeps", SettingKind::integer, "1", 1, 10000, "",
-     "equal steps per sampling interval; left out in a fit: chosen by the tolerance guard"},
+     "number of equal steps per sampling interval; if not given, a fit chooses it"},
 };
 
 constexpr SettingRow adaptive_settings[] = {
-    {"relative", SettingKind::real, "1e-8", 1e-13, 0.1, "", "error allowed per step, as a part of each state"},
+    {"relative", SettingKind::real, "1e-8", 1e-13, 0.1, "", "error allowed per step, relative to each state"},
     {"absolute", SettingKind::real, "0", 0, 1e300, "",
-     "error allowed per step near zero, SI; 0: relative times a thousandth of the size reached"},
-    {"steps", SettingKind::integer, "10000", 1, 1e9, "", "most steps between two samples: then the solve has failed"},
+     "error allowed per step near zero, in SI units; 0: `relative` times a thousandth of the largest value reached"},
+    {"steps", SettingKind::integer, "10000", 1, 1e9, "",
+     "maximum number of steps between two samples; a simulation that needs more fails"},
 };
 
 // To the digits that a person would write: 1e-5/100 is not the number nearest to 1e-7.
@@ -61,7 +62,7 @@ std::span<SolverRow const> solvers() {
        .in_program = true,
        .step = &euler_step},
       {.name = "dopri5",
-       .summary = "the adaptive method of Dormand and Prince of order 5, each lane with its own steps",
+       .summary = "the adaptive method of Dormand and Prince of order 5, with separate steps for each simulation",
        .settings = adaptive_settings,
        .stepping = Stepping::lanes,
        .order = 5,

@@ -119,7 +119,7 @@ TEST_CASE("steps too long for a prior's fast end are not a failing model; stated
   PriorPage const& prior = *outlook(chosen, "posterior").prior;
   CHECK(prior.failed_as_stated > 64);
   CHECK(prior.failed < 26);
-  CHECK(check_text(chosen.page).find("its steps are too long there") != std::string::npos);
+  CHECK(check_text(chosen.page).find("because its steps are too long") != std::string::npos);
   CHECK(check_text(chosen.page).find("one every 7 day") != std::string::npos);
   CheckResult const stated =
       checked(models / "sir/sir.sysid", with(shipped("sir/sir.sysid"), "chains = 4), seed", "chains = 4), substeps = 1, seed"));
@@ -426,7 +426,7 @@ TEST_CASE("of a large model less is looked at, and what is left out is said") {
   CHECK_FALSE(page.information);
   CHECK(page.left_out.find("slopes towards 202 parameters of a model of this size would take longer than a check may") !=
         std::string::npos);
-  CHECK(check_text(result.page).find("nothing found in what was looked at") != std::string::npos);
+  CHECK(check_text(result.page).find("nothing found in the parts that were checked") != std::string::npos);
 }
 
 TEST_CASE("a prior that reaches where the model diverges is said with the term that does") {

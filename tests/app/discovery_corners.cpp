@@ -42,7 +42,7 @@ TEST_CASE("the record that the corner cases vary is found without a word") {
 TEST_CASE("a forcing that the dictionary declares and does not read is named where it stands") {
   DiscoveryAnswer const answer = run(file("target = y''\nterms = y', y, y^2, y^3, 1"));
   CHECK(answer.exit == 0);
-  CHECK(contains(answer.said, "case.sysid:2:7: warning[E3019]: nothing in this dictionary reads the input `u`"));
+  CHECK(contains(answer.said, "case.sysid:2:7: warning[E3019]: nothing in this dictionary uses the input `u`"));
   json const finding = answer.finding("unexplained_residual");
   REQUIRE_FALSE(finding.is_null());
   CHECK(finding.at("severity") == "warning");

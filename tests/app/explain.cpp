@@ -170,7 +170,7 @@ TEST_CASE("explain finds a code however it is written") {
   REQUIRE(text.has_value());
   CHECK(text->starts_with("E2001: a name that is not declared\n"));
   CHECK(text->find("\nMended:\n\n    derive fn [Hz] = sqrt(k/m) / (2*pi)\n") != std::string::npos);
-  CHECK(text->find("stand inside the model of this file:\n\n    model oscillator {\n") != std::string::npos);
+  CHECK(text->find("are part of the model of this file:\n\n    model oscillator {\n") != std::string::npos);
   CHECK(text->find("```") == std::string::npos);
   CHECK(explain("e2001") == text);
   CHECK(explain("2001") == text);

@@ -51,7 +51,7 @@ bool found(json const& summary, std::string const& code) {
 TEST_CASE("an optimum is called one, has no quantiles, and what is predicted from it says what it leaves out") {
   Told const told = run_optimum(optimum_of(""));
   CHECK(told.run.exit == 0);
-  CHECK(told.run.out.find("one point, the optimum") != std::string::npos);
+  CHECK(told.run.out.find("optimum, a single point") != std::string::npos);
   CHECK(told.run.out.find("Laplace sd") != std::string::npos);
   CHECK(told.run.out.find("q95") == std::string::npos);
   json const& k = told.fit.at("parameters").at("k");

@@ -136,7 +136,7 @@ TEST_CASE("tasks that were interrupted before they had a result have a line on t
   report_results(run.results, run.folder.path() / "all.html", false);
   std::string const page = read_file(run.folder.path() / "all.html");
   CHECK(page.find("A run of 3 tasks") != std::string::npos);
-  CHECK(page.find("late <b>interrupted before it had a result; run it again with --resume</b>") != std::string::npos);
+  CHECK(page.find("late <b>interrupted before it had a result; continue with --resume</b>") != std::string::npos);
 }
 
 TEST_CASE("what another version wrote is told from what is damaged") {

@@ -154,14 +154,14 @@ TEST_CASE("an output folder that cannot be made or written is an error of input 
     CAPTURE(folder);
     Answer const shown = run("k", folder);
     CHECK(shown.exit == ExitCode::io);
-    CHECK(shown.messages.starts_with("sysid: error: cannot make the folder `OUT/posterior`: "));
+    CHECK(shown.messages.starts_with("sysid: error: cannot create the folder `OUT/posterior`: "));
   }
   TemporaryFolder const output;
   std::filesystem::permissions(output.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   if (::geteuid() != 0) {  // nothing is read-only to root
     Answer const shown = run("k", output.path() / "x");
     CHECK(shown.exit == ExitCode::io);
-    CHECK(shown.messages.starts_with("sysid: error: cannot make the folder `OUT/posterior`: permission denied"));
+    CHECK(shown.messages.starts_with("sysid: error: cannot create the folder `OUT/posterior`: permission denied"));
   }
 }
 
@@ -180,6 +180,6 @@ TEST_CASE("a disk that takes no byte is found before any work, and nothing half-
   CHECK(shown.exit == ExitCode::io);
   CHECK(shown.messages ==
         "sysid: error: cannot write `OUT/posterior/claim`: file too large\n"
-        "help: check that the folder takes files and the disk has room\n");
+        "help: check that the folder is writable and the disk has free space\n");
   CHECK(std::filesystem::is_empty(output.path() / "posterior"));
 }

@@ -56,7 +56,7 @@ TEST_CASE("inputs must all be bound, channels in part") {
   CHECK(fitted("time t\ninput x = x hold linear\nmeasure displacement = y\nmeasure force = f").empty());
   std::string const shown = fitted("time t\nmeasure displacement = y");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("error[E4109]: data `d` does not give input `x` of model `m`") != std::string::npos);
+  CHECK(shown.find("error[E4109]: data block `d` does not provide input `x` of model `m`") != std::string::npos);
 }
 
 TEST_CASE("a block may serve several models: channels and inputs of another are no mistake") {
@@ -113,8 +113,8 @@ TEST_CASE("what nothing reads is warned of, once the file has no errors") {
 TEST_CASE("a column in a unit of another kind is refused, with both units") {
   std::string const shown = fitted("time t\ninput x = x [m] hold linear\nmeasure displacement = y [s]");
   CHECK(errors_in(shown) == 2);
-  CHECK(shown.find("column `x` is in [m], the declaration says [N]") != std::string::npos);
-  CHECK(shown.find("column `y` is in [s], the declaration says [m]") != std::string::npos);
+  CHECK(shown.find("column `x` is in [m], but the declared unit is [N]") != std::string::npos);
+  CHECK(shown.find("column `y` is in [s], but the declared unit is [m]") != std::string::npos);
 }
 
 TEST_CASE("cycles are not taken for radians, nor metres for a time") {
@@ -123,10 +123,10 @@ TEST_CASE("cycles are not taken for radians, nor metres for a time") {
   std::string const shown =
       messages(rotor + block("time t\ninput w = f [Hz] hold linear\nmeasure displacement = y") + "fit m to d with mh\n");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("error[E4017]: column `f` is in [Hz], the declaration says [rad/s]: one counts cycles, the other radians") !=
+  CHECK(shown.find("error[E4017]: column `f` is in [Hz], but the declared unit is [rad/s]: one counts cycles, the other radians") !=
         std::string::npos);
   CHECK(messages(block("time t [m]")).find("error[E4114]: time cannot be in [m]") != std::string::npos);
-  CHECK(messages(block("rate 9 [s]")).find("error[E2014]: the sampling rate is in [Hz], this is in [s]") != std::string::npos);
+  CHECK(messages(block("rate 9 [s]")).find("error[E2014]: the sampling rate is in [Hz], but this is in [s]") != std::string::npos);
 }
 
 TEST_CASE("the derivative of an input is refused where the data hold it, wherever it stands") {
@@ -159,5 +159,5 @@ TEST_CASE("a prediction binds the model of its fit to other data") {
   std::string const shown = messages(model + whole + "data e {\nfile \"e.csv\"\ntime t\nmeasure displacement = y\n}\n" +
                                      "f = fit m to d.train with mh\np = predict f on e\n");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("data `e` does not give input `x`") != std::string::npos);
+  CHECK(shown.find("data block `e` does not provide input `x`") != std::string::npos);
 }

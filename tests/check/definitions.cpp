@@ -22,14 +22,14 @@ TEST_CASE("definitions may stand behind their use, in any order") {
 TEST_CASE("a loop of definitions is written out once") {
   std::string const shown = refused_definitions("y' = a\nlet a = b + 1\nlet b = c + 1\nlet c = 2*a");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("error[E2006]: this definition needs itself: a -> b -> c -> a") != std::string::npos);
+  CHECK(shown.find("error[E2006]: this definition is circular: a -> b -> c -> a") != std::string::npos);
   CHECK(errors_in(refused_definitions("y' = a\nlet a = a + 1")) == 1);
 }
 
 TEST_CASE("a function that calls itself is refused") {
   std::string const shown = refused_definitions("y' = f(y)\nfunction f(a) = a*f(a - 1)");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("this definition needs itself: f() -> f()") != std::string::npos);
+  CHECK(shown.find("this definition is circular: f() -> f()") != std::string::npos);
 }
 
 TEST_CASE("arguments of a function hide the model's names, other names are the model's") {

@@ -65,9 +65,9 @@ TEST_CASE("constants are converted to the zero point of their parameter, and ref
   CHECK(values("constant Ta = 20; constant Tk = 20 [degC]")[1].value() == doctest::Approx(293.15).epsilon(1e-12));
   CHECK(values("constant Ta = 20; constant rise = 5 [K]")[2].value() == 5);
   auto const said = [&](std::string const& constants) { return messages(with("constant Ta = 20; " + constants)); };
-  CHECK(said("constant rise = 5 [degC]").find("error[E2014]: the constant `rise` is in [delta_degC], this is in [degC]") !=
+  CHECK(said("constant rise = 5 [degC]").find("error[E2014]: the constant `rise` is in [delta_degC], but this is in [degC]") !=
         std::string::npos);
-  CHECK(said("constant w = 1 [Hz]").find("error[E4017]: the constant `w` is in [rad/s], this is in [Hz]: one counts cycles") !=
+  CHECK(said("constant w = 1 [Hz]").find("error[E4017]: the constant `w` is in [rad/s], but this is in [Hz]: one counts cycles") !=
         std::string::npos);
   CHECK(errors_in(said("constant w = 60 [1/s]")) == 0);
 }
@@ -80,8 +80,9 @@ TEST_CASE("values and rates of a task are not taken in cycles for radians, and w
     return oven + "s = simulate oven with values(w = " + w + ", Ta = 300 [K]), input T = gaussian(" + input + "), rate = " + rate +
            ", noise = 0, samples = 3, seed = 1\n";
   };
-  CHECK(messages(with("1 [Hz]", "sd = 1", "1 [Hz]")).find("error[E4017]: `w` is in [rad/s], this is in [Hz]") != std::string::npos);
-  CHECK(messages(with("1", "sd = 1", "1 [rad/s]")).find("error[E4017]: `rate` is in [Hz], this is in [rad/s]") !=
+  CHECK(messages(with("1 [Hz]", "sd = 1", "1 [Hz]")).find("error[E4017]: `w` is in [rad/s], but this is in [Hz]") !=
+        std::string::npos);
+  CHECK(messages(with("1", "sd = 1", "1 [rad/s]")).find("error[E4017]: `rate` is in [Hz], but this is in [rad/s]") !=
         std::string::npos);
   auto const task = std::get<SimulateTask>(checked(with("1", "mean = 300 [K], sd = 2 [K]", "1 [Hz]")).tasks.at(0).what);
   CHECK(task.values[1].value() == doctest::Approx(26.85).epsilon(1e-12));

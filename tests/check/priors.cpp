@@ -43,7 +43,7 @@ TEST_CASE("priors that need each other are refused with the loop written out") {
   std::string const shown = refused_parameters(
       "parameter a ~ normal(b, sd = 1)\nparameter b ~ normal(0, sd = 1, upper = c)\nparameter c ~ normal(a, sd = 1)");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("error[E2111]: these priors need each other: a -> b -> c -> a") != std::string::npos);
+  CHECK(shown.find("error[E2111]: these priors depend on each other in a cycle: a -> b -> c -> a") != std::string::npos);
   CHECK(errors_in(refused_parameters("parameter a ~ normal(a, sd = 1)")) == 1);
 }
 
@@ -58,11 +58,10 @@ TEST_CASE("a prior may not read what moves") {
 }
 
 TEST_CASE("one spelling of a width is wanted, and is named") {
-  CHECK(
-      refused_parameters("parameter a ~ normal(0, sd = 1, precision = 1)").find("`sd` and `precision` say the same thing twice") !=
-      std::string::npos);
-  CHECK(refused_parameters("parameter a ~ normal(0, 1)").find("error[E2106]: say which this is: `sd`, `variance` or `precision`") !=
-        std::string::npos);
+  CHECK(refused_parameters("parameter a ~ normal(0, sd = 1, precision = 1)")
+            .find("`sd` and `precision` are two forms of the same argument") != std::string::npos);
+  CHECK(refused_parameters("parameter a ~ normal(0, 1)")
+            .find("error[E2106]: the name of this argument is missing: `sd`, `variance` or `precision`") != std::string::npos);
   CHECK(refused_parameters("parameter a ~ normal(0, precison = 1)").find("help: did you mean `precision`?") != std::string::npos);
   CHECK(refused_parameters("parameter a ~ normal(mean = 0, mean = 1, sd = 1)").find("`mean` is given twice") != std::string::npos);
 }

@@ -46,7 +46,7 @@ TEST_CASE("a simulation needs the values of the parameters that it uses, not of 
   CHECK(simulation("values(k = 2), input x = constant(value = 1), noise = 1, samples = 10, step = 1").noise_fraction == near(0.01));
   std::string const shown = refused("simulate m with values(k = 2), input x = constant(value = 1), samples = 10, step = 1");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("error[E6011]: simulating needs a value for `s`") != std::string::npos);
+  CHECK(shown.find("error[E6011]: a simulation needs a value for `s`") != std::string::npos);
 }
 
 TEST_CASE("settings of a back end are its defaults where they are not given") {
@@ -110,7 +110,7 @@ TEST_CASE("numbers outside their range or of the wrong kind are refused with wha
   CHECK(errors_in(shown) == 6);
   CHECK(refused("fit m to d with mh, solver = rk5").find("did you mean `rk4`?") != std::string::npos);
   for (char const* each :
-       {"`samples` must be at least 1, here it is 0", "`chains` must be a whole number", "`k` is not declared",
+       {"`samples` must be at least 1, but is 0", "`chains` must be a whole number", "`k` is not declared",
         "help: choose `adaptive` or `spherical`", "`substeps` must lie between 1 and 10000", "`seed` must not be negative"})
     CHECK_MESSAGE(shown.find(each) != std::string::npos, each);
 }
@@ -124,8 +124,8 @@ TEST_CASE("a number in a unit of another kind is refused where one is wanted") {
   std::string const shown = refused(
       "simulate m with values(k = 2 [N], s = 3 [um]), input x = gaussian(sd = 1 [m]), noise = 1 [kg], samples = 8, rate = 9 [s]");
   CHECK(errors_in(shown) == 4);
-  for (char const* each : {"`k` is in [N/mm], this is in [N]", "`sd` is in [kN], this is in [m]",
-                           "`noise` is a pure number, this is in [kg]", "`rate` is in [Hz], this is in [s]"})
+  for (char const* each : {"`k` is in [N/mm], but this is in [N]", "`sd` is in [kN], but this is in [m]",
+                           "`noise` is a pure number, but this is in [kg]", "`rate` is in [Hz], but this is in [s]"})
     CHECK_MESSAGE(shown.find(each) != std::string::npos, shown);
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("a multisine has harmonics in its band, below half the rate") {
   };
   CHECK(band("lowest = 1, highest = 4").empty());
   CHECK(band("lowest = 0.1, highest = 0.1").empty());  // the first harmonic, 10 Hz / 100
-  CHECK(band("lowest = 1, highest = 5").find("error[E6101]: this multisine reaches 5 Hz, half the sampling rate is 5 Hz") !=
+  CHECK(band("lowest = 1, highest = 5").find("error[E6101]: this multisine reaches 5 Hz, but half the sampling rate is 5 Hz") !=
         std::string::npos);
   CHECK(band("lowest = 1.01, highest = 1.09").find("error[E6101]: no harmonic of the record, a multiple of 0.1 Hz") !=
         std::string::npos);

@@ -129,7 +129,7 @@ TEST_CASE("units are compared in each place where two of them meet") {
       "1)\n}\n");
   CHECK(guess.code == "E2204");
   CHECK(guess.primary == "1 [kg]");
-  CHECK(guess.message == "`v'` is in [m/s/s], this is in [kg]");
+  CHECK(guess.message == "`v'` is in [m/s/s], but this is in [kg]");
   CHECK(said_of("model a {\nstate y [m]\ninitial y = 0, y' = 1 [m]\ny'' = 0\nobserve d ~ normal(y, sd = 1)\n}\n").primary ==
         "1 [m]");
 }
@@ -168,8 +168,8 @@ TEST_CASE("what agrees passes: numbers adapt, prefixes and pure numbers do not m
 TEST_CASE("the help names what is missing") {
   CHECK(with_equation("m*y'' + c*y' + k + k3*y^3 = x").help == "multiply it by a length; `y` is one");
   CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help == "divide it by a length; `y` is one");
-  CHECK(with_equation("m*y'' + 20*y' + k*y = x").help == "a number as a factor has no unit of its own: write `20 [N s/m]`");
-  CHECK(with_equation("m*y'' + c*y' + 100*y = x").help == "a number as a factor has no unit of its own: write `100 [N/m]`");
+  CHECK(with_equation("m*y'' + 20*y' + k*y = x").help == "a number as a factor has no unit: write `20 [N s/m]`");
+  CHECK(with_equation("m*y'' + c*y' + 100*y = x").help == "a number as a factor has no unit: write `100 [N/m]`");
   CHECK(said_of("model a {\nstate y [m]\nparameter c [N s/m] = 1\nparameter k [N/m] = 1\ninput x [N]\ninitial y = 0\nc*y' + c*y + "
                 "k*y = x\n"
                 "observe d ~ normal(y, sd = 1)\n}\n")
@@ -177,7 +177,7 @@ TEST_CASE("the help names what is missing") {
   CHECK(with_equation("m*y'' + c*y + k*y = x").help == "did you mean `y'` for `y`, or `c [N/m]`?");  // and not a rate, which `w` is
   CHECK(with("let a = k*t + x").help.find("t'") == std::string::npos);                               // time has no primes
   CHECK(with("let a = exp(y)").help == "divide it by a length");
-  CHECK(with("let a = abs(y)^n").help == "make the base a pure number: divide `abs(y)` by a reference in [m]");
+  CHECK(with("let a = abs(y)^n").help == "make the base a pure number: divide `abs(y)` by a reference value in [m]");
   CHECK(with("let a = if y then 1 else 2").help == "compare it: `y > 0`");
 }
 

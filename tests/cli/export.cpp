@@ -39,7 +39,7 @@ TEST_CASE("fits that Stan can be told of are written, the others named with thei
 
   Said const again = desk.ask("export line.sysid --stan");
   CHECK(again.exit == 65);
-  CHECK(again.text.find("sysid: error: `results/posterior/posterior.stan` is there already\nhelp: add --force to replace it\n") !=
+  CHECK(again.text.find("sysid: error: `results/posterior/posterior.stan` exists already\nhelp: add --force to replace it\n") !=
         std::string::npos);
 }
 

@@ -44,5 +44,5 @@ TEST_CASE("rows of a table go on below their own sentence") {
   CHECK(shown.text.find(
             "  burn_in    5000       first iterations, dropped; the\n                        proposal adapts in them\n") !=
         std::string::npos);
-  CHECK(desk.ask("list backends").text.find("dropped; the proposal adapts in them\n") != std::string::npos);
+  CHECK(desk.ask("list backends").text.find("discarded; the proposal adapts during them\n") != std::string::npos);
 }

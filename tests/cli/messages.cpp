@@ -15,14 +15,16 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   };
   refused("ftt x.sysid", "sysid: error: there is no verb `ftt`\nhelp: did you mean `fit` or `fmt`?\n");
   refused("fit x.sysid --ouput y", "sysid: error: `sysid fit` has no option `--ouput`\nhelp: did you mean `--output`?\n");
-  refused("fit", "sysid: error: FILE is required\nhelp: `sysid fit --help` lists what it takes\n");
-  refused("fit x.sysid --threads", "sysid: error: `--threads` needs a value\nhelp: `sysid fit --help` lists what it takes\n");
+  refused("fit", "sysid: error: FILE is required\nhelp: `sysid fit --help` lists its arguments and options\n");
+  refused("fit x.sysid --threads",
+          "sysid: error: `--threads` needs a value\nhelp: `sysid fit --help` lists its arguments and options\n");
   refused("list modules more",
-          "sysid: error: `sysid list` does not know what to do with `more`\n"
-          "help: `sysid list --help` lists what it takes\n");
+          "sysid: error: `sysid list` takes no argument `more`\n"
+          "help: `sysid list --help` lists its arguments and options\n");
   refused("explain E9999", "sysid: error: there is no message E9999\nhelp: `sysid explain` lists all\n");
   refused("document springs", "sysid: error: there is no module springs\nhelp: `sysid list modules` lists all\n");
-  refused("export x.sysid -o y", "sysid: error: --output requires --stan\nhelp: `sysid export --help` lists what it takes\n");
+  refused("export x.sysid -o y",
+          "sysid: error: --output requires --stan\nhelp: `sysid export --help` lists its arguments and options\n");
   CHECK(desk.ask("--error-format json fit").text.starts_with("{\"file\":\"sysid\",\"severity\":\"error\",\"code\":\"\""));
 }
 
@@ -33,13 +35,13 @@ TEST_CASE("a file to write says that its folder is not there, and not that the d
   CHECK(said.exit == 74);
   CHECK(said.text ==
         "sysid: error: cannot write `missing/folder/x.html`: no such file or directory\n"
-        "help: there is no folder `missing/folder`: make it, or name another one\n");
+        "help: there is no folder `missing/folder`: create it, or give another one\n");
   said = desk.ask("report results -o results");
   CHECK(said.exit == 74);
-  CHECK(said.text.ends_with("help: `results` is a folder: name a file in it\n"));
+  CHECK(said.text.ends_with("help: `results` is a folder: give a file in it\n"));
   said = desk.ask("fit line.sysid -o line.sysid/results");
   CHECK(said.exit == 74);
-  CHECK(said.text.ends_with("help: a file stands where a folder should be: name another one\n"));
+  CHECK(said.text.ends_with("help: a part of the path is a file, not a folder: give another path\n"));
 }
 
 TEST_CASE("results that are there are an error of the program, not of the text") {

@@ -10,7 +10,7 @@ TEST_CASE("a stop before the first draw is said, also where progress and notices
   LineDesk const desk;
   Said const said = desk.ask("fit line.sysid --no-figures --quiet --interrupt-after 1");
   CHECK(said.exit == 75);
-  CHECK(said.text == "sysid: interrupted; --resume goes on with what there is\n");
+  CHECK(said.text == "sysid: interrupted; --resume continues from there\n");
   CHECK(desk.ask("fit line.sysid --no-figures --quiet --resume").exit <= 1);
 }
 

@@ -131,7 +131,7 @@ TEST_CASE("samples may be missing in measured columns only") {
   std::vector<Diagnostic> const found = errors(request(file.path(), {input("x", InputRule::zero_order)}, {"y"}));
   REQUIRE(found.size() == 1);
   CHECK(found[0].code == "E4013");
-  CHECK(found[0].message == "`" + file.path() + "` row 3 (line 4), column `x` has no value, and an input needs one in every row");
+  CHECK(found[0].message == "`" + file.path() + "` row 3 (line 4), column `x` has no value, but an input needs one in every row");
   TemporaryFile const gap("t,y\n0,1\n,2\n");
   CHECK(errors(request(gap.path(), {}, {"y"})).at(0).code == "E4013");
 }
@@ -205,7 +205,7 @@ TEST_CASE("rows outside the record are an error that names how many there are") 
   std::optional<Diagnostic> const wrong = check_rows(record, "part `train`", {1, 4}, Span{1, 2});
   REQUIRE(wrong);
   CHECK(wrong->code == "E4016");
-  CHECK(wrong->message == "part `train` wants rows 1..4, but `" + file.path() + "` has 3 rows");
+  CHECK(wrong->message == "part `train` selects rows 1..4, but `" + file.path() + "` has 3 rows");
   CHECK(wrong->primary->span == Span{1, 2});
   CHECK(check_rows(record, "part `train`", {0, 2}));
   CHECK(check_rows(record, "part `train`", {3, 2}));

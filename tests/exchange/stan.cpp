@@ -111,12 +111,12 @@ TEST_CASE("Stan gives exported programs the log density that we do") {
 
 TEST_CASE("what a Stan program cannot hold is refused by name") {
   CHECK(refusal("silverbox", read_file(models / "silverbox/silverbox.sysid"), "posterior") ==
-        "`posterior` cannot be written as a Stan program: its start is estimated within the likelihood");
+        "`posterior` cannot be written as a Stan program: its start is estimated inside the likelihood");
   CHECK(refusal("robertson", read_file(models / "robertson/robertson.sysid"), "estimate") ==
         "`estimate` cannot be written as a Stan program: it is integrated by cvode");
   CHECK(refusal("bridge", read_file(models / "bridge/bridge.sysid"), "line_curved").find("is a Gaussian process over its rows") !=
         std::string::npos);
-  CHECK(refusal("sir", read_file(models / "sir/sir.sysid"), "posterior").ends_with("it remembers values from row to row"));
+  CHECK(refusal("sir", read_file(models / "sir/sir.sysid"), "posterior").ends_with("it uses values of previous rows"));
 }
 
 TEST_CASE("names become identifiers of Stan, each its own") {

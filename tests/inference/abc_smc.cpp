@@ -206,7 +206,7 @@ TEST_CASE("degenerate cases end in words") {
     SelectionResult const result = run(two_widths(), with({{"simulations", 10.0}}));
     REQUIRE(result.failure);
     CHECK(result.failure->message ==
-          "10 of 1000 draws from the priors could be simulated after 10 simulations: `simulations = 10` are spent");
+          "10 of 1000 draws from the priors could be simulated after 10 simulations: `simulations = 10` is reached");
     CHECK(result.failure->help == "allow more, or take fewer `particles`");
   }
   SUBCASE("nothing can be simulated") {

@@ -184,7 +184,7 @@ TEST_CASE("renaming changes every place of the meaning and no other, and refuses
       "1)\n}\n";
   bench.client.replace(capture);
   CHECK(bench.client.at("rename", capture, capture.find("k*b"), {{"newName", "b"}}).is_null());
-  CHECK(bench.client.error.at("message").get<std::string>().find("`b` is taken") != std::string::npos);
+  CHECK(bench.client.error.at("message").get<std::string>().find("`b` is already used") != std::string::npos);
   CHECK_FALSE(bench.client.at("rename", capture, capture.find("k*b"), {{"newName", "d"}}).is_null());
 }
 

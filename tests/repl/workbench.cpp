@@ -84,7 +84,7 @@ TEST_CASE("a refit may begin everywhere, and cannot take the place of what it be
   REQUIRE(d.enter("drag = fit oscillator to bench.train with map"));
   CHECK_FALSE(d.enter("refit as drag"));
   CHECK(has(d.messages(),
-            "`drag` is the fit that a refit begins from: it cannot take its place\nhelp: give it a name of its own, "
+            "`drag` is the fit that the refit starts from and cannot be replaced by it\nhelp: use another name, "
             "`refit as drag2`"));
   REQUIRE_MESSAGE(d.enter("refit with search = everywhere"), d.messages());
   CHECK(has(d.messages(), "drag2 = fit oscillator to bench.train with map, seed = 1, search = everywhere\n"));
@@ -102,7 +102,7 @@ TEST_CASE("a task that begins from another one says which, where that has not be
   Dialogue other;
   REQUIRE_MESSAGE(other.enter("load " + d.path("sub.sysid")), other.messages());
   CHECK_FALSE(other.enter("run second"));
-  CHECK(other.messages() == "`second` begins from the draws of `first`, and there are none yet\nhelp: `run first`\n");
+  CHECK(other.messages() == "`second` starts from the draws of `first`, but there are none yet\nhelp: `run first`\n");
   CHECK_FALSE(other.enter("run forecast"));
   CHECK(has(other.messages(), "help: `run second`"));
   CHECK_MESSAGE(other.enter("run first second forecast"), other.messages());
@@ -216,7 +216,7 @@ TEST_CASE("draws of different fits, and samples of different records, are not pa
   for (char const* entry : {"corr(a.k, b.k)", "plot(a.k, b.k)", "mean(a.k - b.k)"}) {
     CAPTURE(entry);
     CHECK_FALSE(d.enter(entry));
-    CHECK_MESSAGE(has(d.messages(), "draws of a and draws of b do not go together one by one"), d.messages());
+    CHECK_MESSAGE(has(d.messages(), "draws of a and draws of b cannot be combined element by element"), d.messages());
   }
   CHECK(d.enter("corr(a.k, a.c)"));
   CHECK_FALSE(d.enter("corr(a.k, mean(a.c))"));
@@ -244,7 +244,7 @@ TEST_CASE("an optimum says that it has no draws, whatever is asked of it") {
        {"probability(k > 1 [N/m])", "quantile(k, 0.5)", "corr(k, c)", "sd(2*k)", "plot(k, c)", "plot(k)", "plot(k/c)"}) {
     CAPTURE(entry);
     CHECK_FALSE(d.enter(entry));
-    CHECK_MESSAGE(has(d.messages(), "`best` is an optimum, one point: it has no draws"), d.messages());
+    CHECK_MESSAGE(has(d.messages(), "`best` is an optimum, a single point without draws"), d.messages());
   }
   CHECK(d.enter("sd(k)"));
   CHECK_FALSE(d.enter("plot(mean(k), k)"));

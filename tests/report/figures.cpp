@@ -134,7 +134,7 @@ TEST_CASE("one trajectory is no posterior mean and has no band") {
   CHECK(figure.script.find("'mean'") == std::string::npos);
   CHECK(figure.script.find("'95 % band'") == std::string::npos);
   CHECK(figure.script.find("'model'") != std::string::npos);
-  CHECK(figure.caption.ends_with("one trajectory has no band."));
+  CHECK(figure.caption.ends_with("a single trajectory has no band."));
 }
 
 TEST_CASE("the numbers over a marginal are in the unit of its axis") {
@@ -221,7 +221,7 @@ TEST_CASE("the value that data were made with is a line at its place, where all 
   CHECK(block(figure.script, "truth0")[0][0] == doctest::Approx(1.0001));
   CHECK(block(figure.script, "truth2").empty());  // nobody says
   CHECK(block(figure.script, "truth4").empty());  // far outside
-  CHECK(figure.caption.find("Made with values outside what is shown: beta (9.000·10¹¹)") != std::string::npos);
+  CHECK(figure.caption.find("Generated with values outside the shown range: beta (9.000·10¹¹)") != std::string::npos);
   report.data.push_back(report.data[0]);
   report.data[1].truth[0].value = 1.0002;
   CHECK(block(posterior_figure(report).script, "truth0").empty());

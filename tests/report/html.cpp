@@ -165,21 +165,21 @@ TEST_CASE("sentences follow the values and never contradict the checks") {
     report.fit = {{"bench.train", "displacement", "mm", std::move(scores)}};
     return report_html(report, {}).find(words) != std::string::npos;
   };
-  CHECK(says({{"nmse", 0.01}}, "can hardly be told apart"));
-  CHECK(says({{"nmse", 140}}, "no better than a constant at the mean"));
-  CHECK(says({{"coverage_95", 0.94}}, "as wide as they say"));
+  CHECK(says({{"nmse", 0.01}}, "can hardly be distinguished"));
+  CHECK(says({{"nmse", 140}}, "no better than a constant equal to the mean"));
+  CHECK(says({{"coverage_95", 0.94}}, "consistent with the data"));
   CHECK(says({{"coverage_95", 0.7}}, "too narrow"));
-  CHECK(says({{"coverage_95", 1}}, "wider than need be"));
+  CHECK(says({{"coverage_95", 1}}, "too wide for these data"));
   CHECK(says({{"whiteness_p", 2e-4}}, "residuals follow one another"));
   CHECK(says({{"whiteness_p", 0.02}}, "no residual follows"));
   CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals uncorrelated with heat, p"));
   CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals follow the input"));
-  CHECK(says({{"chi_squared_per_sample", 0.6}}, "noise accounts for them"));
+  CHECK(says({{"chi_squared_per_sample", 0.6}}, "the noise explains them"));
   report.noise = {"sigma"};
-  CHECK(says({{"chi_squared_per_sample", 0.6}}, "was fitted to them, so that this says nothing of the model"));
+  CHECK(says({{"chi_squared_per_sample", 0.6}}, "was fitted to the residuals, so this does not test the model"));
   report.findings = {{FindingCode::noise_size, Severity::error, {}, "m", ""}};
-  CHECK(says({{"chi_squared_per_sample", 0.6}}, "smaller than the model says"));
-  CHECK(says({{"chi_squared_per_sample", 3}}, "larger than the model says"));
+  CHECK(says({{"chi_squared_per_sample", 0.6}}, "smaller than in the model"));
+  CHECK(says({{"chi_squared_per_sample", 3}}, "larger than in the model"));
   CHECK(report_html(report, {}).find("narrow every parameter") == std::string::npos);  // nothing is learnt from what failed
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("of several channels the worst is named") {
   report.predictions.clear();
   report.fit = {{"a", "force", "N", {{"nmse", 1}}}, {"b", "force", "N", {{"nmse", 30}}}};
   std::string const page = report_html(report, {});
-  CHECK(page.find("30.0 % of the variance of what was measured is left over (force on b)") != std::string::npos);
+  CHECK(page.find("30.0 % of the measured variance is not explained (force on b)") != std::string::npos);
 }
 
 TEST_CASE("a parameter's prior stands beside its posterior, with how much narrower that is") {
@@ -246,15 +246,15 @@ TEST_CASE("what is said of modes is no more than a search can see, least of all 
   Report report = example::duffing(20);
   report.modes[0].hits = 3;
   auto const says = [&](char const* words) { return report_html(report, {}).find(words) != std::string::npos; };
-  CHECK(says("The search found one mode, where 3 of its local searches ended. It saw no other values"));
+  CHECK(says("The search found one mode, reached by 3 of its local searches. It found no other parameter values"));
   report.findings = {{FindingCode::noise_size, Severity::error, {}, "m", ""}};
-  CHECK(says("The search found one mode, where 3 of its local searches ended. A check failed: a better mode may lie"));
+  CHECK(says("The search found one mode, reached by 3 of its local searches. A check failed: a better mode may lie"));
   CHECK_FALSE(says("no other values"));
   CHECK_FALSE(says("search = everywhere"));
   report.findings.push_back({FindingCode::searched_near, Severity::note, {}, "m", ""});
   CHECK(says("<code>search = everywhere</code>"));
   report.modes.resize(2, report.modes[0]);
-  CHECK(says("The search found 2 modes, where 3 and 3 of its local searches ended."));
+  CHECK(says("The search found 2 modes, reached by 3 and 3 of its local searches."));
 }
 
 TEST_CASE("paper keeps the tasks of a run with their verdicts, and not the links to sections") {

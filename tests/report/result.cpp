@@ -60,7 +60,7 @@ TEST_CASE("pictures that gnuplot refuses are named, and their scripts stay") {
                                             {{"broken", "", "", "this is no command\n"}, std::nullopt}};
   auto const undrawn = write_figures(figures, folder.path(), {FigureFormat::svg, FigureFormat::pdf});
   CHECK(undrawn == std::vector<std::string>{"broken.svg", "broken.pdf"});
-  CHECK(undrawn_words(undrawn) == "gnuplot did not draw broken.svg and 1 more; the scripts are in figures/");
+  CHECK(undrawn_words(undrawn) == "gnuplot failed to draw broken.svg and 1 more; the scripts are in figures/");
   auto const files = contents(folder.path());
   CHECK(files.contains("figures/broken.gnuplot"));
   CHECK(files.contains("figures/fine.pdf"));

@@ -161,7 +161,7 @@ std::optional<std::string> explain(std::string_view code) {
     while (text.ends_with("\n\n")) text.pop_back();
     bool const has_example = !section.bad.empty() || !section.mended.empty();
     if (has_example && !section.frame.empty() && !stands_alone(section.bad)) {
-      text += section.frame.front().kind == "sysid inside" ? "\nThe lines above stand inside the model of this file:\n\n"
+      text += section.frame.front().kind == "sysid inside" ? "\nThe lines above are part of the model of this file:\n\n"
                                                            : "\nThe lines above continue this file:\n\n";
       for (Example const& example : section.frame) text += shown(example);
     }

@@ -57,7 +57,8 @@ Findings check_prior_size(Session& session, FitTask const& what, std::vector<Exp
 void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
   if (Parameter const* parameter = improper(written)) {
-    page.left_out = fmt::format("what needs draws of the prior: that of {} is {}", parameter->name, parameter->prior->row->name);
+    page.left_out = fmt::format("the checks that need prior draws: the prior of `{}` is improper ({})", parameter->name,
+                                parameter->prior->row->name);
     return;
   }
   if (!written.processes.empty()) {

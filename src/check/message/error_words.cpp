@@ -35,10 +35,10 @@ std::string choose(Names const& known, std::string const& what) {
 }
 
 std::string positive_prior(Names const& names) {
-  if (names.empty()) return "correct its numbers";
+  if (names.empty()) return "correct its arguments";
   return fmt::format(
-      "look at the {} of {} and at what is made of {}: `half_normal(sd = 1)` and `log_uniform(0.1, 10)` have positive "
-      "values alone",
+      "check the {} of {} and what is computed from {}: `half_normal(sd = 1)` and `log_uniform(0.1, 10)` have only positive "
+      "values",
       plural("prior", names.size()), quoted(names), names.size() == 1 ? "it" : "them");
 }
 

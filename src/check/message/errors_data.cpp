@@ -21,12 +21,12 @@ Diagnostic no_file(ast::Name const& block) {
 
 Diagnostic no_time(ast::Name const& block) {
   return about({block.text},
-               error("E4102", block.span, fmt::format("data block `{}` does not say when its rows were taken", block.text),
+               error("E4102", block.span, fmt::format("data block `{}` does not define the time of its rows", block.text),
                      "add `time t [s]` (a column) or `rate 1000 [Hz]`"));
 }
 
 Diagnostic time_and_rate(Span second, Span first) {
-  return conflict("E4103", second, "and here", first, "here", "times are given twice, by a column and by a rate",
+  return conflict("E4103", second, "and here", first, "here", "the time is given twice, by a column and by a rate",
                   "keep one of them");
 }
 
@@ -35,8 +35,9 @@ Diagnostic stated_twice(Span second, Span first, std::string const& what) {
 }
 
 Diagnostic rule_missing(Span span, std::string const& input, Names const& rules) {
-  return about({input}, error("E4105", span, fmt::format("what does input `{}` do between its samples?", input),
-                              fmt::format("add {}: it changes the answer more than anything else", choice_of_rules(rules))));
+  return about({input},
+               error("E4105", span, fmt::format("no rule is given for the values of input `{}` between its samples", input),
+                     fmt::format("add {}: the choice strongly affects the result", choice_of_rules(rules))));
 }
 
 Diagnostic unknown_rule(ast::Name const& rule, Names const& known) {
@@ -55,17 +56,18 @@ Diagnostic rate_not_positive(Span span) {
 }
 
 Diagnostic bad_rows(Span span) {
-  return error("E4108", span, "rows are whole numbers from 1, the first not after the last",
+  return error("E4108", span, "row numbers must be whole numbers from 1, the first not above the last",
                "for example `split train = rows 1..500`");
 }
 
 Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data) {
-  return about({data, input}, error("E4109", span, fmt::format("data `{}` does not give input `{}` of {}", data, input, owner),
-                                    fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input)));
+  return about({data, input},
+               error("E4109", span, fmt::format("data block `{}` does not provide input `{}` of {}", data, input, owner),
+                     fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input)));
 }
 
 Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels) {
-  return about({data}, error("E4110", span, fmt::format("data `{}` measures no channel of {}", data, owner),
+  return about({data}, error("E4110", span, fmt::format("data block `{}` measures no channel of {}", data, owner),
                              fmt::format("add `measure {} = COLUMN [unit]` to the data block",
                                          channels.empty() ? "CHANNEL" : channels.front())));
 }
@@ -87,8 +89,8 @@ Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, 
 }
 
 Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {
-  return error("E4113", span, fmt::format("{} is in [{}], the declaration says [{}]", what, column_unit, declared_unit),
-               "the two must measure the same kind of quantity");
+  return error("E4113", span, fmt::format("{} is in [{}], but the declared unit is [{}]", what, column_unit, declared_unit),
+               "use units of the same kind");
 }
 
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {
@@ -96,13 +98,13 @@ Diagnostic constant_of_nothing(Span span, std::string const& name, std::string c
                error("E6301", span, fmt::format("model `{}` has no parameter `{}`", model, name),
                      guess_or(name, known,
                               known.empty() ? fmt::format("declare it in the model: `parameter {} per experiment`", name)
-                                            : fmt::format("what a data block may fix: {}", quoted(known)))));
+                                            : fmt::format("parameters that a data block can fix: {}", quoted(known)))));
 }
 
 Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter) {
   return about({parameter},
                conflict("E6302", span, "fixed for one experiment", declaration, "shared by all",
-                        fmt::format("parameter `{}` is shared by all experiments, a data block cannot fix it", parameter),
+                        fmt::format("parameter `{}` is shared by all experiments: a data block cannot fix it", parameter),
                         fmt::format("declare it as `parameter {} per experiment`, or give it this value in the model", parameter)));
 }
 
@@ -110,7 +112,7 @@ Diagnostic constant_missing(Span use, Span declaration, std::string const& param
   return about(
       {data, parameter},
       conflict("E6303", use, "used here", declaration, "neither prior nor value",
-               fmt::format("data `{}` does not say what `{}` is", data, parameter),
+               fmt::format("data block `{}` gives no value for `{}`", data, parameter),
                fmt::format("add `constant {} = ...` to data `{}`, or give the parameter a prior or a value", parameter, data)));
 }
 

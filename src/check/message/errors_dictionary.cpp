@@ -16,25 +16,23 @@ std::string units(Names const& all) {
 }  // namespace
 
 Diagnostic no_target(ast::Name const& dictionary) {
-  return about({dictionary.text},
-               error("E6601", dictionary.span, fmt::format("`{}` does not say what its terms are to explain", dictionary.text),
-                     "add `target = m*y'' - x`, or a derivative for each equation: `target = x', y'`"));
+  return about({dictionary.text}, error("E6601", dictionary.span, fmt::format("dictionary `{}` has no target", dictionary.text),
+                                        "add `target = m*y'' - x`, or a derivative for each equation: `target = x', y'`"));
 }
 
 Diagnostic target_twice(Span second, Span first, std::string const& text) {
-  return about({text}, conflict("E6613", second, "again here", first, "first here",
-                                fmt::format("`{}` is explained twice, by the same terms", text),
-                                "each target is an equation of its own: keep one"));
+  return about({text}, conflict("E6613", second, "again here", first, "first here", fmt::format("`{}` is a target twice", text),
+                                "each target gives an equation of its own: keep one"));
 }
 
 Diagnostic no_terms(ast::Name const& dictionary) {
-  return about({dictionary.text}, error("E6602", dictionary.span, fmt::format("`{}` holds no term", dictionary.text),
+  return about({dictionary.text}, error("E6602", dictionary.span, fmt::format("dictionary `{}` has no terms", dictionary.text),
                                         "add `terms = polynomial(y, y', degree = 3), abs(y')*y', 1`"));
 }
 
 Diagnostic nothing_left_of_terms(Span target, std::string const& equation) {
-  return about({equation}, error("E6602", target, fmt::format("no term is left for `{}`", equation),
-                                 "allow more units of coefficients, exclude less, or add terms"));
+  return about({equation}, error("E6602", target, fmt::format("no term remains for `{}`", equation),
+                                 "allow more units of coefficients, exclude fewer terms, or add terms"));
 }
 
 Diagnostic unknown_generator(ast::Name const& name, Names const& families) {
@@ -57,17 +55,18 @@ Diagnostic generator_number(Span span, std::string const& option, int most, std:
 }
 
 Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters) {
-  return about({text}, error("E6604", target,
-                             fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
-                                         parameters.size() == 1 ? "has" : "have"),
-                             "what is looked for stands as a factor: `m*y'' - x`; give the others values: `parameter m [kg] = 1`"));
+  return about(
+      {text},
+      error("E6604", target,
+            fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
+                        parameters.size() == 1 ? "has" : "have"),
+            "an unknown parameter must be a factor of a term: `m*y'' - x`; give the others values: `parameter m [kg] = 1`"));
 }
 
 Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter) {
-  return about(
-      {parameter},
-      error("E6604", target, fmt::format("`{}` stands in two targets, and each equation finds its own coefficients", parameter),
-            "give each equation a parameter of its own, or this one a value"));
+  return about({parameter}, error("E6604", target,
+                                  fmt::format("`{}` occurs in two targets, but each equation is estimated separately", parameter),
+                                  "use a separate parameter in each target, or give this one a value"));
 }
 
 Diagnostic coefficient_inside(Span term, std::string const& text) {
@@ -77,7 +76,7 @@ Diagnostic coefficient_inside(Span term, std::string const& text) {
 
 Diagnostic state_without_channel(Span state, std::string const& name) {
   return about({name}, error("E6606", state, fmt::format("no channel measures `{}` or a derivative of it", name),
-                             fmt::format("bind it: `state {} = CHANNEL`; discovery works from measured states", name)));
+                             fmt::format("bind it: `state {} = CHANNEL`; discovery needs measured states", name)));
 }
 
 Diagnostic derivative_of_nothing(ast::Name const& state, int primes) {
@@ -90,42 +89,43 @@ Diagnostic derivative_of_nothing(ast::Name const& state, int primes) {
 Diagnostic derivative_without_channel(ast::Name const& state, int primes) {
   return about(
       {primed(state.text, primes)},
-      error("E6607", state.span, fmt::format("`{}` is named here without a channel", primed(state.text, primes)),
-            fmt::format("write `{} = CHANNEL`, or leave it out: derivatives need no declaration", primed(state.text, primes))));
+      error("E6607", state.span, fmt::format("`{}` has no channel here", primed(state.text, primes)),
+            fmt::format("write `{} = CHANNEL`, or remove it: derivatives need no declaration", primed(state.text, primes))));
 }
 
 Diagnostic channel_bound_twice(ast::Name const& channel, Span first) {
-  return about({channel.text}, conflict("E6607", channel.span, "and here", first, "here",
-                                        fmt::format("channel `{}` measures two things", channel.text),
-                                        "a channel measures one state, or one derivative of it"));
+  return about({channel.text},
+               conflict("E6607", channel.span, "and here", first, "here", fmt::format("channel `{}` is bound twice", channel.text),
+                        "a channel measures one state, or one derivative of it"));
 }
 
 Diagnostic excludes_nothing(Span span, std::string const& text, Names const& known) {
-  return about({text}, error("E6608", span, fmt::format("`{}` is not among the terms", text),
-                             guess_or(text, known, "leave it out here; `sysid check` lists the terms")));
+  return about({text}, error("E6608", span, fmt::format("`{}` is not a term of this dictionary", text),
+                             guess_or(text, known, "remove it here; `sysid check` lists the terms")));
 }
 
 Diagnostic unit_of_no_term(Span span, std::string const& unit, Names const& possible) {
   return error("E6609", span, fmt::format("no term has a coefficient in [{}]", unit.empty() ? "-" : unit),
-               possible.empty() ? std::string("declare units of states, inputs and parameters: they say that of coefficients")
-                                : fmt::format("the terms would have coefficients in {}", units(possible)));
+               possible.empty()
+                   ? std::string("declare the units of states, inputs and parameters: the units of coefficients follow from them")
+                   : fmt::format("the terms would have coefficients in {}", units(possible)));
 }
 
 Diagnostic too_many_terms(Span span, std::size_t most) {
-  return error("E6610", span, fmt::format("the dictionary has more than {} terms", most), "lower a degree, or name the terms");
+  return error("E6610", span, fmt::format("the dictionary has more than {} terms", most), "reduce a degree, or list single terms");
 }
 
 Diagnostic index_in_dictionary(ast::Reference const& reference) {
-  return about(
-      {reference.name.text},
-      error("E6611", reference.span, fmt::format("`{}` has no elements: a dictionary knows numbers only", reference.name.text),
-            "give each element a name: `state y1 = a[1], y2 = a[2]`"));
+  return about({reference.name.text},
+               error("E6611", reference.span,
+                     fmt::format("`{}` has no elements: quantities of a dictionary are scalars", reference.name.text),
+                     "give each element a name: `state y1 = a[1], y2 = a[2]`"));
 }
 
 Diagnostic channel_not_measured(Span data, std::string const& block, Span state, std::string const& channel,
                                 Names const& measured) {
   Diagnostic result = about(
-      {block, channel}, error("E6612", data, fmt::format("data `{}` do not measure `{}`", block, channel),
+      {block, channel}, error("E6612", data, fmt::format("data block `{}` does not measure `{}`", block, channel),
                               guess_or(channel, measured, fmt::format("add `measure {} = COLUMN` to the data block", channel))));
   result.secondary.push_back({state, "bound here"});
   return result;

@@ -48,7 +48,7 @@ Diagnostic argument_twice(Span second, Span first, std::string const& spelling, 
     return about({spelling}, conflict("E2104", second, "again here", first, "first given here",
                                       fmt::format("`{}` is given twice", spelling), "keep one"));
   return about({other, spelling}, conflict("E2104", second, fmt::format("`{}`", spelling), first, fmt::format("`{}`", other),
-                                           fmt::format("`{}` and `{}` say the same thing twice", other, spelling),
+                                           fmt::format("`{}` and `{}` are two forms of the same argument", other, spelling),
                                            "keep one: precision = 1/variance, variance = sd^2"));
 }
 
@@ -59,12 +59,12 @@ Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
 }
 
 Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings) {
-  return error("E2106", span, fmt::format("say which this is: {}", quoted(spellings, "or")),
+  return error("E2106", span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
                fmt::format("write `{}(..., {} = ...)`", distribution, spellings.front()));
 }
 
 Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature) {
-  return about({distribution}, error("E2107", span, fmt::format("`{}` has no further argument", distribution),
+  return about({distribution}, error("E2107", span, fmt::format("`{}` does not take this many arguments", distribution),
                                      signature.empty() ? "it takes none" : fmt::format("its arguments are {}", quoted(signature))));
 }
 
@@ -76,35 +76,35 @@ Diagnostic not_a_noise(ast::Call const& call, Names const& known) {
 
 Diagnostic truncated_noise(ast::Call const& call) {
   return error("E2116", call.span, "the noise of a channel cannot be truncated",
-               "leave out `lower` and `upper`; bound the parameters instead");
+               "remove `lower` and `upper`; bound the parameters instead");
 }
 
 Diagnostic cannot_truncate(Span span, std::string const& distribution) {
   return about({distribution},
-               error("E2109", span, fmt::format("`{}` cannot be truncated", distribution), "leave out `lower` and `upper`"));
+               error("E2109", span, fmt::format("`{}` cannot be truncated", distribution), "remove `lower` and `upper`"));
 }
 
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what) {
-  return about({parameter}, error("E2110", span, fmt::format("the prior of `{}` reads {}", parameter, what),
-                                  "a prior may use numbers, constants and other parameters"));
+  return about({parameter}, error("E2110", span, fmt::format("the prior of `{}` depends on {}", parameter, what),
+                                  "a prior can use numbers, constants and other parameters"));
 }
 
 Diagnostic prior_cycle(Span span, Names const& loop) {
-  return error("E2111", span, fmt::format("these priors need each other: {}", fmt::join(loop, " -> ")),
-               "one of them must stand without the others");
+  return error("E2111", span, fmt::format("these priors depend on each other in a cycle: {}", fmt::join(loop, " -> ")),
+               "write one of them without the others");
 }
 
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason) {
-  return about({distribution}, error("E2112", span, fmt::format("these arguments of `{}` are impossible: {}", distribution, reason),
+  return about({distribution}, error("E2112", span, fmt::format("the arguments of `{}` are invalid: {}", distribution, reason),
                                      "correct the numbers"));
 }
 
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
                          std::vector<std::string> const& names) {
-  return about({distribution, variate}, error("E2112", span,
-                                              fmt::format("`{}` of `{}` is impossible at all values that the priors allow: {}",
-                                                          distribution, variate, reason),
-                                              positive_prior(names)));
+  return about({distribution, variate},
+               error("E2112", span,
+                     fmt::format("`{}` of `{}` is invalid at all values that the priors allow: {}", distribution, variate, reason),
+                     positive_prior(names)));
 }
 
 Diagnostic no_mass(Span span, std::string const& distribution) {
@@ -113,30 +113,30 @@ Diagnostic no_mass(Span span, std::string const& distribution) {
 }
 
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit) {
-  return about(
-      {distribution},
-      error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, here it should give [{}]", distribution, unit),
-            fmt::format("multiply: a share with this prior, times a quantity in [{}]", unit)));
+  return about({distribution},
+               error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, but this needs [{}]", distribution, unit),
+                     fmt::format("give this prior to a dimensionless factor and multiply it by a quantity in [{}]", unit)));
 }
 
 Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit) {
   return about(
       {distribution},
-      error("E2118", span, fmt::format("`{}` counts, here it should give [{}]", distribution, unit),
-            "a count is a pure number: divide the expression by the size of one item, and leave out the unit of the channel"));
+      error("E2118", span, fmt::format("`{}` is a distribution of counts, but this needs [{}]", distribution, unit),
+            "a count is a pure number: divide the expression by the size of one item, and remove the unit of the channel"));
 }
 
 Diagnostic count_as_prior(ast::Call const& call) {
-  return about({call.function.text},
-               error("E2119", call.function.span,
-                     fmt::format("`{}` gives whole numbers: it is noise of a channel, not a prior", call.function.text),
-                     "use a continuous prior, such as gamma or log_normal"));
+  return about(
+      {call.function.text},
+      error("E2119", call.function.span,
+            fmt::format("`{}` is a distribution of counts: it can be the noise of a channel, but not a prior", call.function.text),
+            "use a continuous prior, such as gamma or log_normal"));
 }
 
 Diagnostic noise_of_counts(Span span, std::string const& channel, std::string const& distribution) {
-  return about({channel},
-               error("E6015", span, fmt::format("channel `{}` counts: noise in percent would not leave whole numbers", channel),
-                     fmt::format("write `noise = model`: the counts are then drawn from `{}`", distribution)));
+  return about({channel}, error("E6015", span,
+                                fmt::format("channel `{}` measures counts: noise in percent would not give whole numbers", channel),
+                                fmt::format("write `noise = model`: the counts are then drawn from `{}`", distribution)));
 }
 
 Diagnostic no_prior_or_value(ast::ParameterDeclaration const& parameter) {
@@ -150,7 +150,7 @@ Diagnostic shared_prior_reads_own(Span prior, std::string const& parameter, std:
   return about(
       {parameter, own},
       error("E6305", prior,
-            fmt::format("the prior of `{}`, which all experiments share, reads `{}`, which each has for itself", parameter, own),
+            fmt::format("the prior of `{}`, which all experiments share, depends on `{}`, which is per experiment", parameter, own),
             fmt::format("declare `{}` as `per experiment` too, or let `{}` refer to `{}`: `parameter {} per experiment ~ "
                         "normal({}, sd = ...)`",
                         parameter, own, parameter, own, parameter)));

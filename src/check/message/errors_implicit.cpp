@@ -16,17 +16,17 @@ Diagnostic explicit_solver(Span option, std::string const& solver, Span equation
 Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input) {
   return {Severity::error,
           "E3015",
-          fmt::format("this constraint prescribes a motion: the force behind it needs the second derivative of input `{}`", input),
+          fmt::format("this constraint prescribes a motion: its force needs the second derivative of input `{}`", input),
           Label{equation.span, {}},
           {},
-          fmt::format("take the acceleration as the input, or the motion itself: `{}` in place of the state", input),
+          fmt::format("use the acceleration as the input, or use `{}` in place of the state", input),
           {input}};
 }
 
 Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown) {
   return {Severity::error,
           "E3016",
-          fmt::format("this equation would have to be differentiated in time, and with it `{}`, which has no derivative", unknown),
+          fmt::format("this equation must be differentiated in time, but `{}` in it has no derivative", unknown),
           Label{equation.span, {}},
           {},
           fmt::format("solve it for `{}` and write that as a definition: `let {} = ...`", unknown, unknown),
@@ -45,8 +45,8 @@ Diagnostic start_off_constraint(Span equation, Span initial) {
 }
 
 Diagnostic estimated_start_of_constraint(Span start, Span equation) {
-  Diagnostic result{Severity::error,  "E3018", "an estimated start would leave a constraint between the states",
-                    Label{start, {}}, {},      "begin at the record's first row, with parameters in the initial values"};
+  Diagnostic result{Severity::error,  "E3018", "an estimated start would violate a constraint between the states",
+                    Label{start, {}}, {},      "use `start = record`, with parameters for unknown initial values"};
   result.secondary.push_back({equation, "this one"});
   return result;
 }

@@ -8,7 +8,7 @@ namespace sysid::errors {
 Diagnostic lag_without_discrete_time(ast::Call const& call) {
   return about(
       {call.function.text},
-      error("E3101", call.span, fmt::format("`{}` counts samples, and the time of this model is continuous", call.function.text),
+      error("E3101", call.span, fmt::format("`{}` counts samples, but the time of this model is continuous", call.function.text),
             "declare `time discrete 0.1 [s]`, or write a differential equation"));
 }
 Diagnostic lag_count(Span span) {
@@ -16,16 +16,15 @@ Diagnostic lag_count(Span span) {
                "0 is the present sample, 1 the one before; `lag` takes one number, `lags` a range");
 }
 Diagnostic lags_out_of_place(ast::Call const& call) {
-  return error("E3103", call.span, "`lags` gives several values, here one is needed",
-               "it stands for arguments of a function: `f(lags(y, 1..3))`; for one sample write `lag(y, 1)`");
+  return error("E3103", call.span, "`lags` gives several values, but one is needed here",
+               "use it as the arguments of a function: `f(lags(y, 1..3))`; for one sample write `lag(y, 1)`");
 }
 Diagnostic primes_in_discrete_time(ast::Reference const& reference) {
-  return about(
-      {reference.name.text, std::string(static_cast<std::size_t>(reference.primes), '\'')},
-      error("E3104", reference.span,
-            fmt::format("`{}{}`: there are no derivatives in discrete time", reference.name.text,
-                        std::string(static_cast<std::size_t>(reference.primes), '\'')),
-            fmt::format("write differences of samples: `{0} - lag({0}, 1)`; or leave out `discrete`", reference.name.text)));
+  return about({reference.name.text, std::string(static_cast<std::size_t>(reference.primes), '\'')},
+               error("E3104", reference.span,
+                     fmt::format("`{}{}`: there are no derivatives in discrete time", reference.name.text,
+                                 std::string(static_cast<std::size_t>(reference.primes), '\'')),
+                     fmt::format("write differences of samples: `{0} - lag({0}, 1)`; or remove `discrete`", reference.name.text)));
 }
 Diagnostic not_a_channel(Span span, std::string const& function, std::string const& name, Names const& channels) {
   std::string help = name.empty() ? std::string() : did_you_mean(name, channels);
@@ -41,64 +40,64 @@ Diagnostic samples_in_differential_equation(ast::Call const& call) {
   return about(
       {call.function.text},
       error("E3106", call.span,
-            fmt::format("`{}` exists at samples only, a differential equation holds between them as well", call.function.text),
+            fmt::format("`{}` is known at samples only, but a differential equation needs it between them", call.function.text),
             "bind the column as an input with a rule between its samples, or declare `time discrete`"));
 }
 Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_states) {
   if (discrete) return error("E3107", call.span, "`since_last` is for continuous time", "write the difference: `y - lag(y, 1)`");
   return error("E3107", call.span,
-               no_states ? "`since_last` needs rows that follow each other, and this model has no states"
-                         : "`since_last` belongs to what is observed or derived, not to an equation",
-               no_states ? "rows without dynamics are independent: compute the change in the data" : "write the rate itself: `y'`");
+               no_states ? "`since_last` needs consecutive rows, but this model has no states"
+                         : "`since_last` can be used in `observe` and `derive`, but not in an equation",
+               no_states ? "without dynamics the rows are independent: add a column with the change to the data"
+                         : "write the rate itself: `y'`");
 }
 Diagnostic own_sample(Span span, std::string const& channel) {
   return about({channel}, error("E3108", span, fmt::format("channel `{}` is predicted from its own present sample", channel),
-                                fmt::format("use a past one: `lag(measured({}), 1)`", channel)));
+                                fmt::format("use a past sample: `lag(measured({}), 1)`", channel)));
 }
 Diagnostic prediction_cycle(Span span, std::string const& channel) {
-  return about({channel}, error("E3109", span, fmt::format("what channel `{}` predicts needs itself at the same sample", channel),
-                                fmt::format("use a past one: `lag(predicted({}), 1)`", channel)));
+  return about({channel},
+               error("E3109", span, fmt::format("the prediction of channel `{}` depends on itself at the same sample", channel),
+                     fmt::format("use a past sample: `lag(predicted({}), 1)`", channel)));
 }
 Diagnostic present_prediction(Span span, std::string const& channel) {
-  return about(
-      {channel},
-      error("E3110", span, fmt::format("an equation cannot read what channel `{}` predicts at the present sample", channel),
-            fmt::format("channels follow from the states: write out the expression, or take `lag(predicted({}), 1)`", channel)));
+  return about({channel}, error("E3110", span,
+                                fmt::format("an equation cannot use the prediction of channel `{}` at the present sample", channel),
+                                fmt::format("write out the expression of the channel, or use `lag(predicted({}), 1)`", channel)));
 }
 Diagnostic range_out_of_place(Span span) {
-  return error("E3112", span, "a range cannot stand here", "ranges say which lags are meant: `lags(y, 1..3)`");
+  return error("E3112", span, "a range is not allowed here", "a range selects lags: `lags(y, 1..3)`");
 }
 Diagnostic initial_past_missing(Span declaration, std::string const& state) {
   return about(
       {state},
-      error("E3111", declaration, fmt::format("`{}` has no past before the first sample", state),
-            fmt::format("give one value for all lags, `initial {} = 0`, or the record's own: `initial {} = measured(CHANNEL)`",
+      error("E3111", declaration, fmt::format("`{}` needs values before the first sample", state),
+            fmt::format("give one value for all lags, `initial {} = 0`, or use the measured one: `initial {} = measured(CHANNEL)`",
                         state, state)));
 }
 Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
-  return about(
-      {state},
-      error(
-          "E3113", equation, fmt::format("this equation cannot be solved for the present sample of `{}`", state),
-          fmt::format("let `{0}` stand linearly, with past samples in the nonlinear terms: `{0} = a*lag({0}, 1) - b*lag({0}, 1)^3`",
-                      state),
-          fmt::format("not linear in `{}`", state)));
+  return about({state},
+               error("E3113", equation, fmt::format("this equation cannot be solved for the present sample of `{}`", state),
+                     fmt::format("make the equation linear in `{0}`, with past samples in the nonlinear terms: `{0} = a*lag({0}, "
+                                 "1) - b*lag({0}, 1)^3`",
+                                 state),
+                     fmt::format("not linear in `{}`", state)));
 }
 
 Diagnostic prediction_without_lags(Span span, std::string const& model) {
-  return about({model},
-               error("E6016", span, fmt::format("model `{}` has no past samples to choose from: its time is not discrete", model),
-                     "leave the option out: a simulation runs free from its start"));
+  return about({model}, error("E6016", span, fmt::format("model `{}` is not in discrete time: it uses no past samples", model),
+                              "remove the option: a model in continuous time is simulated from its start"));
 }
 Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model) {
   return about({model},
-               error("E6017", span, fmt::format("no channel of `{}` measures what the model lags", model),
+               error("E6017", span, fmt::format("no channel of `{}` measures a quantity that the model lags", model),
                      "observe the lagged state itself, `observe output ~ normal(y, sd = s)`, or write `lag(measured(output), 1)`"));
 }
 Diagnostic other_step(Span span, double given, double declared, std::string const& model) {
   return about({model}, error("E6018", span,
-                              fmt::format("one sample every {:.9g} s, but model `{}` steps by {:.9g} s", given, model, declared),
-                              "leave the option out, or make the two equal"));
+                              fmt::format("the data have one sample every {:.9g} s, but model `{}` has steps of {:.9g} s", given,
+                                          model, declared),
+                              "remove the option, or make both steps equal"));
 }
 
 }  // namespace sysid::errors

@@ -79,32 +79,33 @@ Diagnostic argument_count(ast::Name const& function, std::size_t given, std::siz
   std::string const wanted = least == most ? fmt::format("{}", least)
                              : most > 100  ? fmt::format("{} or more", least)
                                            : fmt::format("{} to {}", least, most);
-  return about({function.text}, error("E2004", function.span,
-                                      fmt::format("`{}` takes {} argument{}, here it has {}", function.text, wanted,
-                                                  wanted == "1" ? "" : "s", given),
-                                      "give each argument once, separated by commas"));
+  return about({function.text},
+               error("E2004", function.span,
+                     fmt::format("`{}` takes {} argument{}, not {}", function.text, wanted, wanted == "1" ? "" : "s", given),
+                     "give each argument once, separated by commas"));
 }
 
 Diagnostic piecewise_without_otherwise(ast::Call const& call) {
   return about({call.function.text},
-               error("E2004", call.span, fmt::format("`{}` has no value for when no condition holds", call.function.text),
-                     "its arguments are condition, value, condition, value, ..., and last the value otherwise"));
+               error("E2004", call.span, fmt::format("`{}` has no value for the case that no condition holds", call.function.text),
+                     "write condition, value, condition, value, ..., and last the value for all other cases"));
 }
 
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function) {
   return about({function}, error("E2005", argument.span, fmt::format("arguments of the function `{}` have no names", function),
-                                 fmt::format("leave out `{} =`", argument.text)));
+                                 fmt::format("remove `{} =`", argument.text)));
 }
 
 Diagnostic definition_cycle(Span span, Names const& loop) {
-  return error("E2006", span, fmt::format("this definition needs itself: {}", fmt::join(loop, " -> ")),
-               "break the loop; a quantity with memory is a state with an equation");
+  return error("E2006", span, fmt::format("this definition is circular: {}", fmt::join(loop, " -> ")),
+               "remove the cycle; a quantity with memory is a state with an equation");
 }
 
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what) {
   return about({reference.name.text},
                error("E2007", reference.span, fmt::format("`{}` is {}: it has no time derivative", reference.name.text, what),
-                     fmt::format("primes belong to states and inputs; declare `state {}` if it moves", reference.name.text)));
+                     fmt::format("only states and inputs have derivatives; declare `state {}` if it changes with time",
+                                 reference.name.text)));
 }
 
 Diagnostic beyond_highest(ast::Reference const& reference, int order) {
@@ -112,17 +113,18 @@ Diagnostic beyond_highest(ast::Reference const& reference, int order) {
       {primed(reference), reference.name.text},
       error("E2007", reference.span,
             fmt::format("`{}` is beyond the highest derivative of `{}` in the equations", primed(reference), reference.name.text),
-            fmt::format("the equations determine `{}`: write its time derivative out", primed(reference.name.text, order))));
+            fmt::format("replace it by the time derivative of the expression that the equations give for `{}`",
+                        primed(reference.name.text, order))));
 }
 
 Diagnostic second_input_derivative(ast::Reference const& reference) {
   return about({primed(reference)}, error("E2008", reference.span,
                                           fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
-                                          "bind the derivative as an input of its own"));
+                                          "declare the derivative as a separate input"));
 }
 
 Diagnostic not_a_number(Span span, std::string const& what) {
-  return error("E2009", span, fmt::format("{} cannot stand in an expression", what), "an expression is made of numbers and names");
+  return error("E2009", span, fmt::format("{} cannot be used in an expression", what), "use numbers and names of quantities");
 }
 
 Diagnostic constant_needed(Span span, std::string const& what) {
@@ -133,21 +135,22 @@ Diagnostic constant_needed(Span span, std::string const& what) {
 Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant, std::string const& whole) {
   if (name.text == "per")
     return about({name.text}, error("E2011", name.span, "`per` is not a unit", "division is written with `/`: [N s/m]"));
-  std::string const message = fmt::format("`{}` is not a unit known here", name.text);
+  std::string const message = fmt::format("`{}` is not a known unit", name.text);
   if (name.text == "dB" || name.text == "db")
     return about({name.text}, error("E2011", name.span, message,
-                                    "a level is a logarithm: give what it stands for, `10^(level/20)` for an amplitude"));
+                                    "a level is a logarithm: convert it to the quantity, `10^(level/20)` for an amplitude"));
   if (!meant)
     return about({name.text}, error("E2011", name.span, message,
                                     guess_or(unit_synonyms, name.text, common_unit_names(),
-                                             "units are those of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]")));
+                                             "use units of UDUNITS-2 with SI prefixes: [N s/m], [mm], [1/m^2], [rad/s]")));
   switch (meant->kind) {
     case UnitSlip::Kind::power:
       return about({name.text}, error("E2011", name.span, message, fmt::format("a power is written with `^`: `{}`", whole)));
     case UnitSlip::Kind::product:
-      return about({name.text}, error("E2011", name.span, message, fmt::format("a blank or `*` multiplies: `{}`", whole)));
+      return about({name.text},
+                   error("E2011", name.span, message, fmt::format("a product is written with a blank or `*`: `{}`", whole)));
     case UnitSlip::Kind::capitals:
-      return about({name.text}, error("E2011", name.span, message, fmt::format("capitals count in units: write `{}`", whole)));
+      return about({name.text}, error("E2011", name.span, message, fmt::format("units are case-sensitive: write `{}`", whole)));
     case UnitSlip::Kind::quotient:
       break;
   }
@@ -160,19 +163,19 @@ Diagnostic unit_exponent(Span span) {
 }
 
 Diagnostic list_here(Span span) {
-  return error("E2013", span, "a list cannot stand in an expression", "parentheses with a comma make a list; remove the comma");
+  return error("E2013", span, "a list cannot be used in an expression", "parentheses with a comma make a list; remove the comma");
 }
 
 Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
-  return error("E2014", span, fmt::format("{} is {}, this is {}", what, measure(wanted), measure(given)),
-               wanted.dimensionless() ? "leave out the unit" : "correct the unit, or leave it out");
+  return error("E2014", span, fmt::format("{} is {}, but this is {}", what, measure(wanted), measure(given)),
+               wanted.dimensionless() ? "remove the unit" : "correct the unit, or remove it");
 }
 
 Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
-  return error(
-      "E4017", span,
-      fmt::format("{} is {}, this is {}: one counts cycles, the other radians, 2 pi apart", what, measure(wanted), measure(given)),
-      fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted)));
+  return error("E4017", span,
+               fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, a factor of 2 pi", what,
+                           measure(wanted), measure(given)),
+               fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted)));
 }
 
 }  // namespace sysid::errors

@@ -29,7 +29,7 @@ constexpr Synonym kernel_synonyms[] = {
 
 Diagnostic not_a_process(ast::Name const& name) {
   return about({name.text},
-               error("E3201", name.span, fmt::format("`{}` is no distribution of functions", name.text),
+               error("E3201", name.span, fmt::format("`{}` is not a distribution of functions", name.text),
                      "an unknown function is a Gaussian process: `~ gp(squared_exponential(amplitude = s, length = l))`"));
 }
 Diagnostic one_covariance(Span span) {
@@ -38,7 +38,7 @@ Diagnostic one_covariance(Span span) {
 }
 Diagnostic not_a_covariance(Span span) {
   return error("E3202", span, "a covariance is a kernel, or a sum or product of kernels",
-               "a factor belongs into the amplitude: `squared_exponential(amplitude = 2*s, length = l)`");
+               "put a factor into the amplitude: `squared_exponential(amplitude = 2*s, length = l)`");
 }
 Diagnostic unknown_kernel(ast::Name const& name, Names const& known) {
   return about({name.text}, error("E3203", name.span, fmt::format("there is no kernel `{}`", name.text),
@@ -46,22 +46,22 @@ Diagnostic unknown_kernel(ast::Name const& name, Names const& known) {
 }
 Diagnostic not_an_input_of_process(Span span, std::string const& given, std::string const& process, Names const& inputs) {
   return error("E3204", span,
-               given.empty() ? "what stands first in a kernel are the names of the inputs that it reads"
-                             : fmt::format("`{}` is no input of `{}`", given, process),
-               guess_or(given, inputs, fmt::format("its inputs are {}; hyper-parameters go by their names", quoted(inputs))));
+               given.empty() ? "the first arguments of a kernel are the names of its inputs"
+                             : fmt::format("`{}` is not an input of `{}`", given, process),
+               guess_or(given, inputs, fmt::format("its inputs are {}; hyper-parameters are given by name", quoted(inputs))));
 }
 Diagnostic kernel_input_twice(Span span, std::string const& input) {
-  return about({input}, error("E3204", span, fmt::format("the kernel reads `{}` twice", input), "name each input once"));
+  return about({input}, error("E3204", span, fmt::format("the kernel has the input `{}` twice", input), "list each input once"));
 }
 Diagnostic kernel_of_one_input(Span span, std::string const& kernel, std::size_t given) {
-  return about({kernel}, error("E3205", span, fmt::format("`{}` is a kernel of one input, here it has {}", kernel, given),
-                               "say which: `periodic(day, amplitude = s, ...)`; a product of kernels reads several"));
+  return about({kernel}, error("E3205", span, fmt::format("`{}` is a kernel of one input, but has {} here", kernel, given),
+                               "name one: `periodic(day, amplitude = s, ...)`; multiply kernels for several inputs"));
 }
 Diagnostic hyper_parameter_count(Span span, std::string const& name, std::size_t given, std::size_t wanted) {
-  return about({name}, error("E3205", span,
-                             fmt::format("{} of `{}`, where {} {} needed", counted(given, "value"), name, wanted,
-                                         wanted == 1 ? "is" : "are"),
-                             "give one for each input, in their order, or one for all"));
+  return about({name},
+               error("E3205", span,
+                     fmt::format("{} of `{}`, but {} {} needed", counted(given, "value"), name, wanted, wanted == 1 ? "is" : "are"),
+                     "give one for each input, in their order, or one for all"));
 }
 Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string const& input, Unit const& given, Unit const& wanted,
                                 Span input_place, std::optional<Unit> const& of_input) {
@@ -72,11 +72,12 @@ Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string 
                   : error("E3206", span, message, help, measure(given));
 }
 Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right) {
-  return error("E3206", span, fmt::format("kernels are added whose functions are {} and {}", measure(left), measure(right)),
-               "addends of one covariance are of one function: give their amplitudes one unit");
+  return error("E3206", span,
+               fmt::format("these kernels are of functions in different units: {} and {}", measure(left), measure(right)),
+               "kernels of one sum describe the same function: give their amplitudes the same unit");
 }
 Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string const& what) {
-  return error("E3207", span, fmt::format("the {} of a kernel cannot read {}", name, what),
+  return error("E3207", span, fmt::format("the {} of a kernel cannot depend on {}", name, what),
                "use numbers, constants and parameters");
 }
 Diagnostic hyper_parameter_not_positive(Span span, std::string const& name) {
@@ -85,184 +86,184 @@ Diagnostic hyper_parameter_not_positive(Span span, std::string const& name) {
 }
 Diagnostic hyper_parameter_never_positive(Span span, std::string const& name, std::string const& process,
                                           std::vector<std::string> const& names) {
-  return about({process},
-               error("E3207", span, fmt::format("the {} of `{}` must be positive, and its priors never make it so", name, process),
-                     positive_prior(names)));
+  return about(
+      {process},
+      error("E3207", span, fmt::format("the {} of `{}` must be positive, but its priors allow no positive value", name, process),
+            positive_prior(names)));
 }
 Diagnostic process_in_differential_equation(Span span, std::string const& name) {
   return about(
       {name},
       error(
           "E3208", span,
-          fmt::format("`{}` is a Gaussian process: it is known at samples, a differential equation needs it between them", name),
-          "say where it is wanted and it becomes a finite sum that an equation can hold: `gp(..., within = (-0.1 [m], 0.1 [m]))`"));
+          fmt::format("`{}` is a Gaussian process known at samples only, but a differential equation needs it between them", name),
+          "give the range in which it is needed, and a finite sum approximates it: `gp(..., within = (-0.1 [m], 0.1 [m]))`"));
 }
 Diagnostic expansion_range(Span span, std::size_t inputs) {
   return error("E3231", span,
-               inputs == 1 ? std::string("`within` is a range: a low and a high end")
-                           : fmt::format("`within` is a list of {} ranges, one for each input", inputs),
+               inputs == 1 ? std::string("`within` must be a range: a lower and an upper bound")
+                           : fmt::format("`within` must be a list of {} ranges, one for each input", inputs),
                inputs == 1 ? "for example `within = (-0.1 [m], 0.1 [m])`"
                            : "for example `within = ((-0.1 [m], 0.1 [m]), (-2 [m/s], 2 [m/s]))`");
 }
 Diagnostic expansion_range_empty(Span span) {
-  return error("E3231", span, "this range is empty", "its low end comes first: `within = (-0.1 [m], 0.1 [m])`");
+  return error("E3231", span, "this range is empty", "write the lower bound first: `within = (-0.1 [m], 0.1 [m])`");
 }
 Diagnostic expansion_without_range(Span span) {
-  return error("E3231", span, "`terms` needs `within`: functions are spread over a range",
-               "say where the function is wanted: `within = (-0.1 [m], 0.1 [m])`");
+  return error("E3231", span, "`terms` needs `within`: basis functions are defined over a range",
+               "give the range of the function: `within = (-0.1 [m], 0.1 [m])`");
 }
 Diagnostic expansion_condition_outside(Span span, std::string const& input) {
   return about({input},
                error("E3231", span, fmt::format("a point of `zero_at` or `flat_at` lies outside this range of `{}`", input),
-                     "the function is a sum on its range alone: widen it, or leave the condition out"));
+                     "widen the range, or remove the condition: the finite sum is defined within its range only"));
 }
 Diagnostic expansion_of_number(Span span, std::string const& name) {
-  return about(
-      {name},
-      error("E3234", span, fmt::format("`{}` is first applied to a plain number, which does not tell the unit of its input", name),
-            "give the number its unit, or apply the function to a quantity before"));
+  return about({name}, error("E3234", span,
+                             fmt::format("`{}` is first applied to a plain number, so the unit of its input is not known", name),
+                             "give the number a unit, or apply the function to a quantity first"));
 }
 Diagnostic expansion_beside_process(Span span, std::string const& process, std::string const& expansion) {
-  return about({process, expansion},
-               error("E3217", span, fmt::format("`{}` is a process at samples beside `{}`, a finite sum", process, expansion),
-                     fmt::format("give `{}` a range, too: `within = (low, high)`", process)));
+  return about(
+      {process, expansion},
+      error("E3217", span, fmt::format("`{}` is a Gaussian process at samples, but `{}` is a finite sum", process, expansion),
+            fmt::format("give `{}` a range as well: `within = (low, high)`", process)));
 }
 Diagnostic expansion_by_likelihood(Span span, std::string const& model) {
   return about({model}, error("E3217", span,
-                              fmt::format("`{}` has an unknown function, which by likelihood alone is anything that fits", model),
-                              "its process is the prior of its coefficients: fit it with map or mh"));
+                              fmt::format("`{}` has an unknown function, which the likelihood alone does not determine", model),
+                              "fit it with map or mh: they use the Gaussian process as prior of its coefficients"));
 }
 Diagnostic expansion_by_optimum(Span span, std::string const& function, std::string const& parameter) {
   return about(
       {parameter, function},
       error("E3235", span,
-            fmt::format("`map` would find `{}` together with the function `{}` that it scales, which follows the noise", parameter,
-                        function),
-            fmt::format("give `{}` a value (fits with several are weighed by `sysid compare`), or fit with mh", parameter)));
+            fmt::format(
+                "`map` cannot estimate `{}` together with the function `{}` that it scales: the function would follow the noise",
+                parameter, function),
+            fmt::format("give `{}` a value (`sysid compare` compares fits with different values), or fit with mh", parameter)));
 }
 Diagnostic expansion_terms(Span span, std::size_t inputs) {
   return error(
-      "E3232", span, "`terms` is how many functions there are along each input: a whole number above 0",
+      "E3232", span, "`terms`, the number of basis functions along each input, must be a whole number above 0",
       inputs == 1 ? "for example `terms = 16`" : "one number for all inputs, or a list with one for each: `terms = (8, 6)`");
 }
 Diagnostic expansion_too_large(Span span, long most) {
   return error("E3232", span, fmt::format("more than {} coefficients", most),
-               "take fewer terms along each input, or a sum of kernels that read one input each");
+               "use fewer terms along each input, or a sum of kernels of one input each");
 }
 Diagnostic expansion_too_small(Span span, std::size_t conditions) {
-  return error("E3232", span, fmt::format("{} conditions leave nothing of so few terms", conditions),
-               "give it more terms than `zero_at` and `flat_at` take away");
+  return error("E3232", span, fmt::format("{} conditions leave no freedom in so few terms", conditions),
+               "use more terms than there are conditions in `zero_at` and `flat_at`");
 }
 Diagnostic no_expansion(Span span, std::string const& what) {
-  return error("E3233", span, fmt::format("{} has no finite sum that stands for it", what),
-               "take one of squared_exponential, matern12, matern32, matern52, linear, constant, or a sum of them");
+  return error("E3233", span, fmt::format("{} has no approximation by a finite sum", what),
+               "use squared_exponential, matern12, matern32, matern52, linear, constant, or a sum of them");
 }
 Diagnostic expansion_of_lags(Span span, std::string const& name) {
-  return about({name},
-               error("E3233", span, fmt::format("`{}` is a finite sum over a box, which lags have too many sides for", name),
-                     "leave `within` out where the model is one of samples, or pass single values"));
+  return about(
+      {name},
+      error("E3233", span, fmt::format("`{}` is a finite sum over a box, which cannot have as many dimensions as these lags", name),
+            "remove `within` in a model of discrete time, or pass single values"));
 }
 Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted) {
   return about({name},
-               error("E3234", span, fmt::format("`{}` was applied to [{}] before, this is [{}]", name, wanted.text, given.text),
+               error("E3234", span, fmt::format("`{}` was applied to [{}] before, but this is [{}]", name, wanted.text, given.text),
                      "declare a second function, or convert"));
 }
 Diagnostic process_out_of_place(Span span, std::string const& what) {
   return error("E3209", span, fmt::format("a Gaussian process cannot be {}", what),
-               "add it to what a channel is centred on: `observe y ~ normal(F + d(u), sd = s)`; lags belong to its arguments");
+               "add it to the mean of a channel: `observe y ~ normal(F + d(u), sd = s)`; write lags in its arguments");
 }
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel) {
-  return about({name, channel},
-               error("E3210", span, fmt::format("`{}` must be an addend of what `{}` is centred on", name, channel),
-                     "a factor belongs into its amplitude; a function of it would not be normal"));
+  return about({name, channel}, error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),
+                                      "put a factor into its amplitude; a nonlinear function of it would not be Gaussian"));
 }
 Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel) {
-  return about(
-      {name, channel},
-      error("E3210", span, fmt::format("`{}` stands more than once in what `{}` is centred on", name, channel),
-            "write it once: a multiple of it is a function with a larger amplitude, and other arguments want a second function"));
+  return about({name, channel},
+               error("E3210", span, fmt::format("`{}` occurs more than once in the mean of `{}`", name, channel),
+                     "write it once: put a factor into its amplitude, and declare a second function for other arguments"));
 }
 Diagnostic process_unobserved(Span span, std::string const& name) {
-  return about({name}, error("E3210", span, fmt::format("no channel is centred on `{}`", name),
+  return about({name}, error("E3210", span, fmt::format("no channel has `{}` in its mean", name),
                              fmt::format("add it to one: `observe y ~ normal(F + {}(...), sd = s)`", name)));
 }
 Diagnostic process_with_moving_noise(Span span, std::string const& channel) {
   return about(
       {channel},
       error("E3211", span,
-            fmt::format("the noise of `{}` changes along the record, which a Gaussian process beside it does not allow", channel),
-            "let its width be a parameter"));
+            fmt::format("the noise of `{}` changes along the record, which is not supported together with a Gaussian process",
+                        channel),
+            "make its sd a parameter"));
 }
 Diagnostic process_without_normal_noise(Span span, std::string const& channel, std::string const& noise) {
   return about({channel},
-               error("E3211", span, fmt::format("`{}` has {} noise, beside a Gaussian process it must be normal", channel, noise),
+               error("E3211", span, fmt::format("`{}` has {} noise, but with a Gaussian process it must be normal", channel, noise),
                      "write `normal(..., sd = s)`"));
 }
 Diagnostic process_applied_twice(Span second, Span first, std::string const& name) {
-  return about({name}, conflict("E3212", second, "again here, to something else", first, "first applied here",
+  return about({name}, conflict("E3212", second, "again here, to other arguments", first, "first applied here",
                                 fmt::format("`{}` is applied twice", name), "declare a second function"));
 }
 Diagnostic process_of_two_channels(Span span, std::string const& name, std::string const& first, std::string const& second) {
   return about({name, first, second},
-               error("E3212", span, fmt::format("`{}` stands in two channels, `{}` and `{}`", name, first, second),
+               error("E3212", span, fmt::format("`{}` occurs in two channels, `{}` and `{}`", name, first, second),
                      "declare a function for each"));
 }
 Diagnostic process_never_applied(ast::Name const& name) {
   return about({name.text},
-               error("E3213", name.span, fmt::format("`{}` is declared and never applied", name.text),
-                     fmt::format("add it to what a channel is centred on: `observe y ~ normal(F + {}(...), sd = s)`", name.text)));
+               error("E3213", name.span, fmt::format("`{}` is declared but never applied", name.text),
+                     fmt::format("add it to the mean of a channel: `observe y ~ normal(F + {}(...), sd = s)`", name.text)));
 }
 Diagnostic process_of_one_experiment(Span span, std::string const& name, std::string const& parameter) {
   return about(
       {name, parameter},
-      error("E3214", span, fmt::format("`{}` is one function for all experiments, and `{}` is per experiment", name, parameter),
+      error("E3214", span, fmt::format("`{}` is one function for all experiments, but `{}` is per experiment", name, parameter),
             "share the parameter, or fit the experiments one by one"));
 }
 
 Diagnostic channel_without_process(Span span, std::string const& channel) {
   return about({channel},
-               error("E3216", span, fmt::format("`{}` has no Gaussian process, other channels of the model have", channel),
-                     "give it one, or fit it with a model of its own"));
+               error("E3216", span, fmt::format("`{}` has no Gaussian process, but other channels of the model have one", channel),
+                     "give it one, or fit it with a separate model"));
 }
 Diagnostic process_task(Span span, std::string const& verb, std::string const& model) {
   return about({model}, error("E3217", span, fmt::format("`{}` has a Gaussian process and cannot be {}", model, verb),
-                              "such a model is fitted and predicted: `posterior = fit ... with map`"));
+                              "fit it and predict with it: `posterior = fit ... with map`"));
 }
 Diagnostic process_beside_estimated_start(Span span, std::string const& model) {
-  return about({model},
-               error("E3217", span,
-                     fmt::format("the start of `{}` would be estimated from its first rows without its Gaussian process", model),
-                     "make the initial values parameters, `initial y = y0` with `parameter y0 ~ normal(0, sd = ...)`"));
+  return about({model}, error("E3217", span, fmt::format("an estimated start of `{}` would ignore its Gaussian process", model),
+                              "make the initial values parameters, `initial y = y0` with `parameter y0 ~ normal(0, sd = ...)`"));
 }
 Diagnostic process_of_many_samples(Span span, std::string const& model, int most) {
-  return about({model}, error("E3217", span,
-                              fmt::format("the Gaussian process of `{}` is simulated at no more than {} samples", model, most),
-                              "make several records, or a shorter one"));
+  return about({model},
+               error("E3217", span, fmt::format("the Gaussian process of `{}` can be simulated at {} samples at most", model, most),
+                     "simulate several records, or a shorter one"));
 }
 Diagnostic process_beside_constraints(Span span, std::string const& model) {
   return about(
       {model},
-      error("E3217", span, fmt::format("`{}` has a Gaussian process beside constraints, whose drift would not be measured", model),
-            "write the equations in coordinates that meet the constraints, or fit them without the process"));
+      error("E3217", span, fmt::format("`{}` has a Gaussian process and constraints, whose drift would not be checked", model),
+            "write the equations in coordinates that satisfy the constraints, or fit the model without the process"));
 }
 Diagnostic process_feeds_back(Span span, std::string const& rule) {
-  return error(
-      "E3218", span, fmt::format("a Gaussian process is not fitted {}: its values would be inputs of its own", rule),
-      "fit one step ahead, `prediction = one_step`, or read measured samples, `lag(measured(y), 1)`; predictions may run free");
+  return error("E3218", span, fmt::format("a Gaussian process cannot be fitted {}: its own values would be its inputs", rule),
+               "fit one step ahead, `prediction = one_step`, or use measured samples, `lag(measured(y), 1)`; a prediction can be a "
+               "free run");
 }
 Diagnostic condition_moves(Span span, std::string const& name, std::string const& what) {
-  return about({name},
-               error("E3225", span, fmt::format("`{}` is a point, it cannot read {}", name, what), "use numbers and constants"));
+  return about({name}, error("E3225", span, fmt::format("`{}` is a point and cannot depend on {}", name, what),
+                             "use numbers and constants"));
 }
 Diagnostic condition_count(Span span, std::string const& name, std::string const& process, std::size_t given, std::size_t wanted) {
   return about({name, process},
                error("E3225", span,
-                     fmt::format("a point of `{}` has {}, `{}` needs {}", name, counted(given, "coordinate"), process, wanted),
+                     fmt::format("a point of `{}` has {}, but `{}` needs {}", name, counted(given, "coordinate"), process, wanted),
                      "give one for each input, `zero_at = (0, 0)`; several points are a list of such lists"));
 }
 Diagnostic condition_without_derivative(Span span, std::string const& kernel) {
   return about({kernel},
-               error("E3226", span, fmt::format("functions of `{}` have no derivative, which `flat_at` sets to zero", kernel),
+               error("E3226", span, fmt::format("`flat_at` sets a derivative to zero, but functions of `{}` have none", kernel),
                      "`matern32` has one, `matern52` two, `squared_exponential` all; `zero_at` needs none"));
 }
 

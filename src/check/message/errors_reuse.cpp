@@ -30,12 +30,12 @@ Diagnostic too_many_sizes(Span span, std::string const& name) {
 }
 Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& left, Span left_span, Shape const& right,
                           Span right_span) {
-  std::string help = "give both sides the same shape; a plain number may stand for every element";
-  std::string what = fmt::format("`{}` between {} and {} has no meaning", symbol, left.text(), right.text());
+  std::string help = "give both sides the same shape; a scalar applies to every element";
+  std::string what = fmt::format("`{}` is not defined between {} and {}", symbol, left.text(), right.text());
   if (symbol == "*") {
     help = left.rank == 1 && right.rank == 1
                ? "`dot(a, b)` is the sum of products, `diagonal(a)*b` multiplies element by element, `a*transpose(b)` is a matrix"
-               : "the columns of the left are as many as the rows of the right";
+               : "the left side must have as many columns as the right side has rows";
   } else if (symbol == "=") {
     what = fmt::format("{} cannot equal {}", left.text(), right.text());
     help = "an equation of vectors has a vector on either side, or 0";
@@ -51,8 +51,8 @@ Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& lef
   return left_span == right_span ? result : with(std::move(result), right_span, right.text());
 }
 Diagnostic wrong_shape(Span span, std::string const& what, Shape const& given, Shape const& wanted) {
-  return error("E2705", span, fmt::format("{} is {}, where {} is wanted", what, given.text(), wanted.text()),
-               wanted.rank == 0 ? "take one element, `q[1]`, or a sum, `sum(q)`; or declare the size behind the name: `name(3)`"
+  return error("E2705", span, fmt::format("{} is {}, but {} is needed", what, given.text(), wanted.text()),
+               wanted.rank == 0 ? "use one element, `q[1]`, or a sum, `sum(q)`; or declare the size after the name: `name(3)`"
                                 : "write a list in parentheses with as many items, or one number for all");
 }
 Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span other_span) {
@@ -61,37 +61,37 @@ Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span o
               other_span, other.text());
 }
 Diagnostic index_out_of_range(Span span, std::string const& name, Shape const& shape) {
-  return about(
-      {name}, error("E2707", span, fmt::format("`{}` is {}: it has no such element", name, shape.text()), "elements count from 1"));
+  return about({name}, error("E2707", span, fmt::format("`{}` is {}: it has no such element", name, shape.text()),
+                             "elements are numbered from 1"));
 }
 Diagnostic index_count(Span span, std::string const& name, Shape const& shape, std::size_t given) {
   return about({name},
                error("E2707", span,
-                     fmt::format("`{}` is {}, and {} {} given", name, shape.text(), given, given == 1 ? "index is" : "indices are"),
-                     shape.rank == 0   ? fmt::format("leave the index out, or declare `{}(n)`", name)
+                     fmt::format("`{}` is {}, but {} {} given", name, shape.text(), given, given == 1 ? "index is" : "indices are"),
+                     shape.rank == 0   ? fmt::format("remove the index, or declare `{}(n)`", name)
                      : shape.rank == 1 ? fmt::format("write `{}[i]`", name)
                                        : fmt::format("write `{}[i, j]`: row and column", name)));
 }
 Diagnostic array_arguments(ast::Name const& function, std::size_t given, std::string const& usage) {
   if (function.text == "dot" && given == 1)
-    return error("E2708", function.span, "`dot` multiplies two vectors, it is no derivative",
+    return error("E2708", function.span, "`dot` multiplies two vectors and is not a derivative",
                  "a derivative is written with primes: `y'`, `y''`");
   return about({function.text},
                error("E2708", function.span, fmt::format("`{}` does not take these arguments", function.text), usage));
 }
 Diagnostic model_too_large(Span span) {
-  return error("E2709", span, "written out in numbers, this model is too large to be handled",
+  return error("E2709", span, "this model is too large when its vectors and parts are written out",
                "make vectors and matrices smaller, or nest fewer parts and functions");
 }
 
 Diagnostic models_too_large(Span span) {
-  return error("E2709", span, "written out in numbers, the models of this file are too large to be handled together",
-               "begin another file from here on, or use fewer models with large arguments");
+  return error("E2709", span, "the models of this file are too large when their vectors and parts are written out",
+               "move the models from here on to another file, or use fewer models with large arguments");
 }
 
 Diagnostic part_cycle(Span span, Names const& loop) {
   return error("E2801", span, fmt::format("this model is a part of itself: {}", fmt::join(loop, " -> ")),
-               "break the loop; what both need is a third model");
+               "remove the cycle: move what both need into a third model");
 }
 Diagnostic model_argument_missing(Span span, std::string const& model, std::string const& argument) {
   return about({model, argument}, error("E2802", span, fmt::format("model `{}` needs its argument `{}`", model, argument),
@@ -112,25 +112,27 @@ Diagnostic model_argument_twice(Span second, Span first, std::string const& name
               "first here");
 }
 Diagnostic input_of_part_unbound(Span span, std::string const& part, Names const& inputs, std::string const& model) {
-  return about(
-      {part},
-      error("E2806", span, fmt::format("part `{}` is left without its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
-            fmt::format("say what drives it: `{}({} = ...)`", model, inputs.front())));
+  return about({part},
+               error("E2806", span,
+                     fmt::format("part `{}` has no value for its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
+                     fmt::format("bind it: `{}({} = ...)`", model, inputs.front())));
 }
 Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) {
-  return with(about({input}, error("E2807", binding,
-                                   fmt::format("the part needs the time derivative of its input `{}`, which this has not", input),
-                                   "bind a state, or sums, products and whole powers of states and inputs")),
-              use, "the derivative is used here");
+  return with(
+      about({input},
+            error("E2807", binding,
+                  fmt::format("the part needs the time derivative of its input `{}`, which this expression does not have", input),
+                  "bind a state, or sums, products and whole powers of states and inputs")),
+      use, "the derivative is used here");
 }
 Diagnostic candidate_range(Span span, long models, std::size_t most) {
   return error("E2809", span,
-               models < 1 ? "this range holds no number: it ends before it begins"
-                          : fmt::format("this candidate stands for {} models, more than a set may hold", models),
-               models < 1 ? "write the smaller number first: `1..4`" : fmt::format("leave at most {}", most));
+               models < 1 ? "this range is empty: it ends before it begins"
+                          : fmt::format("this candidate has {} models, more than a set can contain", models),
+               models < 1 ? "write the smaller number first: `1..4`" : fmt::format("keep at most {}", most));
 }
 Diagnostic discrete_part(Span span, std::string const& part, Span declaration) {
-  return with(about({part}, error("E2808", span, fmt::format("part `{}` is in discrete time, the model around it is not", part),
+  return with(about({part}, error("E2808", span, fmt::format("part `{}` is in discrete time, but the model around it is not", part),
                                   "declare `time discrete` in both, or in neither")),
               declaration, "declared here");
 }
@@ -145,7 +147,7 @@ Diagnostic module_not_found(ast::Name const& module, std::string const& folder, 
   return about({module.text}, error("E2901", module.span,
                                     fmt::format("there is no `{}.sysid` in {} and no module `{}` in the standard library",
                                                 module.text, folder, module.text),
-                                    guess_or(module.text, known, "sysid list modules prints what the standard library holds")));
+                                    guess_or(module.text, known, "`sysid list modules` lists the standard library")));
 }
 Diagnostic module_cycle(Span span, Names const& loop) {
   return error("E2902", span, fmt::format("this module uses itself: {}", fmt::join(loop, " -> ")),
@@ -157,8 +159,8 @@ Diagnostic name_of_two_modules(Span second, Span first, std::string const& kind,
               first, "and this one");
 }
 Diagnostic not_for_a_module(Span span, std::string const& what, std::string const& module) {
-  return about({module}, error("E2904", span, fmt::format("{} cannot stand in module `{}`", what, module),
-                               "a module holds models and functions; move it to the file that uses them"));
+  return about({module}, error("E2904", span, fmt::format("{} is not allowed in module `{}`", what, module),
+                               "a module contains models and functions only; move it to the file that uses them"));
 }
 
 }  // namespace sysid::errors

@@ -13,10 +13,9 @@ Diagnostic state_without_equation(Span declaration, std::string const& state, st
 Diagnostic algebraic_state(Span declaration, std::string const& state) {
   return about(
       {state},
-      error(
-          "E3002", declaration,
-          fmt::format("nothing determines `{0}`: no equation has `{0}'`, and none is left for `{0}` itself", state),
-          fmt::format("give an equation for it; what follows from other quantities is a local definition: `let {} = ...`", state)));
+      error("E3002", declaration,
+            fmt::format("nothing determines `{0}`: no equation contains `{0}'`, and no equation is left for `{0}`", state),
+            fmt::format("add an equation for it; if it follows from other quantities, define it with `let {} = ...`", state)));
 }
 
 Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
@@ -26,7 +25,7 @@ Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) 
 
 Diagnostic undetermined(Span declaration, std::string const& unknown) {
   return about({unknown}, error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
-                                "two equations say the same thing about the highest derivatives"));
+                                "change one of the equations: two of them are equivalent in the highest derivatives"));
 }
 
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {
@@ -34,7 +33,7 @@ Diagnostic initial_of_highest(ast::Reference const& reference, std::string const
   for (int k = 0; k < order; ++k) components.push_back(primed(state, k));
   return about(
       {primed(reference)},
-      error("E3006", reference.span, fmt::format("`{}` follows from the equations: it has no initial value", primed(reference)),
+      error("E3006", reference.span, fmt::format("`{}` follows from the equations and takes no initial value", primed(reference)),
             fmt::format("`{}` is of order {}: give {}", state, order, quoted(components))));
 }
 
@@ -52,7 +51,7 @@ Diagnostic initial_twice(Span second, Span first, std::string const& component) 
 }
 
 Diagnostic initial_moves(Span span) {
-  return error("E3009", span, "an initial value cannot read states, inputs or time", "use numbers, constants and parameters");
+  return error("E3009", span, "an initial value cannot depend on states, inputs or time", "use numbers, constants and parameters");
 }
 
 Diagnostic not_a_state(ast::Name const& name, Names const& states) {
@@ -66,12 +65,12 @@ Diagnostic not_a_state(ast::Name const& name, Names const& states) {
 Diagnostic channel_twice(ast::Name const& name, Span first) {
   return about({name.text}, conflict("E3011", name.span, "again here", first, "first observed here",
                                      fmt::format("channel `{}` is observed twice", name.text),
-                                     "one `observe` per channel; two sensors are two channels"));
+                                     "write one `observe` per channel; give a second sensor a channel of its own"));
 }
 
 Diagnostic nothing_observed(ast::Name const& model) {
   return about({model.text}, error("E3012", model.span, fmt::format("model `{}` observes nothing", model.text),
-                                   "say how data arise: `observe displacement ~ normal(y, sd = sigma)`"));
+                                   "add an observation: `observe displacement ~ normal(y, sd = sigma)`"));
 }
 
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first) {
@@ -90,15 +89,16 @@ Diagnostic unused(Span declaration, std::string message, std::string help) {
 }  // namespace
 
 Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where) {
-  return unused(declaration, fmt::format("nothing in this {} reads the parameter `{}`", where, parameter),
-                where == "dictionary" ? "put it before a term or into the target, or delete it"
-                : has_prior ? "use it in an equation, an observation or another prior; as it is, its posterior is its prior"
+  return unused(declaration, fmt::format("nothing in this {} uses the parameter `{}`", where, parameter),
+                where == "dictionary" ? "use it as a factor of a term or in the target, or delete it"
+                : has_prior ? "use it in an equation, an observation or another prior; otherwise its posterior equals its prior"
                             : "use it in an equation, an observation or a prior, or delete it");
 }
 Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where) {
-  return unused(declaration, fmt::format("nothing in this {} reads the input `{}`", where, input),
-                where == "dictionary" ? "put it into the target or a term: a force that acts and is left out stays in the residual"
-                                      : "use it in an equation or an observation, or delete it");
+  return unused(declaration, fmt::format("nothing in this {} uses the input `{}`", where, input),
+                where == "dictionary"
+                    ? "use it in the target or in a term: an input that acts but is left out remains in the residual"
+                    : "use it in an equation or an observation, or delete it");
 }
 
 Diagnostic time_twice(Span second, Span first) {

@@ -48,14 +48,13 @@ Diagnostic option_range(Span span, std::string const& option, double given, doub
                             : least == 0               ? std::string("not be negative")
                             : least > 0                ? std::string("be positive")
                                                        : std::string("be finite");
-  return about({option},
-               error("E6005", span, fmt::format("`{}` must {}, here it is {}", option, range, given), "correct the number"));
+  return about({option}, error("E6005", span, fmt::format("`{}` must {}, but is {}", option, range, given), "correct the number"));
 }
 
 Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most) {
-  return about({option}, error("E6005", span,
-                               fmt::format("`{}` must be 0 or lie between {} and {}, here it is {}", option, least, most, given),
-                               "correct the number"));
+  return about({option},
+               error("E6005", span, fmt::format("`{}` must be 0 or lie between {} and {}, but is {}", option, least, most, given),
+                     "correct the number"));
 }
 
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {
@@ -66,7 +65,7 @@ Diagnostic option_choice(Span span, std::string const& option, std::string const
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {
   bool const selects = task.verb.text == "select";
   return error(
-      "E6007", task.verb.span, fmt::format("this {} does not say with what", selects ? "selection" : "fit"),
+      "E6007", task.verb.span, fmt::format("this {} has no back end", selects ? "selection" : "fit"),
       fmt::format("add `with {}`; back ends: {}", selects ? "abc_smc(particles = 1000)" : "mh(samples = 25000)", quoted(known)));
 }
 
@@ -76,35 +75,35 @@ Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
 }
 
 Diagnostic data_missing(ast::Task const& task, std::string const& preposition) {
-  return error("E6009", task.verb.span, fmt::format("this {} names no data", task.verb.text),
+  return error("E6009", task.verb.span, fmt::format("this {} has no data", task.verb.text),
                fmt::format("add `{} DATA` or `{} DATA.PART`", preposition, preposition));
 }
 
 Diagnostic data_unused(ast::Task const& task, Span data) {
-  return about({task.verb.text}, error("E6013", data, fmt::format("`{}` takes no data: it makes its own inputs", task.verb.text),
-                                       "leave the data out, or `predict` a fit on them"));
+  return about({task.verb.text}, error("E6013", data, fmt::format("`{}` takes no data: it generates its inputs", task.verb.text),
+                                       "remove the data, or use `predict` with a fit"));
 }
 
 Diagnostic not_a_fit(ast::Name const& name, std::string const& verb) {
-  return about({name.text},
-               error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
-                     verb == "predict" ? "predict needs the name of a fit task" : "a search begins near the draws of a fit"));
+  return about({name.text}, error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
+                                  verb == "predict" ? "predict needs the name of a fit task"
+                                                    : "`search = near(...)` needs the name of a fit task"));
 }
 
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration) {
-  return about({name.text}, conflict("E6014", name.span, "another value here", declaration, "fixed here",
+  return about({name.text}, conflict("E6014", name.span, "given another value here", declaration, "fixed here",
                                      fmt::format("parameter `{}` has a fixed value in the model", name.text),
                                      "change it there, or give it a prior"));
 }
 
 Diagnostic value_missing(Span span, Names const& parameters) {
-  return error("E6011", span, fmt::format("simulating needs a value for {}", quoted(parameters)),
+  return error("E6011", span, fmt::format("a simulation needs a value for {}", quoted(parameters)),
                fmt::format("write `values({} = ..., ...)`", parameters.front()));
 }
 
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate) {
   return error("E6101", span,
-               fmt::format("this multisine reaches {:.6g} Hz, half the sampling rate is {:.6g} Hz", highest, half_rate),
+               fmt::format("this multisine reaches {:.6g} Hz, but half the sampling rate is {:.6g} Hz", highest, half_rate),
                "lower `highest`, or raise `rate`");
 }
 
@@ -112,7 +111,7 @@ Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, 
   return error("E6101", span,
                fmt::format("no harmonic of the record, a multiple of {:.6g} Hz, lies between {:.6g} and {:.6g} Hz", resolution,
                            lowest, highest),
-               "widen the band from `lowest` to `highest`, or take more samples");
+               "widen the band from `lowest` to `highest`, or use more samples");
 }
 
 Diagnostic task_too_late(ast::Name const& name) {
@@ -121,15 +120,15 @@ Diagnostic task_too_late(ast::Name const& name) {
 }
 
 Diagnostic experiment_twice(Span second, Span first, std::string const& experiment) {
-  return about({experiment}, conflict("E6304", second, "again", first, "first here",
-                                      fmt::format("`{}` is used twice: its samples would count twice", experiment),
-                                      "name every experiment once"));
+  return about({experiment},
+               conflict("E6304", second, "again", first, "first here",
+                        fmt::format("`{}` is used twice: its samples would count twice", experiment), "list each experiment once"));
 }
 
 Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other) {
-  return about({one, other}, conflict("E6304", second, "these rows", first, "were here already",
-                                      fmt::format("`{}` and `{}` share rows, which would count twice", one, other),
-                                      "give them rows of their own"));
+  return about({one, other},
+               conflict("E6304", second, "these rows", first, "already used here",
+                        fmt::format("`{}` and `{}` overlap: the shared rows would count twice", one, other), "use separate rows"));
 }
 
 }  // namespace sysid::errors

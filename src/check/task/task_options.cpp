@@ -9,31 +9,34 @@ namespace sysid {
 namespace {
 
 constexpr TaskOptionRow rows[] = {
-    {"start", "start = estimated(rows = 50)", "where a simulation begins, and in which state", "record rest estimated"},
-    {"solver", "solver = cvode(relative = 1e-8)", "the method that integrates the equations", {}},
-    {"substeps", "substeps = 2", "steps of rk4 between two samples; without it the fit chooses", "automatic"},
-    {"prediction", "prediction = free_run", "from which past a discrete-time model predicts", "as_written one_step free_run"},
+    {"start", "start = estimated(rows = 50)", "how a simulation starts: at which row, and in which state", "record rest estimated"},
+    {"solver", "solver = cvode(relative = 1e-8)", "integration method of the equations", {}},
+    {"substeps", "substeps = 2", "steps of rk4 between two samples; if not given, the fit chooses it", "automatic"},
+    {"prediction", "prediction = free_run", "the past samples from which a discrete-time model predicts",
+     "as_written one_step free_run"},
     {"search", "search = near(posterior)",
-     "where the search for modes begins: at draws of the prior, or where an earlier fit ended", "everywhere near"},
-    {"seed", "seed = 1", "of all random numbers; without it one is drawn and printed", {}},
-    {"distance", "distance = rmse", "between simulated and measured samples: nmse, rmse or expressions of channels", "nmse rmse"},
-    {"weights", "weights(displacement = 1)", "of the channels in the distance", {}},
+     "where the search for modes starts: at draws of the prior, or where an earlier fit ended", "everywhere near"},
+    {"seed", "seed = 1", "seed of all random numbers; if not given, one is drawn and printed", {}},
+    {"distance", "distance = rmse", "distance between simulated and measured samples: nmse, rmse or expressions of channels",
+     "nmse rmse"},
+    {"weights", "weights(displacement = 1)", "weights of the channels in the distance", {}},
     {"noise", "noise = 1 [percent]",
-     "of the simulated channels: a share of each clean channel's standard deviation, or the model's", "model"},
-    {"values", "values(m = 1, k = 1e4)", "of parameters with a prior, in their declared units", {}},
+     "noise of the simulated channels: a percentage of each channel's standard deviation without noise, or that of the model",
+     "model"},
+    {"values", "values(m = 1, k = 1e4)", "values of parameters with a prior, in their declared units", {}},
     {"input", "input x = gaussian(sd = 10)", "the signal of an input", {}},
     {"samples", "samples = 500", "number of rows", {}},
     {"rate", "rate = 1000 [Hz]", "rows per second; a bare number is in Hz", {}},
     {"step", "step = 1 [ms]", "between two rows; a bare number is in s", {}},
-    {"file", "file = \"made.csv\"", "name of the CSV in the result folder", {}},
-    {"draws", "draws(200)", "posterior draws that are simulated", {}},
+    {"file", "file = \"made.csv\"", "name of the CSV file in the result folder", {}},
+    {"draws", "draws(200)", "number of posterior draws that are simulated", {}},
     {"redraw", "redraw = step", "parameters redrawn for each trajectory or at each step", "trajectory step"},
-    {"top", "top = 5", "how many supports are shown, and how many structures refitted", {}},
-    {"candidates", "candidates = yes", "whether found.sysid holds a model for each structure, as a set of candidates", "yes no"},
+    {"top", "top = 5", "number of structures that are shown and refitted", {}},
+    {"candidates", "candidates = yes", "whether found.sysid contains a model for each structure, as a set of candidates", "yes no"},
     {"refit", "refit = yes", "whether the best structures are refitted by simulation", "yes no"},
 };
 constexpr TaskOptionRow noise_of_discovery = {
-    "noise", "noise(displacement = 0.1 [mm])", "standard deviation of a channel, where it is known", {}};
+    "noise", "noise(displacement = 0.1 [mm])", "standard deviation of the noise of a channel, if it is known", {}};
 
 using Names = std::vector<std::string_view>;
 std::map<std::string_view, Names> const& by_verb() {

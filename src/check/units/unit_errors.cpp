@@ -33,7 +33,7 @@ std::string with_names(std::string const& cure, std::string const& names) {
 }
 
 std::string subject(Temperature const& temperature) {
-  return temperature.is_name ? "`" + temperature.text + "`" : "what gives this quantity";
+  return temperature.is_name ? "`" + temperature.text + "`" : "what this quantity is computed from";
 }
 
 }  // namespace
@@ -59,11 +59,11 @@ Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
       break;
     case Occasion::Kind::declared:
       code = "E2204";
-      message = fmt::format("`{}` is in [{}], this is in [{}]", occasion.what, conflict.wanted, conflict.found);
+      message = fmt::format("`{}` is in [{}], but this is in [{}]", occasion.what, conflict.wanted, conflict.found);
       break;
     case Occasion::Kind::distribution:
       code = "E2205";
-      message = fmt::format("`{}` for `{}` must be {}, this is in [{}]", occasion.what, occasion.of,
+      message = fmt::format("`{}` for `{}` must be {}, but this is in [{}]", occasion.what, occasion.of,
                             conflict.wanted == "-" ? "a pure number" : fmt::format("in [{}]", conflict.wanted), conflict.found);
       break;
   }
@@ -75,12 +75,12 @@ Diagnostic pure_argument(Label argument, std::string const& function, std::strin
                               std::move(help)));
 }
 Diagnostic exponent_with_unit(Label exponent, std::string help) {
-  return at(Severity::error, "E2207", std::move(exponent), {}, "an exponent is a pure number", std::move(help));
+  return at(Severity::error, "E2207", std::move(exponent), {}, "an exponent must be a pure number", std::move(help));
 }
 Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, std::string const& unit) {
   return at(Severity::error, "E2208", std::move(base), {{exponent, "not known before the run"}},
-            "the unit of this power is not known: its base has one, and its exponent is no constant",
-            fmt::format("make the base a pure number: divide `{}` by a reference in [{}]", text, unit));
+            "the unit of this power is not known: its base has a unit, but its exponent is not a constant",
+            fmt::format("make the base a pure number: divide `{}` by a reference value in [{}]", text, unit));
 }
 Diagnostic condition_with_unit(Label condition, std::string const& text) {
   return at(Severity::error, "E2209", std::move(condition), {}, "a condition is true or false, not a quantity with a unit",
@@ -92,7 +92,7 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
   std::string message, help;
   switch (zeros) {
     case Zeros::in_doubt:
-      message = "in this sum it is open whether a temperature or a difference of temperatures is meant";
+      message = "this sum is ambiguous: a temperature or a difference of temperatures";
       help = without.unit.offset == 0
                  ? fmt::format("declare {} in [{}] if it is a difference, in [{}] if it is a temperature", subject(without),
                                difference(with_zero.unit).text, with_zero.unit.text)
@@ -101,15 +101,15 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
       break;
     case Zeros::of_difference:
       message = "one of these is a temperature, the other a difference of temperatures";
-      help = without.text.empty() ? fmt::format("subtract the temperature that the difference counts from: `{} - 20 [{}]`",
+      help = without.text.empty() ? fmt::format("subtract the reference temperature of the difference: `{} - 20 [{}]`",
                                                 with_zero.text, with_zero.unit.text)
                                   : fmt::format("a temperature is `20 [{}] + {}`; a difference is declared in [{}]",
                                                 with_zero.unit.text, without.text, difference(with_zero.unit).text);
       break;
     case Zeros::agree:
     case Zeros::apart:
-      message = "these temperatures count from different zeros";
-      help = fmt::format("declare {} in [{}], too: columns and numbers are converted to it, expressions are not", subject(shown),
+      message = "these temperatures have different zero points";
+      help = fmt::format("declare {} in [{}] as well: columns and numbers are converted, expressions are not", subject(shown),
                          other.unit.text.empty() ? "K" : other.unit.text);
       break;
   }
@@ -117,19 +117,19 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
 }
 Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
   return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
-            "a frequency in cycles meets one in radians without 2*pi",
+            "a frequency in cycles is combined with one in radians without 2*pi",
             counts_cycles ? "multiply this by 2*pi if it counts cycles" : "divide this by 2*pi if the other counts cycles");
 }
 Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) {
   shown.text = name.empty() ? "counts cycles" : fmt::format("`{}` counts cycles", name);
   return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
-            "a frequency in cycles is used as an angular one, without 2*pi",
+            "a frequency in cycles is used as an angular frequency, without 2*pi",
             name.empty() ? "multiply the frequency by 2*pi if it counts cycles"
                          : fmt::format("write `2*pi*{0}` for `{0}` if it counts cycles", name));
 }
 Diagnostic cycles_in_angle(Span argument, std::string const& function) {
   return about({function}, at(Severity::warning, "E2210", {argument, "cycles"}, {},
-                              fmt::format("`{}` takes radians, this counts cycles", function), "multiply by 2*pi"));
+                              fmt::format("`{}` takes radians, but this counts cycles", function), "multiply by 2*pi"));
 }
 
 bool is_unit_conflict(Diagnostic const& diagnostic) {
@@ -168,7 +168,7 @@ std::string should_be_in(std::string const& unit) {
   return unit == "-" ? "make it a pure number" : fmt::format("make it a quantity in [{}]", unit);
 }
 std::string tag_the_number(std::string const& number, std::string const& unit) {
-  return fmt::format("a number as a factor has no unit of its own: write `{} [{}]`", number, unit);
+  return fmt::format("a number as a factor has no unit: write `{} [{}]`", number, unit);
 }
 std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit) {
   auto const primed = [&](int count) { return name + std::string(static_cast<std::size_t>(count), '\''); };

@@ -11,10 +11,10 @@ namespace {
 InstructionSet best_or_refuse() {
   if (std::optional<InstructionSet> const best = supported_instruction_set()) return *best;
   throw UserError({.code = "E0001",
-                   .message = "this processor lacks AVX2 and FMA (x86-64-v3), which sysid computes with",
+                   .message = "this processor lacks AVX2 and FMA (x86-64-v3), which sysid needs",
                    .primary = {},
                    .secondary = {},
-                   .help = "run it on a processor made after 2013, or in a virtual machine that passes these features on"});
+                   .help = "use a processor with AVX2 and FMA, or enable them in the virtual machine"});
 }
 
 std::atomic<int>& forced() {
@@ -39,7 +39,7 @@ void force_instruction_set(InstructionSet set) {
                      .message = "this processor has no AVX-512 instructions",
                      .primary = {},
                      .secondary = {},
-                     .help = "leave the choice to sysid, or ask for avx2; results are the same bytes"});
+                     .help = "remove the option, or choose avx2: the results are identical"});
   }
   forced().store(static_cast<int>(set), std::memory_order_relaxed);
 }

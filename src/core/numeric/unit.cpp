@@ -78,7 +78,7 @@ ut_system& database() {
   static std::unique_ptr<ut_system, void (*)(ut_system*)> const system = [] {
     ut_set_error_message_handler(ut_ignore);  // it would print to stderr otherwise
     std::unique_ptr<ut_system, void (*)(ut_system*)> read(ut_read_xml(nullptr), ut_free_system);
-    if (!read) throw IoError("cannot read the unit database of UDUNITS-2 (udunits2.xml); set UDUNITS2_XML_PATH to where it is");
+    if (!read) throw IoError("cannot read the unit database of UDUNITS-2 (udunits2.xml); set UDUNITS2_XML_PATH to its path");
     return read;
   }();
   return *system;

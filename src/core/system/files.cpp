@@ -36,7 +36,7 @@ std::string reason(int error) {
 
 std::string help_to_read(std::filesystem::path const& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return fmt::format("`{}` is a folder: name a file in it", path.string());
+  if (std::filesystem::is_directory(path, ignored)) return fmt::format("`{}` is a folder: give a file in it", path.string());
   std::string const guess = did_you_mean(path.string(), files_beside(path));
   return guess.empty() ? "check the path and the permissions" : guess;
 }
@@ -45,11 +45,11 @@ std::string help_to_write(std::filesystem::path const& path, int error) {
   std::error_code ignored;
   std::filesystem::path const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   if (error == ENOENT && !std::filesystem::exists(folder, ignored))
-    return fmt::format("there is no folder `{}`: make it, or name another one", folder.string());
-  if (error == EISDIR) return fmt::format("`{}` is a folder: name a file in it", path.string());
-  if (error == ENOTDIR || error == EEXIST) return "a file stands where a folder should be: name another one";
-  if (error == EACCES || error == EPERM || error == EROFS) return "check the permissions, or name another folder";
-  return "check that the folder takes files and the disk has room";
+    return fmt::format("there is no folder `{}`: create it, or give another one", folder.string());
+  if (error == EISDIR) return fmt::format("`{}` is a folder: give a file in it", path.string());
+  if (error == ENOTDIR || error == EEXIST) return "a part of the path is a file, not a folder: give another path";
+  if (error == EACCES || error == EPERM || error == EROFS) return "check the permissions, or give another folder";
+  return "check that the folder is writable and the disk has free space";
 }
 
 [[noreturn]] void fail(std::string_view what, std::filesystem::path const& path, int error) {
@@ -147,8 +147,8 @@ void write_file(std::filesystem::path const& path, std::string_view bytes) {
 void make_folder(std::filesystem::path const& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) fail("make the folder", path, error.value());
-  if (!std::filesystem::is_directory(path)) fail("make the folder", path, ENOTDIR);
+  if (error) fail("create the folder", path, error.value());
+  if (!std::filesystem::is_directory(path)) fail("create the folder", path, ENOTDIR);
 }
 
 void remove_file(std::filesystem::path const& path) {

@@ -25,7 +25,7 @@ struct Failure {
 class Ledger {
  public:
   /// Where the failures lie that are counted without a look at each.
-  static constexpr char const* untraced = "not looked into, as the first eight were";
+  static constexpr char const* untraced = "not traced: only the first eight are";
   void add_solves(std::uint64_t count) { solves_ += count; }
   /// Counts a failure; `example`, its `names` and `time` are kept for the first one of its (kind, where).
   void add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example, std::uint64_t count = 1,

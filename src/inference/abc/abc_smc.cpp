@@ -151,8 +151,8 @@ class Run {
       context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", where, candidates_.name(model)), time,
                                   std::move(example), 1, std::move(names));
     } else {
-      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`, not looked into", candidates_.name(model)),
-                                  not_a_number, std::move(example), 1, std::move(names));
+      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`, not traced", candidates_.name(model)), not_a_number,
+                                  std::move(example), 1, std::move(names));
     }
   }
 
@@ -176,7 +176,9 @@ class Run {
     }
     if (highest == -infinity)
       return !stop(
-          Stop{fmt::format("the moves of population {} are lost in rounding: its particles have no weights", next_.number), true});
+          Stop{fmt::format("the proposals of population {} are too small for double precision: its particles have no weights",
+                           next_.number),
+               true});
     double total = 0;
     for (std::size_t m = 0; m < logs.size(); ++m)
       for (std::size_t j = 0; j < logs[m].size(); ++j) total += next_.models[m].weight[j] = elementary::exp(logs[m][j] - highest);

@@ -9,36 +9,37 @@ namespace sysid::abc {
 namespace {
 
 constexpr SettingRow rows[] = {
-    {"particles", SettingKind::integer, "1000", 10, 1e7, "", "of each population, over all models"},
+    {"particles", SettingKind::integer, "1000", 10, 1e7, "", "particles in each population, over all models"},
     {"quantile", SettingKind::real, "0.2", 1e-6, 0.999999, "",
-     "the next threshold is this quantile of the distances of all particles, unweighted"},
-    {"schedule", SettingKind::numbers, "", 0, infinity, "", "thresholds one after another instead, falling: `(100, 10, 1)`"},
+     "the next threshold is this unweighted quantile of the distances of all particles"},
+    {"schedule", SettingKind::numbers, "", 0, infinity, "", "decreasing thresholds, used in place of the quantile: `(100, 10, 1)`"},
     {"first_threshold", SettingKind::real, "0", 0, infinity, "",
-     "of population 1; 0: every draw of the prior that can be simulated"},
+     "threshold of population 1; 0: every prior draw that can be simulated is accepted"},
     {"kernel", SettingKind::word, "gaussian", 0, 0, "gaussian component_gaussian uniform nearest_neighbours",
-     "how a particle moves: normal with the population's covariance, its diagonal, a box of its range, or normal with the "
-     "covariance of the nearest neighbours"},
+     "proposal of a particle: normal with the population's covariance, normal with its diagonal, uniform over its range, or normal "
+     "with the covariance of the nearest neighbours"},
     {"kernel_scale", SettingKind::real, "0", 0, 1e12, "",
-     "factor on that covariance, or on the range; 0: 2 for the population's covariance, else 1", 1e-6},
-    {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "that shape the kernel `nearest_neighbours`"},
+     "factor on the covariance or range of the kernel; 0: 2 for the population's covariance, else 1", 1e-6},
+    {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "number of neighbours in the kernel `nearest_neighbours`"},
     {"coordinates", SettingKind::word, "natural", 0, 0, "natural declared unconstrained",
-     "the kernel moves logarithms of parameters whose prior spans decades and declared values of the others, declared values, or "
-     "the sampler's coordinates, which never leave the prior's support"},
+     "coordinates of the kernel: logarithms where the prior spans decades and declared values elsewhere, declared values, or "
+     "unconstrained coordinates, which stay in the prior's support"},
     {"model_kernel", SettingKind::word, "prior", 0, 0, "prior previous",
-     "models are drawn from their prior, or from the last population and moved"},
-    {"stay", SettingKind::real, "0.7", 0, 1, "", "probability that such a move stays with the model"},
-    {"threshold_change", SettingKind::real, "0", 0, infinity, "", "stop when the threshold falls by no more than this"},
-    {"relative_change", SettingKind::real, "0.01", 0, 1, "", "stop when it falls by no more than this part of itself"},
+     "models are drawn from their prior, or from the last population and then changed at random"},
+    {"stay", SettingKind::real, "0.7", 0, 1, "", "probability that `model_kernel = previous` keeps the model"},
+    {"threshold_change", SettingKind::real, "0", 0, infinity, "", "stop when the threshold decreases by no more than this"},
+    {"relative_change", SettingKind::real, "0.01", 0, 1, "",
+     "stop when the threshold decreases by no more than this fraction of its value"},
     {"target", SettingKind::real, "0", 0, infinity, "", "stop at this threshold"},
-    {"acceptance", SettingKind::real, "0", 0, 1, "", "stop when a smaller part of the proposals is accepted"},
-    {"simulations", SettingKind::real, "1e8", 1, 1e18, "", "stop after so many in all"},
-    {"wall_time", SettingKind::real, "0", 0, infinity, "", "stop after so many seconds, which no seed repeats; 0: no limit"},
-    {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after so many"},
+    {"acceptance", SettingKind::real, "0", 0, 1, "", "stop when the acceptance rate of the proposals is below this"},
+    {"simulations", SettingKind::real, "1e8", 1, 1e18, "", "stop after this many simulations"},
+    {"wall_time", SettingKind::real, "0", 0, infinity, "", "stop after this many seconds, which is not reproducible; 0: no limit"},
+    {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after this many populations"},
     {"cross_check", SettingKind::flag, "true", 0, 0, "",
-     "set Laplace's model probabilities beside these, and test what the best model leaves"},
-    {"polish", SettingKind::flag, "false", 0, 0, "", "go on from the particles with Metropolis-Hastings on the likelihood"},
+     "compare with Laplace's model probabilities, and test the residuals of the best model"},
+    {"polish", SettingKind::flag, "false", 0, 0, "", "continue from the particles with Metropolis-Hastings on the likelihood"},
     {"polish_samples", SettingKind::integer, "25000", 100, 1e8, "",
-     "iterations of each of its four chains, a fifth of them burn-in"},
+     "iterations of each of the four chains of `polish`, a fifth of them burn-in"},
 };
 
 }  // namespace
@@ -49,21 +50,20 @@ std::string refuse(Settings const& settings) {
   std::vector<double> const& schedule = settings.numbers("schedule");
   for (std::size_t t = 1; t < schedule.size(); ++t)
     if (!(schedule[t] < schedule[t - 1]))
-      return fmt::format("the schedule must fall, but {} follows {}", schedule[t], schedule[t - 1]);
+      return fmt::format("the schedule must decrease, but {} follows {}", schedule[t], schedule[t - 1]);
   if (!schedule.empty() && settings.real("first_threshold") > 0)
-    return "the schedule holds the first threshold: leave `first_threshold` out";
+    return "the schedule contains the first threshold: remove `first_threshold`";
   // Each of these would be read by nobody.
   auto const given = [&](char const* name) { return settings.all().at(name) != Settings(rows).all().at(name); };
   auto const idle = [&](bool used, std::initializer_list<char const*> names, char const* why) -> std::string {
     for (char const* name : names)
-      if (!used && given(name)) return fmt::format("`{}` has no say {}", name, why);
+      if (!used && given(name)) return fmt::format("`{}` has no effect {}", name, why);
     return {};
   };
   for (std::string const& why :
-       {idle(schedule.empty(), {"quantile", "target", "threshold_change", "relative_change"},
-             "where a `schedule` gives the thresholds"),
-        idle(settings.word("kernel") == "nearest_neighbours", {"neighbours"}, "but with `kernel = nearest_neighbours`"),
-        idle(settings.word("model_kernel") == "previous", {"stay"}, "but with `model_kernel = previous`"),
+       {idle(schedule.empty(), {"quantile", "target", "threshold_change", "relative_change"}, "with a `schedule` of thresholds"),
+        idle(settings.word("kernel") == "nearest_neighbours", {"neighbours"}, "without `kernel = nearest_neighbours`"),
+        idle(settings.word("model_kernel") == "previous", {"stay"}, "without `model_kernel = previous`"),
         idle(settings.flag("polish"), {"polish_samples"}, "without `polish = yes`")})
     if (!why.empty()) return why;
   return {};

@@ -24,7 +24,7 @@ Particles restore_particles(json const& stored, int dimension) {
   auto const count = particles.distance.size();
   if (particles.at.size() != count * static_cast<std::size_t>(dimension) || particles.log_prior.size() != count ||
       particles.weight.size() != count)
-    throw checkpoint::Mismatch("its particles have another number or dimension");
+    throw checkpoint::Mismatch("its particles differ in number or dimension");
   return particles;
 }
 
@@ -49,7 +49,7 @@ Population restore_population(json const& stored, SelectionTarget const& candida
     std::vector<double> const covariance = checkpoint::decode(stored.at("widths").at(at).at(0)),
                               range = checkpoint::decode(stored.at("widths").at(at).at(1));
     if (range.size() != static_cast<std::size_t>(dimension) || covariance.size() != range.size() * range.size())
-      throw checkpoint::Mismatch("its kernels have another dimension");
+      throw checkpoint::Mismatch("its kernels differ in dimension");
     population.widths.push_back({Eigen::Map<Eigen::MatrixXd const>(covariance.data(), dimension, dimension),
                                  Eigen::Map<Eigen::VectorXd const>(range.data(), dimension)});
   }

@@ -19,17 +19,17 @@ std::optional<Stop> end_after_population(State const& state, Plan const& plan) {
   if (last.number == 0) return std::nullopt;
   double const fall = last.threshold - next.threshold;
   if (!plan.schedule.empty()) {
-    if (static_cast<std::size_t>(last.number) >= plan.schedule.size()) return Stop{"the schedule of thresholds has ended"};
+    if (static_cast<std::size_t>(last.number) >= plan.schedule.size()) return Stop{"all thresholds of the schedule are used"};
   } else if (last.threshold <= plan.target) {
-    return Stop{fmt::format("the threshold has reached its target {}", plan.target)};
+    return Stop{fmt::format("the threshold has reached the target {}", plan.target)};
   } else if (fall <= plan.threshold_change) {
-    return Stop{fmt::format("the next threshold would be lower by {:.2g}, not more than {}", fall, plan.threshold_change)};
+    return Stop{fmt::format("the next threshold would decrease by {:.2g}, not by more than {}", fall, plan.threshold_change)};
   } else if (fall <= plan.relative_change * next.threshold) {
-    return Stop{fmt::format("the next threshold would be lower by {:.2g} %, not more than {} %", 100 * fall / next.threshold,
+    return Stop{fmt::format("the next threshold would decrease by {:.2g} %, not by more than {} %", 100 * fall / next.threshold,
                             100 * plan.relative_change)};
   }
   if (double const accepted = state.records.back().acceptance(); accepted < plan.acceptance)
-    return Stop{fmt::format("{:.2g} of the proposals were accepted, less than {}", accepted, plan.acceptance)};
+    return Stop{fmt::format("the acceptance rate of the proposals is {:.2g}, below {}", accepted, plan.acceptance)};
   if (last.number >= plan.populations) return Stop{fmt::format("`populations = {}` is reached", plan.populations)};
   return std::nullopt;
 }
@@ -38,12 +38,12 @@ std::optional<Stop> end_within_population(State const& state, Plan const& plan, 
   PopulationRecord const& record = state.record;
   auto const proposed = static_cast<double>(record.proposed);
   if (state.simulations() + record.simulated >= plan.simulations)
-    return Stop{fmt::format("`simulations = {}` are spent", plan.simulations), true};
+    return Stop{fmt::format("`simulations = {}` is reached", plan.simulations), true};
   if (proposed >= proposals_per_simulation * static_cast<double>(plan.simulations))
-    return Stop{fmt::format("{} proposals, most of them outside of the priors, had not filled population {}", record.proposed,
+    return Stop{fmt::format("{} proposals, most of them outside the priors, have not filled population {}", record.proposed,
                             state.next.number),
                 true};
-  if (plan.wall_time > 0 && seconds > plan.wall_time) return Stop{fmt::format("`wall_time = {}` is over", plan.wall_time), true};
+  if (plan.wall_time > 0 && seconds > plan.wall_time) return Stop{fmt::format("`wall_time = {}` is reached", plan.wall_time), true};
   if (record.accepted == 0 && record.proposed >= patience)
     return Stop{fmt::format("population {} accepted none of {} proposals", state.next.number, record.proposed), true};
   // So many proposals fill a population at that rate, and this one is not full.

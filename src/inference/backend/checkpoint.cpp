@@ -21,7 +21,7 @@ nlohmann::json encode(std::span<double const> values) {
 std::vector<double> decode(nlohmann::json const& stored) {
   if (!stored.is_binary()) throw Mismatch("its numbers are damaged");
   nlohmann::json::binary_t const& bytes = stored.get_binary();
-  if (bytes.size() % sizeof(double) != 0) throw Mismatch("its numbers are cut short");
+  if (bytes.size() % sizeof(double) != 0) throw Mismatch("it is truncated");
   std::vector<double> values(bytes.size() / sizeof(double));
   if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
@@ -36,7 +36,7 @@ LaneArray decode(nlohmann::json const& stored, int rows, int width) {
   std::vector<double> const values = decode(stored);
   LaneArray array(rows, width);
   if (values.size() != static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))
-    throw Mismatch("its chains have another number or dimension");
+    throw Mismatch("its chains differ in number or dimension");
   std::copy(values.begin(), values.end(), array.view().data());
   return array;
 }
@@ -126,7 +126,7 @@ Finding unusable(std::string const& why) {
           Severity::error,
           {},
           fmt::format("the checkpoint cannot be resumed: {}", why),
-          "run the task anew, without --resume, or restore the file and settings it was started with"};
+          "run the task again without --resume, or restore the file and settings of the first run"};
 }
 
 }  // namespace sysid::checkpoint

@@ -15,7 +15,7 @@ constexpr double target_acceptance = 0.234;
 constexpr double small_share = 0.1;
 
 Eigen::MatrixXd to_matrix(std::vector<double> const& v, Eigen::Index rows, Eigen::Index columns) {
-  if (static_cast<Eigen::Index>(v.size()) != rows * columns) throw checkpoint::Mismatch("its proposal has another dimension");
+  if (static_cast<Eigen::Index>(v.size()) != rows * columns) throw checkpoint::Mismatch("its proposal differs in dimension");
   return Eigen::Map<Eigen::MatrixXd const>(v.data(), rows, columns);
 }
 
@@ -106,7 +106,7 @@ Adaptation Adaptation::restore(nlohmann::json const& stored) {
   a.log_scale_ = scales.at(0);
   a.proposal_ = {static_cast<int>(dimension), checkpoint::decode(stored.at("factor")), scales.at(1), small_share};
   if (a.proposal_.factor.size() != static_cast<std::size_t>(dimension * dimension))
-    throw checkpoint::Mismatch("its proposal has another dimension");
+    throw checkpoint::Mismatch("its proposal differs in dimension");
   return a;
 }
 

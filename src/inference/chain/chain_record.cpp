@@ -112,7 +112,7 @@ nlohmann::json ChainRecord::store() const {
 
 ChainRecord ChainRecord::restore(nlohmann::json const& stored, int dimension, int chains) {
   ChainRecord record(dimension, chains);
-  if (stored.size() != record.traces_.size()) throw checkpoint::Mismatch("its chains have another number or dimension");
+  if (stored.size() != record.traces_.size()) throw checkpoint::Mismatch("its chains differ in number or dimension");
   for (std::size_t w = 0; w < record.traces_.size(); ++w) {
     nlohmann::json const& from = stored.at(w);
     Trace& trace = record.traces_[w];
@@ -127,7 +127,7 @@ ChainRecord ChainRecord::restore(nlohmann::json const& stored, int dimension, in
     std::size_t const records = trace.log_prior.size();
     if (trace.theta.size() != records * static_cast<std::size_t>(dimension) || trace.log_likelihood.size() != records ||
         trace.acceptance.size() != records)
-      throw checkpoint::Mismatch("its draws are cut short");
+      throw checkpoint::Mismatch("its draws are truncated");
   }
   return record;
 }

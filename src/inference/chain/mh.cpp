@@ -22,13 +22,15 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"samples", SettingKind::integer, "25000", 1, 1e9, "", "iterations of each chain, burn-in included"},
-    {"burn_in", SettingKind::integer, "5000", 0, 1e9, "", "first iterations, dropped; the proposal adapts in them"},
+    {"burn_in", SettingKind::integer, "5000", 0, 1e9, "", "first iterations, discarded; the proposal adapts during them"},
     {"thin", SettingKind::integer, "10", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
-    {"chains", SettingKind::integer, "4", 1, 65536, "", "independent chains, run side by side"},
+    {"chains", SettingKind::integer, "4", 1, 65536, "", "number of independent chains"},
     {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive spherical",
-     "learn the proposal's covariance in burn-in, or keep variance times identity"},
-    {"variance", SettingKind::real, "0.1", 1e-300, infinity, "", "of the spherical proposal, in the sampler's coordinates"},
-    {"start", SettingKind::word, "global", 0, 0, "global prior", "around the modes of a global search, or at draws from the prior"},
+     "adapt the covariance of the proposal during burn-in, or keep `variance` times the identity"},
+    {"variance", SettingKind::real, "0.1", 1e-300, infinity, "",
+     "variance of the spherical proposal, in unconstrained coordinates"},
+    {"start", SettingKind::word, "global", 0, 0, "global prior",
+     "start the chains around the modes of a global search, or at draws from the prior"},
 };
 
 /// Unthinned draws are kept for the diagnostics while they fit into this many numbers (160 MB).
@@ -96,7 +98,7 @@ State restore(nlohmann::json const& stored, Target const& target, Plan const& pl
                   checkpoint::decode(stored.at("log_prior")), checkpoint::decode(stored.at("log_likelihood"))};
   auto const chains = static_cast<std::size_t>(plan.chains);
   if (state.next.size() != chains || state.chains.log_prior.size() != chains || state.chains.log_likelihood.size() != chains)
-    throw checkpoint::Mismatch("its chains have another number or dimension");
+    throw checkpoint::Mismatch("its chains differ in number or dimension");
   for (auto const& group : stored.at("groups")) state.groups.push_back(metropolis::Adaptation::restore(group));
   for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
   state.findings = checkpoint::decode_findings(stored.at("findings"));

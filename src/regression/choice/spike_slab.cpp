@@ -15,16 +15,16 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"prior", SettingKind::word, "beta_prime", 0, 0, "beta_prime unit_information zellner",
-     "of coefficients: of unknown width, of width g about their estimate, or of width g about zero"},
+     "prior of the coefficients: of unknown width, of width g about their estimate, or of width g about zero"},
     {"g", SettingKind::real, "0", 0, 1e300, "",
-     "of unit_information and zellner: prior variance over that of the estimate; 0: the number of rows"},
+     "for unit_information and zellner: prior variance divided by that of the estimate; 0: the number of rows"},
     {"sizes", SettingKind::word, "beta_binomial", 0, 0, "beta_binomial uniform",
      "equal probability of every number of terms, or of every support"},
     {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
-    {"enumerate", SettingKind::integer, "16", 0, 24, "", "selectable terms up to which every support is weighed"},
-    {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "of each Gibbs chain over all terms"},
+    {"enumerate", SettingKind::integer, "16", 0, 24, "", "number of selectable terms up to which all supports are evaluated"},
+    {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "iterations iterations of each Gibbs chain over all terms"},
     {"chains", SettingKind::integer, "4", 1, 1000, "", "Gibbs chains"},
-    {"supports", SettingKind::integer, "10", 1, 10000, "", "best supports that are reported"},
+    {"supports", SettingKind::integer, "10", 1, 10000, "", "number of number of best supports that are reported"},
 };
 
 /// Supports beyond this many, by falling probability, no longer enter averages of coefficients.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"share", SettingKind::real, "0.02", 0, 1, "",
-     "least contribution of a kept term, as a share of the root mean square explained"},
+     "smallest contribution of a kept term, as a fraction of the explained root mean square"},
 };
 
 /// Supports offered as candidates beside the chosen one.

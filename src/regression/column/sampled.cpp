@@ -139,7 +139,7 @@ Samples copy(std::span<double const> samples) { return {samples.begin(), samples
 namespace savitzky_golay {
 namespace {
 constexpr SettingRow rows[] = {
-    {"window", SettingKind::integer, "21", 3, 100001, "", "samples of a local polynomial, an odd number"},
+    {"window", SettingKind::integer, "21", 3, 100001, "", "number of samples of a local polynomial, odd"},
     {"order", SettingKind::integer, "5", 1, 12, "", "degree of the local polynomial"},
 };
 }  // namespace

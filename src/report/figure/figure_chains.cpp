@@ -143,9 +143,8 @@ Figure trace_figure(Draws const& draws) {
   }
   Figure out{"trace", "Traces", "", script(drawing), Topic::chains};
   out.caption =
-      "Draws of each chain (one colour each) in order. Chains that agree look alike, like noise around one level; a drift, steps "
-      "or "
-      "separate levels say that they have not converged.";
+      "Draws of each chain (one colour each) in order. Converged chains look alike, like noise around one level; a drift, steps or "
+      "separate levels show that they have not converged.";
   if (stride > 1) out.caption += fmt::format(" One draw in {} is shown.", stride);
   out.caption += multiples_left_out(draws.names.size());
   return out;
@@ -160,9 +159,9 @@ Figure rank_figure(Draws const& draws) {
   for (std::size_t i = 0; i < count; ++i) drawing.plots.push_back(rank_plot(draws, i, layout.multiples.panel(i, {48, 10, 44, 8})));
   Figure out{"ranks", "Rank plots", "", script(drawing), Topic::chains};
   out.caption =
-      "How often each chain's draws fall into each twentieth of all draws (ranks as shares of the whole). Converged chains are "
-      "level and "
-      "inside the band, which holds for independent draws; a slope or a hump is a chain that sits elsewhere or spreads "
+      "Rank plot: how often the draws of each chain fall into each twentieth of all draws (ranks as fractions). Converged chains "
+      "are level and "
+      "inside the band, which holds for independent draws; a slope or a hump shows a chain at another level or with another spread "
       "otherwise "
       "than the rest." +
       multiples_left_out(draws.names.size());

@@ -103,8 +103,8 @@ Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation) 
   Figure out{bars.name, fmt::format("Terms of {}", found.target), "", script(bars)};
   out.caption =
       fmt::format("The {} of each term of the dictionary in {}; those in colour were kept.", discovery.measure, found.target);
-  out.caption += probability ? " Near 1 the data ask for the term, near 0 they speak against it; between, they do not decide."
-                             : " It is the root mean square of the term against that of all that is explained.";
+  out.caption += probability ? " Near 1 the data support the term, near 0 they contradict it; values between are undecided."
+                             : " It is the root mean square of the term relative to that of the explained signal.";
   if (all > order.size()) out.caption += fmt::format(" Shown are the first {} of {}.", order.size(), all);
   return out;
 }
@@ -124,8 +124,7 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
     drawing.plots.push_back(coefficient_plot(*terms[i], i, multiples.panel(i, {14, 12, 46, 20})));
   Figure out{drawing.name, fmt::format("Coefficients of {}", discovery.equations[equation].target), "", script(drawing)};
   out.caption = fmt::format(
-      "Posterior densities of the coefficients in {} given that these terms and no others stand there; the darker part holds 90 %, "
-      "the "
+      "Posterior densities of the coefficients in {} given exactly these terms; the darker part holds 90 %, the "
       "numbers above are mean ± sd, in the unit of the axis.{}",
       discovery.equations[equation].target, multiples_left_out(terms.size()));
   return out;

@@ -132,13 +132,12 @@ Plot residual_plot(Excerpt const& of, std::string const& unit, Panel panel) {
 
 std::string caption_of(Excerpt const& of, std::string const& name) {
   if (!of.has_data)
-    return fmt::format("The model's account of {}, which is not measured{}.", name, of.has_band ? ", with its 95 % band" : "");
+    return fmt::format("The prediction of {}, which is not measured{}.", name, of.has_band ? ", with its 95 % band" : "");
   return fmt::format(
-      "Measured and modelled {}. The residuals below should scatter without pattern; {}", name,
-      of.has_noise
-          ? "about one in twenty lies outside the light band, which includes the noise; the darker one is that of the response."
+      "Measured and modelled {}. The residuals below should show no pattern; {}", name,
+      of.has_noise  ? "about 5 % lie outside the light band, which includes the noise; the darker band is that of the response."
       : of.has_band ? "the band is that of the response, without noise."
-                    : "one trajectory has no band.");
+                    : "a single trajectory has no band.");
 }
 
 std::string samples_left_out(Prediction const& prediction, Window w) {

@@ -73,14 +73,14 @@ Figure function_figure(FunctionReport const& function) {
     visited = visited || plot.tables.size() > 1;
     drawing.plots.push_back(std::move(plot));
   }
-  Figure out{drawing.name, fmt::format("The function {} that was found", function.name), "", script(drawing)};
+  Figure out{drawing.name, fmt::format("The estimated function {}", function.name), "", script(drawing)};
   out.caption = fmt::format(
-      "The function and the band that holds it with 90 %, given the draws of the other parameters, of an optimum their one "
-      "value{}.",
-      count == 1 ? "" : ", along each input with the others in the middle");
+      "The function and its 90 % band, given the draws of the other parameters (for an optimum, given their single value){}.",
+      count == 1 ? "" : ", along each input, with the others at a central value");
   if (visited)
     out.caption +=
-        " Bars along the bottom: how often the fitted rows read the function there; where there are none its prior speaks.";
+        " Bars along the bottom: how many of the fitted rows use the function there; without bars the curve follows from its "
+        "prior.";
   return out;
 }
 

@@ -106,7 +106,7 @@ std::string caption_of(Style const& style, std::string const& quantity, std::str
                                 style.has_noise  ? ", with the band that holds 95 % of the measurements"
                                 : style.has_band ? ", with the 95 % band of the response"
                                                  : "");
-  if (!style.curve) out += " At one place of an input the others differ from row to row, so that each row has a bar of its own.";
+  if (!style.curve) out += " At one value of an input the other inputs differ from row to row, so each row has a bar of its own.";
   return out;
 }
 

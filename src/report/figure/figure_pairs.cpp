@@ -170,9 +170,8 @@ Plot cloud_plot(Pairs const& of, std::size_t row, std::size_t column, Panel pane
 
 std::string caption_of(Draws const& draws, std::size_t count) {
   std::string out =
-      "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination the data "
-      "determine "
-      "where the two alone are not; separate clouds are several modes.";
+      "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination that the "
+      "data determine where the two alone are not; separate clouds are several modes.";
   if (std::size_t const left_out = draws.names.size() - count; left_out > 0)
     out += fmt::format(" Shown are {} of {}, {}; {} {} left out.", count, draws.names.size(),
                        static_cast<std::size_t>(draws.parameter_count) > count

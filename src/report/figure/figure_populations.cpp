@@ -97,8 +97,8 @@ Figure population_figure(SelectionReport const& selection) {
 
   Figure out{"populations", "Models from population to population", "", script(drawing)};
   out.caption =
-      "Above, the probability of each model by the weights of its particles. Below, the threshold on a logarithmic scale, falling "
-      "towards what the noise alone leaves of the distance.";
+      "Above, the probability of each model by the weights of its particles. Below, the threshold on a logarithmic scale, "
+      "decreasing towards the distance that the noise alone causes.";
   if (floor) out.caption += " Dashed: the noise floor.";
   return out;
 }

@@ -179,11 +179,11 @@ std::string caption_of(Kinds const& kinds, std::string const& far, std::string c
       "above are mean ± sd, in the unit of the axis.";
   if (kinds.prior)
     out +=
-        " Dashed: the prior density. A posterior that follows it has learnt nothing from the data; one that stands against "
-        "an edge is cut by the prior.";
-  if (kinds.truth) out += " The upright line is the value that the data were made with.";
-  if (!far.empty()) out += fmt::format(" Made with values outside what is shown: {}.", far);
-  if (!cut.empty()) out += fmt::format(" Of {} the central 98 % are shown: the tails reach much farther.", cut);
+        " Dashed: the prior density. Where the posterior equals the prior, the data contain no information; where it ends at an "
+        "edge, it is truncated by the prior.";
+  if (kinds.truth) out += " The vertical line is the value with which the data were generated.";
+  if (!far.empty()) out += fmt::format(" Generated with values outside the shown range: {}.", far);
+  if (!cut.empty()) out += fmt::format(" Of {} the central 98 % are shown: the tails extend much further.", cut);
   out += multiples_left_out(parameters);
   return out;
 }

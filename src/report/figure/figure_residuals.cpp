@@ -115,17 +115,18 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
   for (Correlations const& shown : crossed.shown) add(shown, &shown == &crossed.shown.back(), contrast);
   Figure out{drawing.name, fmt::format("Correlations of the residuals of {}", quantity.name), "", script(drawing), Topic::fit};
   out.caption = fmt::format(
-      "Autocorrelation of the residuals of {}{}. Of white residuals 99 % stay inside the band; a pattern is dynamics the model "
-      "lacks.",
+      "Autocorrelation of the residuals of {}{}. For white residuals 99 % of the values lie inside the band; a pattern shows "
+      "dynamics that the model lacks.",
       quantity.name,
-      crossed.shown.empty() ? "" : ", and below it their correlation with what the input was as many samples before");
+      crossed.shown.empty() ? "" : ", and below it their correlation with the input the same number of samples before");
   if (quantity.response.draws != 1)
     out.caption +=
-        " Residuals are about the mean of the draws; the checks of a fit take those of its best mode, over the size of the noise.";
-  if (!crossed.shown.empty()) out.caption += " Bars outside the lower band are what the input does and the model does not follow.";
+        " Residuals are relative to the mean of the draws; the checks of a fit use those of its best mode, divided by the sd of "
+        "the noise.";
+  if (!crossed.shown.empty()) out.caption += " Bars outside the lower band show effects of the input that the model misses.";
   if (crossed.left_out > 0)
     out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + crossed.left_out);
-  if (crossed.constant > 0) out.caption += " An input that does not vary has no correlation.";
+  if (crossed.constant > 0) out.caption += " A constant input has no correlation.";
   return out;
 }
 

@@ -45,7 +45,7 @@ std::pair<std::size_t, std::size_t> window(RestoringForce::Path const& path) {
 
 std::string where_data_come_from(RestoringForce const& force) {
   if (!force.why_no_data.empty()) return fmt::format(" The data are not shown: {}.", force.why_no_data);
-  if (force.accelerometer) return " Points: force from the measured accelerations, at the places where the model is.";
+  if (force.accelerometer) return " Points: force from the measured accelerations, at the states of the model.";
   return fmt::format(
       " Points: from the measured samples, differentiated twice by parabolas through {} of them each, and from the input under the "
       "same smoothing.",
@@ -87,10 +87,9 @@ void add_loops(Plot& plot, RestoringForce const& force, Abscissa const& over, st
 
 std::string loop_caption(RestoringForce const& force) {
   return fmt::format(
-      "What pulls {} back, along the record: {}. A line or a curve over the displacement is a spring, a slope over the velocity a "
-      "damper; loops that stay open when the motion is slow are a hysteresis.{}",
-      force.displacement,
-      force.per_mass ? "minus the acceleration" : "the input less what accelerates the mass, in the unit of the input",
+      "Restoring force on {} along the record: {}. A line or a curve over the displacement shows a spring, a slope over the "
+      "velocity a damper; loops that remain open in slow motion show hysteresis.{}",
+      force.displacement, force.per_mass ? "minus the acceleration" : "the input minus the inertia force, in the unit of the input",
       where_data_come_from(force));
 }
 
@@ -156,7 +155,7 @@ Figure surface_figure(RestoringForce const& force) {
   bool const has_data = !force.data.force.empty();
   std::string_view const point_colour = has_data ? data : contrast;
   Surface const surface{figure_name("surface", force),
-                        {{{Key::points, point_colour, has_data ? "data" : "where the model moves"}, {Key::line, model, "model"}}},
+                        {{{Key::points, point_colour, has_data ? "data" : "trajectory of the model"}, {Key::line, model, "model"}}},
                         {x, axis_label(force.displacement, force.displacement_unit, x)},
                         {y, axis_label(force.velocity, force.velocity_unit, y)},
                         {z, axis_label(force_name(force), force.force_unit, z)},
@@ -166,10 +165,9 @@ Figure surface_figure(RestoringForce const& force) {
   Figure out{surface.name, fmt::format("Restoring-force surface of {} on {}", force.displacement, force.experiment), "",
              script(surface), Topic::fit};
   out.caption = fmt::format(
-      "The restoring force over displacement and velocity, by the model, over what the record reaches. Where no points lie the "
-      "model "
-      "says it alone.{}",
-      has_data ? where_data_come_from(force) : where_data_come_from(force) + " Points: where the trajectory of the model goes.");
+      "The restoring force of the model over the displacement and velocity reached in the record. Without points nearby it is "
+      "extrapolated by the model.{}",
+      has_data ? where_data_come_from(force) : where_data_come_from(force) + " Points: trajectory of the model.");
   return out;
 }
 

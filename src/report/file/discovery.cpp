@@ -23,10 +23,11 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
   if (equation.own_noise > 0)
     title += fmt::format(", off by {}{} at a sample by itself", significant(equation.own_noise, 3),
                          equation.unit.empty() ? "" : " " + equation.unit);
-  ReportTable table{std::move(title),
-                    "Contribution: root mean square of the term with its coefficient over that of what is explained, as projected.",
-                    {"term", "", "coefficient", "sd", "unit", discovery.measure, "contribution"},
-                    {}};
+  ReportTable table{
+      std::move(title),
+      "Contribution: root mean square of the term with its coefficient, relative to that of the explained signal, as projected.",
+      {"term", "", "coefficient", "sd", "unit", discovery.measure, "contribution"},
+      {}};
   if (discovery.measure == "contribution") table.header.pop_back();
   for (DiscoveredTerm const& term : equation.terms) {
     auto const [value, sd] = coefficient_text(term.coefficient, term.sd);
@@ -43,7 +44,7 @@ ReportTable support_table(DiscoveredEquation const& equation) {
   bool const probable = std::any_of(equation.supports.begin(), equation.supports.end(),
                                     [](DiscoveredSupport const& each) { return each.probability > 0 && each.probability < 1; });
   ReportTable table{"best supports of " + equation.target,
-                    "Log evidence: against the terms that are always kept alone, by the same prior for all.",
+                    "Log evidence: relative to the model with only the terms that are always kept, with the same prior for all.",
                     {"terms", "log evidence"},
                     {}};
   if (probable) table.header.insert(table.header.begin() + 1, "probability");
@@ -60,7 +61,7 @@ ReportTable support_table(DiscoveredEquation const& equation) {
 std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
   std::vector<ReportTable> tables;
   if (!discovery.noise.empty()) {
-    ReportTable noise{"measurement noise", "As the regression took it.", {"channel", "unit", "sd", ""}, {}};
+    ReportTable noise{"measurement noise", "As the regression used it.", {"channel", "unit", "sd", ""}, {}};
     for (DiscoveryReport::Noise const& each : discovery.noise)
       noise.rows.push_back(
           {each.channel, each.unit, each.sd > 0 ? significant(each.sd, 3) : "none", each.given ? "given" : "estimated"});
@@ -72,7 +73,7 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     if (equation.supports.size() > 1) tables.push_back(support_table(equation));
   }
   if (!discovery.left_out.empty()) {
-    ReportTable left_out{"not offered", "Left out of the dictionary before the record was looked at.", {"term", ""}, {}};
+    ReportTable left_out{"not offered", "Left out of the dictionary before the record was used.", {"term", ""}, {}};
     for (DiscoveryReport::LeftOut const& each : discovery.left_out) left_out.rows.push_back({each.term, each.reason});
     tables.push_back(std::move(left_out));
   }

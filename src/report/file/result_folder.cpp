@@ -133,7 +133,7 @@ std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, 
 
 std::string undrawn_words(std::vector<std::string> const& undrawn) {
   return fmt::format("{} {}{}; the scripts are in figures/",
-                     gnuplot_installed() ? "gnuplot did not draw" : "gnuplot is not installed and did not draw", undrawn.front(),
+                     gnuplot_installed() ? "gnuplot failed to draw" : "gnuplot is not installed; not drawn:", undrawn.front(),
                      undrawn.size() > 1 ? fmt::format(" and {} more", undrawn.size() - 1) : "");
 }
 

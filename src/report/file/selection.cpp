@@ -31,8 +31,8 @@ ReportTable model_table(SelectionReport const& selection) {
   bool const checked =
       std::any_of(selection.likelihoods.begin(), selection.likelihoods.end(), [](auto const& l) { return l.has_value(); });
   ReportTable table{"models",
-                    "Probability: sum of the particles' weights. Share: part of the particles, Worden et al. (8.21), which is no "
-                    "probability after the second population.",
+                    "Probability: sum of the particles' weights. Share: fraction of the particles, Worden et al. (8.21), which is "
+                    "not a probability after the second population.",
                     {"model", "prior", "probability", "share", "died in population"},
                     {}};
   if (checked) table.header.push_back("by likelihood");
@@ -74,7 +74,7 @@ ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
   SelectedModel const& model = selection.result.models[m];
   bool const polished = is_polished(selection, m);
   ReportTable table{"parameters of " + model.name,
-                    "The sd of particles is the width that the threshold leaves, not that of the posterior.",
+                    "The sd of the particles depends on the threshold and is not that of the posterior.",
                     {"", "unit", "mean", "sd", "q5", "median", "q95"},
                     {}};
   if (polished) table.header.push_back("from");
@@ -149,7 +149,7 @@ std::vector<ReportTable> selection_tables(SelectionReport const& selection) {
       tables.push_back(parameter_table(selection, m));
   if (!selection.shared.empty()) tables.push_back(shared_table(selection));
   if (!selection.shared_unmoved.empty()) {
-    ReportTable table{"shared parameters that stay at their priors", "", {"", "unit", "prior", "because"}, {}};
+    ReportTable table{"shared parameters whose posterior equals their prior", "", {"", "unit", "prior", "because"}, {}};
     for (auto const& each : selection.shared_unmoved) table.rows.push_back({each.name, each.unit, each.prior, each.why});
     tables.push_back(std::move(table));
   }

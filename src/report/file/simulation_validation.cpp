@@ -31,12 +31,12 @@ std::string seconds(double value) { return significant(value, 3) + " s"; }
 ReportTable structure_table(JudgedReport const& judged) {
   std::string const segments = judged.segments == 1
                                    ? fmt::format("one run of {}", seconds(judged.longest))
-                                   : fmt::format("{} runs of {}, each from a start of its own", judged.segments,
+                                   : fmt::format("{} runs of {}, each with its own start", judged.segments,
                                                  judged.longest - judged.shortest > judged.step
                                                      ? fmt::format("{} to {}", seconds(judged.shortest), seconds(judged.longest))
                                                      : seconds(judged.longest));
   ReportTable table{fmt::format("structures by simulation: {}", segments),
-                    "Log odds: of a structure against the first, by evidence and number of terms.",
+                    "Log odds: of a structure relative to the first, by evidence and number of terms.",
                     {"terms", "log odds", "probability", "residual/noise"},
                     {}};
   bool const scored = !judged.aside.empty();
@@ -45,7 +45,8 @@ ReportTable structure_table(JudgedReport const& judged) {
         " Errors: root mean square in percent of the sd, the worst channel, on {}{}; {} rows ahead are {}; starts from {} rows "
         "before.",
         judged.aside,
-        judged.aside_seen ? ", which the coefficients of these scores have not seen, but the choice of terms has" : "",
+        judged.aside_seen ? ", which were not used to estimate the coefficients of these scores, but were used to choose the terms"
+                          : "",
         judged.horizon_rows, seconds(judged.horizon), judged.window_rows);
     table.header.insert(table.header.end(), {"1 row ahead %", fmt::format("{} rows %", judged.horizon_rows), "free run %"});
   }
@@ -67,7 +68,7 @@ ReportTable structure_table(JudgedReport const& judged) {
 }
 
 ReportTable failure_table(JudgedReport const& judged) {
-  ReportTable table{"structures that simulation could not judge", "", {"terms", "why"}, {}};
+  ReportTable table{"structures that could not be checked by simulation", "", {"terms", "why"}, {}};
   for (JudgedStructure const& each : judged.structures)
     if (!each.failure.empty()) table.rows.push_back({each.terms, each.failure});
   return table;
@@ -76,7 +77,7 @@ ReportTable failure_table(JudgedReport const& judged) {
 ReportTable coefficient_table(JudgedStructure const& best) {
   bool const several = best.equations.size() > 1;
   ReportTable table{"coefficients by simulation",
-                    "Beside those of the regression on the same terms.",
+                    "Compared with those of the regression on the same terms.",
                     {"term", "coefficient", "sd", "regression", "sd", "unit"},
                     {}};
   if (several) table.header.insert(table.header.begin(), "equation");

@@ -130,7 +130,7 @@ Report read_result(fs::path const& folder) {
                      fmt::format("the results in `{}` have no `report.cbor`", folder.string()),
                      std::nullopt,
                      {},
-                     "an earlier program wrote them, or the file was lost: run the task again with --force"});
+                     "they were written by an earlier version of sysid, or the file was lost: run the task again with --force"});
   Report report = read_record(read_file(path), path);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
     read_chain(folder / draws_file(c), report.draws, report.draws.chains[c]);

@@ -26,7 +26,7 @@ std::string difference_text(double difference) { return fmt::format("{:.1f}", st
 
 ReportTable fits_table(Comparison const& comparison) {
   ReportTable table;
-  table.title = fmt::format("fitted to {}; probabilities of the models under equal odds before the data", comparison.data);
+  table.title = fmt::format("fitted to {}; probabilities of the models for equal prior probabilities", comparison.data);
   table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "probability", "checks"};
   double best = -std::numeric_limits<double>::infinity();
   for (ComparedFit const& fit : comparison.fits) best = std::max(best, fit.log_evidence.value_or(best));
@@ -37,7 +37,9 @@ ReportTable fits_table(Comparison const& comparison) {
                           fit.probability ? fmt::format("{:.3f}", *fit.probability) : "-", checks_text(fit.pass, fit.warnings)});
     std::string note;
     if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);
-    if (fit.rough) note = fmt::format("{}: its evidence is rough, {:+.1f} along the axes of its mode", fit.name, *fit.rough);
+    if (fit.rough)
+      note = fmt::format("{}: its evidence is approximate: integration along the axes of its mode changes it by {:+.1f}", fit.name,
+                         *fit.rough);
     if (!note.empty()) table.caption += (table.caption.empty() ? "" : "\n") + note;
   }
   return table;

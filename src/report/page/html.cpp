@@ -59,11 +59,11 @@ std::string together(RunReport const& run) {
     out += table_html(table, fits ? 3 : 2, fits ? TitleBegins::with_a_word : TitleBegins::with_a_name);
   }
   if (evidences || !run.apart.empty())
-    out += paragraph(run.apart + (!evidences ? ""
-                                             : "Log Bayes factors are against the best; a difference of 5 is strong. "
-                                               "Evidences are densities of the samples, so that fits to the same ones "
-                                               "are compared and no others."),
-                     "note");
+    out += paragraph(
+        run.apart + (!evidences ? ""
+                                : "Log Bayes factors are relative to the best fit; a difference of 5 is strong. Evidences are "
+                                  "densities of the samples, so only fits to the same samples are compared."),
+        "note");
   return out;
 }
 
@@ -88,8 +88,8 @@ std::string run_html(RunReport const& run) {
   std::string contents, body;
   std::set<std::string> models;
   if (std::string const comparison = together(run); !comparison.empty()) {
-    contents += entry("together", "Models and predictions side by side", "plain");
-    body += html({"together", "Models and predictions side by side", comparison, "whole"}, 2);
+    contents += entry("together", "Comparison of models and predictions", "plain");
+    body += html({"together", "Comparison of models and predictions", comparison, "whole"}, 2);
   }
   for (std::size_t i = 0; i < run.tasks.size(); ++i) {
     Report const& report = run.tasks[i].report;
@@ -103,8 +103,8 @@ std::string run_html(RunReport const& run) {
                  2);
   }
   for (std::string const& task : run.unfinished)
-    contents += fmt::format(
-        "<li class=\"doubtful\">{} <b>interrupted before it had a result; run it again with --resume</b></li>\n", escape(task));
+    contents += fmt::format("<li class=\"doubtful\">{} <b>interrupted before it had a result; continue with --resume</b></li>\n",
+                            escape(task));
   std::string const count = run_title(run.tasks.size() + run.unfinished.size());
   bool const one_model = models.size() == 1;
   std::string const title = one_model ? *models.begin() : count;

@@ -31,14 +31,13 @@ std::string settings_html(Report const& report) {
     for (auto const& [name, value] : facts) out.rows.push_back({escape(name), escape(setting_text(value))});
     return facts.empty() ? "" : html(out);
   };
-  return table("Settings, those left at their defaults included", "setting", report.settings) +
-         table("Versions", "of", report.versions);
+  return table("Settings, including defaults", "setting", report.settings) + table("Versions", "of", report.versions);
 }
 
 std::string repetition_html(Report const& report) {
   std::string out;
   for (std::string const& task : report.unseeded)
-    out += fmt::format("<p>The seed of {} was drawn. Write it into the file first, where the task is: {}</p>\n", code(task),
+    out += fmt::format("<p>The seed of {} was drawn at random. First write it into the task in the file: {}</p>\n", code(task),
                        code(task == report.task ? fmt::format("seed = {}", report.seed) : "seed = the one on its page"));
   if (!report.command.empty())
     out += fmt::format(
@@ -49,7 +48,7 @@ std::string repetition_html(Report const& report) {
       "<p>Seed {}. The same file, data, seed and version of the program give the same draws, byte for byte, for any number "
       "of threads.</p>\n",
       report.seed);
-  return out + folded("The file that repeats this task, every setting spelt out", report.resolved_text);
+  return out + folded("The file that repeats this task, with all settings", report.resolved_text);
 }
 
 }  // namespace sysid

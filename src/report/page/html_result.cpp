@@ -38,7 +38,7 @@ std::string parameters(Report const& report) {
   bool const optimum = report.draws.total() == 1;
   HtmlTable table{"Priors against posteriors", {"parameter", "prior"}, {}, 3};
   bool const priors = !report.priors.empty();
-  table.header.push_back(priors ? "posterior within it" : "");
+  table.header.push_back(priors ? "posterior within prior" : "");
   for (std::string const& column :
        optimum ? std::vector<std::string>{"optimum", "sd"} : std::vector<std::string>{"mean", "sd", "5 %", "median", "95 %"})
     table.header.push_back(column);
@@ -48,7 +48,7 @@ std::string parameters(Report const& report) {
     auto const prior =
         std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& each) { return each.name == s.name; });
     bool const known = prior != report.priors.end();
-    std::vector<std::string> row = {with_unit(s.name, s.unit), known ? code(prior->text) : "follows from the others", ""};
+    std::vector<std::string> row = {with_unit(s.name, s.unit), known ? code(prior->text) : "derived from the others", ""};
     if (known && prior->q5 && prior->q95)
       row[1] += fmt::format("<br/><span class=\"unit\">{} to {}</span>", pretty_number(significant(*prior->q5, 3)),
                             pretty_number(significant(*prior->q95, 3)));
@@ -73,14 +73,15 @@ std::string parameters(Report const& report) {
     table.rows.back().resize(table.header.size());
   }
   std::string out = html(table) + paragraph(learning_words(report));
-  return out + paragraph(std::string(optimum ? "sd: of the normal approximation at the optimum (Laplace). "
-                                             : "Digits end where the Monte Carlo error begins. ") +
-                             (priors ? "Below each prior the interval that holds 90 % of it, beside it the posterior's within "
-                                       "that: dark, with a stroke at the "
-                                       "mean, on a logarithmic scale where the prior's is positive and spans more than a decade; "
-                                       "an arrow where it goes on beyond that."
-                                     : ""),
-                         "note");
+  return out +
+         paragraph(
+             std::string(optimum ? "sd: of the normal approximation at the optimum (Laplace). "
+                                 : "Numbers are rounded to their Monte Carlo error. ") +
+                 (priors ? "Below each prior is its 90 % interval. The bar beside it shows the 90 % interval of the posterior "
+                           "(dark, with a stroke at the mean) within that of the prior, on a logarithmic scale if the prior's "
+                           "interval is positive and spans more than a decade; an arrow marks a posterior that extends beyond it."
+                         : ""),
+             "note");
 }
 
 }  // namespace
@@ -98,12 +99,10 @@ std::string result_html(Report const& report) {
   std::string out = parameters(report);
   if (report.evidence)
     if (std::string const text = evidence_text(*report.evidence); !text.empty())
-      out += paragraph(
-          fmt::format("The model as a whole: {}. {}", text,
-                      report.evidence->log_evidence
-                          ? "It has a meaning only beside that of another model of the same samples: `sysid compare` sets "
-                            "them side by side, and a difference of 5 is strong."
-                          : ""));
+      out += paragraph(fmt::format("The model as a whole: {}. {}", text,
+                                   report.evidence->log_evidence ? "It is meaningful only in comparison with another model of the "
+                                                                   "same samples (`sysid compare`); a difference of 5 is strong."
+                                                                 : ""));
   for (ReportTable const& table : report.tables) out += table_html(table);
   return out;
 }
@@ -121,7 +120,7 @@ std::string table_html(ReportTable const& table, std::size_t words, TitleBegins 
 
 std::string modes_html(Report const& report) {
   if (report.modes.empty()) return "";
-  HtmlTable table{"Modes that the global search over the prior found", {"mode", "share", "log density"}, {}, 1};
+  HtmlTable table{"Modes found by the global search over the prior", {"mode", "share", "log density"}, {}, 1};
   std::size_t const count = std::min(report.modes[0].declared.size(), report.draws.names.size());
   for (std::size_t i = 0; i < count; ++i) table.header.push_back(escape(report.draws.names[i]));
   for (std::size_t m = 0; m < report.modes.size(); ++m) {
@@ -131,7 +130,7 @@ std::string modes_html(Report const& report) {
     for (std::size_t i = 0; i < std::min(count, mode.declared.size()); ++i)
       table.rows.back().push_back(pretty_number(significant(mode.declared[i], 4)));
   }
-  return paragraph(mode_words(report)) + html(table) + paragraph("Share: of the Laplace masses of all modes.", "note");
+  return paragraph(mode_words(report)) + html(table) + paragraph("Share: fraction of the total Laplace mass of all modes.", "note");
 }
 
 }  // namespace sysid

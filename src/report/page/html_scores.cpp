@@ -17,7 +17,7 @@ namespace {
 
 std::string score_title(std::string const& name) {
   if (name == "nmse") return "NMSE [%]";
-  if (name == "nmse_left_out") return "NMSE, left out one by one [%]";
+  if (name == "nmse_left_out") return "NMSE, leave-one-out [%]";
   if (name == "rmse") return "RMSE";
   if (name == "chi_squared_per_sample") return "χ² per sample";
   if (name == "coverage_95") return "share inside the 95 % band";
@@ -47,7 +47,7 @@ std::string scores_html(Report const& report) {
   };
   std::string out;
   if (lines.size() == 1) {
-    HtmlTable table{fmt::format("Scores of {}", lines[0].what()), {"score", "value", "what it says"}, {}, 1};
+    HtmlTable table{fmt::format("Scores of {}", lines[0].what()), {"score", "value", "meaning"}, {}, 1};
     table.last_is_words = true;
     for (std::string const& name : names)
       table.rows.push_back({score_title(name), cell(lines[0], name), escape(score_words(report, lines, name))});
@@ -66,7 +66,7 @@ std::string scores_html(Report const& report) {
     out += "</dl>\n";
   }
   return out + paragraph(
-                   "NMSE: mean squared error as a percentage of the variance of what was measured; RMSE: its root, in the "
+                   "NMSE: mean squared error as a percentage of the measured variance; RMSE: root mean square error, in the "
                    "channel's unit. Bands include the noise.",
                    "note");
 }

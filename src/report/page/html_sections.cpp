@@ -31,7 +31,7 @@ std::string verdict_html(Report const& report) {
                     marked(finding.message),
                     finding.help.empty() ? "" : fmt::format(". <span class=\"help\">What to do: {}</span>", marked(finding.help)),
                     code(word(finding.code)));
-  return out + "</ul>\n<p class=\"note\">More about a word in this type: <code>sysid explain</code> and the word.</p>\n";
+  return out + "</ul>\n<p class=\"note\">To explain a code in this type: <code>sysid explain</code> and the code.</p>\n";
 }
 
 std::string model_html(Report const& report) {
@@ -79,12 +79,11 @@ class Pictures {
       }
     }
     if (left_out.empty()) return shown;
-    return shown +
-           fmt::format(
-               "<div class=\"missing\"><p>Left out, since figures were not asked for, or gnuplot is not installed or refused "
-               "them. Install it (<code>apt-get install gnuplot-nox</code>) and make this page again with <code>sysid "
-               "report</code>, or draw the scripts beside this page:</p>\n<ul>\n{}</ul></div>\n",
-               left_out);
+    return shown + fmt::format(
+                       "<div class=\"missing\"><p>Not drawn, because figures were not requested, or gnuplot is not installed or "
+                       "failed. Install it (<code>apt-get install gnuplot-nox</code>) and write this page again with <code>sysid "
+                       "report</code>, or run the scripts in the folder of this page:</p>\n<ul>\n{}</ul></div>\n",
+                       left_out);
   }
 
  private:
@@ -118,7 +117,7 @@ std::vector<HtmlSection> task_sections(Report const& report, std::vector<DrawnFi
   add("simulations", "Simulations and failures", simulations_html(report));
   add("data", "Data", data_html(report, level + 1));
   add("settings", "Settings and versions", settings_html(report));
-  add("repeat", "To repeat this", repetition_html(report));
+  add("repeat", "How to repeat this run", repetition_html(report));
   return out;
 }
 

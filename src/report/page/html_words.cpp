@@ -36,31 +36,31 @@ std::optional<Worst> worst(std::vector<FitLine> const& lines, std::string_view n
 }
 
 std::string error_words(Worst const& nmse) {
-  std::string out = fmt::format("{} % of the variance of what was measured is left over{}: ", number(nmse.value), nmse.where);
-  if (nmse.value >= 100) return out + "no better than a constant at the mean.";
-  if (nmse.value >= 5) return out + "the model misses a visible part; see the residuals for what.";
-  if (nmse.value >= 1) return out + "a fair fit; what is left may be noise or structure, which the residuals tell.";
-  return out + "model and measurement can hardly be told apart by eye.";
+  std::string out = fmt::format("{} % of the measured variance is not explained{}: ", number(nmse.value), nmse.where);
+  if (nmse.value >= 100) return out + "no better than a constant equal to the mean.";
+  if (nmse.value >= 5) return out + "the model misses a visible part; see the residuals.";
+  if (nmse.value >= 1) return out + "a fair fit; the residuals show whether the rest is noise or structure.";
+  return out + "model and measurement can hardly be distinguished by eye.";
 }
 
 std::string coverage_words(Worst const& coverage, double expected) {
   // Five in a hundred may be missing where 95 % are expected, one in a hundred where 99.7 % are: chance goes by the root.
   double const off = coverage.value - expected, short_of = std::sqrt(0.05 * (1 - expected));
-  return fmt::format("{} % of the scored samples lie inside{}, where {} % should: {}.", number(100 * coverage.value),
+  return fmt::format("{} % of the scored samples lie inside{}, {} % are expected: {}.", number(100 * coverage.value),
                      coverage.where, number(100 * expected),
                      off < -short_of ? "the bands are too narrow for these data"
-                     : off > 0.035   ? "the bands are wider than need be"
-                                     : "the bands are as wide as they say");
+                     : off > 0.035   ? "the bands are too wide for these data"
+                                     : "the width of the bands is consistent with the data");
 }
 
 /// The check knows how much of it is chance. fitted: the noise is a parameter, which takes the size that the residuals leave.
 std::string size_words(Worst const& size, bool found, bool fitted) {
-  return fmt::format("Residuals are {} times as large as the noise of the model{}, as mean squares: {}.", number(size.value),
+  return fmt::format("The mean square of the residuals is {} times that of the model's noise{}: {}.", number(size.value),
                      size.where,
-                     !found && fitted ? "the size of the noise was fitted to them, so that this says nothing of the model"
-                     : !found         ? "noise accounts for them"
-                     : size.value > 1 ? "the noise is larger than the model says, or the model misses something"
-                                      : "the noise is smaller than the model says");
+                     !found && fitted ? "the size of the noise was fitted to the residuals, so this does not test the model"
+                     : !found         ? "the noise explains them"
+                     : size.value > 1 ? "the noise is larger than in the model, or the model misses part of the response"
+                                      : "the noise is smaller than in the model");
 }
 
 std::string chance_words(Worst const& p, std::string_view pattern, std::string_view none) {
@@ -103,23 +103,19 @@ std::string verdict_meaning(Report const& report) {
   switch (grade(report)) {
     case Severity::error:
       return fmt::format(
-          "Until the cause is mended {} below may change by more than the uncertainty that stands beside them: what to do "
-          "stands with each point.",
+          "Until this is fixed, {} below may change by more than their stated uncertainty. Each point below says what to do.",
           numbers);
     case Severity::warning:
-      return fmt::format(
-          "You may use {} once you have looked at the points below and know that they do not matter for your purpose.", numbers);
+      return fmt::format("Check the points below before you use {}: each of them may or may not matter for your purpose.", numbers);
     default:
       break;
   }
-  if (bands)
-    return "No check speaks against using the bands. They hold if the model does on this record: compare them with what was "
-           "measured.";
+  if (bands) return "No check failed. The bands are valid if the model is valid on this record: compare them with the measurement.";
   if (report.discovery)
-    return "No check speaks against the equations. They are the best of the terms offered, not proof that no other term acts.";
-  return "No check speaks against using the numbers. That is no proof of the model: compare it with what was measured, best on "
-         "rows that "
-         "it was not fitted to.";
+    return "No check failed. The equations are the best from the terms of the dictionary; this does not prove that no other term "
+           "acts.";
+  return "No check failed. This does not prove the model: compare it with measurements, preferably on rows that were not used in "
+         "the fit.";
 }
 
 std::string score_words(Report const& report, std::vector<FitLine> const& lines, std::string const& score) {
@@ -144,13 +140,13 @@ std::string score_words(Report const& report, std::vector<FitLine> const& lines,
                });
   if (score == "whiteness_p")
     return say(low, [](Worst const& p) {
-      return chance_words(p, "residuals follow one another, so that dynamics are missing or the noise is not white",
-                          "no residual follows from those before it");
+      return chance_words(p, "the residuals are autocorrelated: dynamics are missing in the model, or the noise is not white",
+                          "no autocorrelation of the residuals was found");
     });
   if (score.starts_with("input_correlation_p"))
     return say(low, [](Worst const& p) {
-      return chance_words(p, "residuals follow the input, so that the model misses a part of the response",
-                          "nothing of the input is left in the residuals");
+      return chance_words(p, "the residuals are correlated with the input: the model misses a part of the response",
+                          "no correlation of the residuals with the input was found");
     });
   return "";
 }
@@ -163,9 +159,9 @@ std::vector<ChainWords> chain_words(Report const& report) {
     bool const good = rhat->value <= rhat_bar;
     out.push_back({"R-hat",
                    fmt::format("{:.3f} at most ({}): {} below {}.", rhat->value, rhat->name,
-                               good                      ? "the chains tell the same story; they do"
-                               : rhat->value > rhat_loud ? "the chains tell different stories; they should be"
-                                                         : "the chains have not quite agreed; they should be",
+                               good                      ? "the chains agree; the value is"
+                               : rhat->value > rhat_loud ? "the chains disagree; the value should be"
+                                                         : "the chains do not fully agree; the value should be",
                                rhat_bar),
                    good});
   }
@@ -174,17 +170,18 @@ std::vector<ChainWords> chain_words(Report const& report) {
         std::tuple("tail ESS", "5 and 95 % limits", std::function([](Summary const& s) { return s.ess_tail; }))})
     if (auto const ess = extreme(report, of, false)) {
       bool const good = ess->value >= ess_bar;
-      out.push_back({name,
-                     fmt::format("{:.0f} at least ({}): the draws are worth that many independent ones for {}, {}.", ess->value,
-                                 ess->name, what, good ? "enough" : fmt::format("fewer than the {} that are asked for", ess_bar)),
-                     good});
+      out.push_back(
+          {name,
+           fmt::format("{:.0f} at least ({}): the draws are equivalent to this many independent draws for {}, {}.", ess->value,
+                       ess->name, what, good ? "enough" : fmt::format("fewer than the {} that are needed", ess_bar)),
+           good});
     }
   if (auto const error = extreme(
           report, [](Summary const& s) { return s.sd > 0 ? s.mcse_mean / s.sd : std::nan(""); }, true)) {
     // Of as many independent draws as are asked for.
     bool const good = error->value <= 1 / std::sqrt(ess_bar) + 1e-12;
     out.push_back({"Monte Carlo error",
-                   fmt::format("{} % of an sd at most ({}): another seed would move a mean by about that much.",
+                   fmt::format("{} % of an sd at most ({}): another seed changes a mean by about this much.",
                                number(100 * error->value, 2), error->name),
                    good});
   }
@@ -196,11 +193,11 @@ std::vector<ChainWords> chain_words(Report const& report) {
     double const rate = accepted / count;
     bool const good = rate >= least_acceptance;
     out.push_back({"acceptance",
-                   fmt::format("{} % of the moves that led to kept draws were accepted on average: {}.", number(100 * rate, 2),
+                   fmt::format("{} % of the proposals before the kept draws were accepted on average: {}.", number(100 * rate, 2),
                                !good        ? "the chains hardly moved"
-                               : rate < 0.1 ? "few, yet the effective sample sizes above say what they are worth"
-                               : rate > 0.6 ? "many, as of short steps; the effective sample sizes above say what they are worth"
-                                            : "as it should be where a chain walks at random"),
+                               : rate < 0.1 ? "low, but the effective sample sizes above decide"
+                               : rate > 0.6 ? "high, as for short steps, but the effective sample sizes above decide"
+                                            : "as expected for a random walk"),
                    good});
   }
   return out;
@@ -215,12 +212,11 @@ std::string ledger_words(Report const& report) {
   Severity const severity = failure_severity(ledger.failed(), ledger.solves());
   bool const fitted = report.draws.total() > 0 || report.selection;
   return fmt::format("{} simulations, {} of them failed ({} %). {}: {}", ledger.solves(), ledger.failed(), number(share, 2),
-                     fitted ? "A simulation that fails counts as impossible for its parameters"
-                            : "A trajectory that fails is left out of the bands",
-                     severity == Severity::note ? "so few do not shape the result."
+                     fitted ? "Parameters whose simulation fails are rejected" : "Trajectories that fail are left out of the bands",
+                     severity == Severity::note ? "so few failures do not affect the result."
                      : severity == Severity::warning
-                         ? "look whether the posterior ends where the model does."
-                         : "with so many the posterior may end where the solver does, not where the data say.");
+                         ? "check whether the posterior ends where simulations fail."
+                         : "with so many failures the limits of the posterior may come from the solver and not from the data.");
 }
 
 std::string mode_words(Report const& report) {
@@ -229,18 +225,19 @@ std::string mode_words(Report const& report) {
   for (Mode const& mode : report.modes) places.push_back(std::to_string(mode.hits));
   bool const counted = std::any_of(report.modes.begin(), report.modes.end(), [](Mode const& each) { return each.hits > 0; });
   std::string out = fmt::format("The search found {}{}. ", count == 1 ? "one mode" : fmt::format("{} modes", count),
-                                counted ? fmt::format(", where {} of its local searches ended", listed(places)) : "");
+                                counted ? fmt::format(", reached by {} of its local searches", listed(places)) : "");
   if (grade(report) == Severity::error) {
     bool const near = std::any_of(report.findings.begin(), report.findings.end(),
                                   [](Finding const& each) { return each.code == FindingCode::searched_near; });
     return out + fmt::format(
-                     "A check failed: a better mode may lie where no search went. Search {}with wider priors, or again with "
+                     "A check failed: a better mode may lie outside the searched region. Search {}with wider priors, or again with "
                      "another seed.",
                      near ? "everywhere (`search = everywhere`), " : "");
   }
-  if (count == 1) return out + "It saw no other values of the parameters that explain the data nearly as well.";
-  return out + (report.modes[1].share > 0.01 ? "Several carry weight: the parameters are not told by these data alone."
-                                             : "Those behind the first carry next to no weight.");
+  if (count == 1) return out + "It found no other parameter values that explain the data nearly as well.";
+  return out + (report.modes[1].share > 0.01
+                    ? "More than one mode has considerable weight: these data alone do not determine the parameters."
+                    : "The other modes have almost no weight.");
 }
 
 std::string learning_words(Report const& report) {
@@ -259,10 +256,11 @@ std::string learning_words(Report const& report) {
     }
   }
   if (known == 0) return "";
-  if (more == 0) return "The data narrow every parameter that has a prior of its own.";
+  if (more == 0) return "The posterior of every parameter with a prior of its own is narrower than its prior.";
   if (more > 6) idle += fmt::format(" and {} more", more - 6);
   return fmt::format(
-      "The data say little of {}: the posterior is hardly narrower than the prior, so that the choice of the prior matters there.",
+      "The data contain little information on {}: the posterior is hardly narrower than the prior, so the choice of the prior "
+      "matters.",
       idle);
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 std::string draws_line(Draws const& draws) {
   if (draws.chains.empty()) return "";
-  if (draws.total() == 1) return "one point, the optimum";
+  if (draws.total() == 1) return "optimum, a single point";
   std::size_t const chains = draws.chains.size();
   return fmt::format("{} of {} draws", counted(chains, "chain"), draws.chains[0].values.size());
 }
