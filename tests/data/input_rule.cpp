@@ -23,7 +23,7 @@ TEST_CASE("every input rule has a complete row of its own, in the order of the r
     CHECK(rule_name(row.rule) == row.name);
     CHECK(row.usage == "hold " + std::string(row.name));
     CHECK(!row.summary.empty());
-    CHECK(row.coefficients != nullptr);
+    CHECK((row.coefficients != nullptr));
   }
   CHECK(!find_input_rule("zoh"));
 }

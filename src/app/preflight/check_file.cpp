@@ -126,6 +126,8 @@ constexpr LookRow look_rows[] = {
     {TaskKind::discover, &look_at_discover}, {TaskKind::predict, &look_at_predict},
 };
 
+static_assert(std::size(look_rows) == task_kind_count);
+
 TaskPage check_task(Session& session, Task const& task) {
   TaskPage page;
   page.name = task.name;

@@ -191,7 +191,8 @@ class Look {
   void far_from_data(Process const* process, std::vector<double> const& drawn, double measured, std::string const& channel) {
     if (!(measured > 0)) return;
     double const ratio = quantile(drawn, 0.5) / measured;
-    if (ratio <= wild && (process == nullptr || ratio >= 1 / wild)) return;
+    bool const far = ratio > wild || (process != nullptr && ratio < 1 / wild);
+    if (!far) return;
     std::vector<std::string> names{channel};
     if (process != nullptr) names.push_back(process->name);
     std::string const what = process != nullptr ? fmt::format("`{}`", process->name) : "the noise of " + channel;

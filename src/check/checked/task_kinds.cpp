@@ -11,7 +11,7 @@ template <TaskKind kind, typename What>
 constexpr bool is_at = std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(kind), decltype(Task::what)>, What>;
 static_assert(is_at<TaskKind::simulate, SimulateTask> && is_at<TaskKind::fit, FitTask> && is_at<TaskKind::select, SelectTask> &&
               is_at<TaskKind::discover, DiscoverTask> && is_at<TaskKind::predict, PredictTask>);
-static_assert(std::variant_size_v<decltype(Task::what)> == 5);
+static_assert(static_cast<std::size_t>(TaskKind::predict) + 1 == task_kind_count);
 
 }  // namespace
 

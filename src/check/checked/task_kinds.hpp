@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "check/checked/checked.hpp"
 #include "core/text/diagnostic.hpp"
@@ -13,6 +14,8 @@ namespace sysid {
 
 /// In the order of the alternatives of Task::what.
 enum class TaskKind { simulate, fit, select, discover, predict };
+
+inline constexpr std::size_t task_kind_count = std::variant_size_v<decltype(Task::what)>;
 
 struct TaskKindRow {
   TaskKind kind;

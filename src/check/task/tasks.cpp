@@ -36,6 +36,7 @@ std::optional<Task> TaskChecker::run() {
       {TaskKind::discover, [](TaskChecker& checker) -> decltype(Task::what) { return checker.discover(); }},
       {TaskKind::predict, [](TaskChecker& checker) -> decltype(Task::what) { return checker.predict(); }},
   };
+  static_assert(std::size(rows) == task_kind_count);
   task.what = row_for(rows, find_task_kind(tree_.verb.text)->kind).check(*this);
   bool const errors = diagnostics_.has_errors(before_);
   if (errors || unresolved_) return std::nullopt;
