@@ -51,30 +51,34 @@ TEST_CASE("every shipped model runs to its recorded summary and exit code") {
   for (auto const& entry : std::filesystem::recursive_directory_iterator(shipped_models)) {
     if (entry.path().extension() != ".sysid") continue;
     ++count;
-    CAPTURE(entry.path().string());
-    TemporaryFolder folder;
-    RunOptions options;
-    options.output = folder.path() / "results";
-    options.execution.threads = 0;
-    RunResult const result = run_text(entry.path(), read_file(entry.path()), options);
-    json found = {{"exit", result.exit}};
-    CHECK(test::broken_promises(options.output) == "");
-    for (auto const& task : std::filesystem::directory_iterator(options.output)) {
-      if (!std::filesystem::exists(task.path() / "summary.json")) continue;
-      found[task.path().filename().string()] = json::parse(read_file(task.path() / "summary.json"));
+    // The build runs each model as a test of its own, by the name of this subcase.
+    std::string const model_name = entry.path().parent_path().filename().string() + "/" + entry.path().stem().string();
+    SUBCASE(model_name.c_str()) {
+      CAPTURE(entry.path().string());
+      TemporaryFolder folder;
+      RunOptions options;
+      options.output = folder.path() / "results";
+      options.execution.threads = 0;
+      RunResult const result = run_text(entry.path(), read_file(entry.path()), options);
+      json found = {{"exit", result.exit}};
+      CHECK(test::broken_promises(options.output) == "");
+      for (auto const& task : std::filesystem::directory_iterator(options.output)) {
+        if (!std::filesystem::exists(task.path() / "summary.json")) continue;
+        found[task.path().filename().string()] = json::parse(read_file(task.path() / "summary.json"));
+      }
+      // The version is a banner; paths in messages are those of this checkout.
+      std::string text = without(found.dump(1), shipped_models.string() + "/");
+      found = json::parse(text);
+      for (auto& [name, summary] : found.items())
+        if (summary.is_object())
+          for (char const* key : {"versions", "kept_draws"}) summary.erase(key);  // these are summaries once more, of fewer draws
+      auto const record =
+          golden_runs / (entry.path().parent_path().filename().string() + "_" + entry.path().stem().string() + ".json");
+      if (bless) write_file(record, found.dump(1) + "\n");
+      REQUIRE(std::filesystem::exists(record));
+      std::string const where = difference(json::parse(read_file(record)), found, "");
+      CHECK(where == "");
     }
-    // The version is a banner; paths in messages are those of this checkout.
-    std::string text = without(found.dump(1), shipped_models.string() + "/");
-    found = json::parse(text);
-    for (auto& [name, summary] : found.items())
-      if (summary.is_object())
-        for (char const* key : {"versions", "kept_draws"}) summary.erase(key);  // these are summaries once more, of fewer draws
-    auto const record =
-        golden_runs / (entry.path().parent_path().filename().string() + "_" + entry.path().stem().string() + ".json");
-    if (bless) write_file(record, found.dump(1) + "\n");
-    REQUIRE(std::filesystem::exists(record));
-    std::string const where = difference(json::parse(read_file(record)), found, "");
-    CHECK(where == "");
   }
   CHECK(count >= 4);
 }

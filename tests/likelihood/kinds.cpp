@@ -17,7 +17,7 @@ namespace {
 
 double const missing = std::nan("");
 
-Model model_of(std::string const& statements) {
+Model kinds_model(std::string const& statements) {
   Source source("case.sysid", "model case {\n" + statements + "}\n");
   Diagnostics diagnostics;
   auto file = load(source, diagnostics);
@@ -31,13 +31,13 @@ double normal(double x, double mean, double sd) {
 }
 
 /// A model on a record of columns, rows `step` apart.
-struct Case {
+struct KindsCase {
   Model model;
   Record record;
 
-  Case(std::string const& statements, double step, std::vector<std::vector<double>> const& inputs,
-       std::vector<std::vector<double>> const& measured, PredictionRule rule = PredictionRule::as_written)
-      : model(*with_prediction(model_of(statements), rule)) {
+  KindsCase(std::string const& statements, double step, std::vector<std::vector<double>> const& inputs,
+            std::vector<std::vector<double>> const& measured, PredictionRule rule = PredictionRule::as_written)
+      : model(*with_prediction(kinds_model(statements), rule)) {
     std::size_t const rows = measured.front().size();
     for (std::size_t i = 0; i < rows; ++i) record.time.push_back(static_cast<double>(i) * step);
     for (auto const& input : inputs) record.inputs.emplace_back(InputRule::zero_order, record.time, input);
@@ -100,19 +100,19 @@ TEST_CASE("rows without dynamics are scored one by one, in any order") {
     observe output ~ normal(a + b*u*v, sd = 0.3)
   )";
   std::vector<double> const u = wave(9, 0.9), v = wave(9, 0.4), y = wave(9, 1.7);
-  Case const here(text, 1, {u, v}, {y});
+  KindsCase const here(text, 1, {u, v}, {y});
   CHECK(here.model.dynamics == Dynamics::none);
   double sum = 0;
   for (std::size_t i = 0; i < 9; ++i) sum += normal(y[i], 0.4 - 0.7 * u[i] * v[i], 0.3);
   CHECK(here.at({0.4, -0.7}) == about(sum));
   auto const backwards = [](std::vector<double> samples) { return std::vector(samples.rbegin(), samples.rend()); };
-  CHECK(Case(text, 1, {backwards(u), backwards(v)}, {backwards(y)}).at({0.4, -0.7}) == about(sum));
+  CHECK(KindsCase(text, 1, {backwards(u), backwards(v)}, {backwards(y)}).at({0.4, -0.7}) == about(sum));
 }
 
 TEST_CASE("a state in discrete time follows its map from the given past, and lagged inputs are those of the record") {
   int const rows = 30;
   std::vector<double> const x = wave(rows, 0.8), y = wave(rows, 0.3);
-  Case const here(filter, 0.1, {x}, {y});
+  KindsCase const here(filter, 0.1, {x}, {y});
   CHECK(here.model.dynamics == Dynamics::discrete);
   CHECK(data_lag(here.model) == 2);
   double sum = 0, state = 0.5;
@@ -126,7 +126,7 @@ TEST_CASE("a state in discrete time follows its map from the given past, and lag
 
 TEST_CASE("a map is not run in substeps") {
   std::vector<double> const x = wave(10, 0.8);
-  Case const here(filter, 0.1, {x}, {x});
+  KindsCase const here(filter, 0.1, {x}, {x});
   auto const compiled = compile(here.model, false, "rk4");
   CHECK_NOTHROW(Schedule(*compiled->trajectory, here.experiment(), {.substeps = 1}));
   CHECK_THROWS_AS(Schedule(*compiled->trajectory, here.experiment(), {.substeps = 2}), InternalError);
@@ -135,7 +135,7 @@ TEST_CASE("a map is not run in substeps") {
 TEST_CASE("what a model predicts is looked at where its likelihood is: not behind a gap that the density reads") {
   std::vector<double> y = wave(25, 0.7);
   y[11] = missing;
-  Case const here(autoregressive, 0.1, {}, {y});
+  KindsCase const here(autoregressive, 0.1, {}, {y});
   auto const compiled = compile(here.model, false, "rk4");
   auto const space = std::make_shared<ParameterSpace const>(here.model, std::vector<ExperimentMember>{{"case", {}}});
   Output const output(compiled, space, {here.experiment()}, {}, 0, {}, nullptr);
@@ -150,7 +150,7 @@ TEST_CASE("measured samples enter by lag; rows without their past are not scored
   int const rows = 25;
   std::vector<double> y = wave(rows, 0.7);
   y[11] = missing;
-  Case const here(autoregressive, 0.1, {}, {y});
+  KindsCase const here(autoregressive, 0.1, {}, {y});
   double sum = 0;
   for (std::size_t i = 2; i < rows; ++i) {
     double const term = normal(y[i], 0.5 * y[i - 1] + 0.2 * y[i - 2], 0.2);
@@ -163,20 +163,20 @@ TEST_CASE("measured samples enter by lag; rows without their past are not scored
 TEST_CASE("one-step prediction puts measured samples in the place of lagged states that a channel observes") {
   int const rows = 20;
   std::vector<double> const x = wave(rows, 0.8), y = wave(rows, 0.3);
-  Case const here(filter, 0.1, {x}, {y}, PredictionRule::one_step);
+  KindsCase const here(filter, 0.1, {x}, {y}, PredictionRule::one_step);
   CHECK(here.model.states.empty());
   double sum = 0;
   for (std::size_t i = 2; i < rows; ++i) sum += normal(y[i], 0.6 * y[i - 1] - 0.4 * x[i - 2], 0.2);
   CHECK(here.at({0.6, -0.4}) == about(sum));
-  CHECK_FALSE(with_prediction(model_of("time discrete\nstate y\ninitial y = 1\nparameter a ~ uniform(0, 1)\ny = a*lag(y, 1)\n"
-                                       "observe twice ~ normal(2*y, sd = 1)\n"),
+  CHECK_FALSE(with_prediction(kinds_model("time discrete\nstate y\ninitial y = 1\nparameter a ~ uniform(0, 1)\ny = a*lag(y, 1)\n"
+                                          "observe twice ~ normal(2*y, sd = 1)\n"),
                               PredictionRule::one_step));
 }
 
 TEST_CASE("a free run goes on from its own predictions, beginning with what was measured") {
   int const rows = 20;
   std::vector<double> const y = wave(rows, 0.3);
-  Case const here(autoregressive, 0.1, {}, {y}, PredictionRule::free_run);
+  KindsCase const here(autoregressive, 0.1, {}, {y}, PredictionRule::free_run);
   double sum = 0, one = y[1], two = y[0];
   for (std::size_t i = 2; i < rows; ++i) {
     double const now = 0.5 * one + 0.2 * two;
@@ -195,7 +195,7 @@ TEST_CASE("lagged residuals make a moving average, from a past without any") {
   )";
   int const rows = 20;
   std::vector<double> const y = wave(rows, 0.3);
-  Case const here(text, 0.1, {}, {y});
+  KindsCase const here(text, 0.1, {}, {y});
   // The prediction before the first row is what was measured there: no residual.
   double sum = 0, residual = 0;
   for (std::size_t i = 1; i < rows; ++i) {
@@ -220,7 +220,7 @@ TEST_CASE("a past that begins with the record's own samples, and lags of whole e
   )";
   int const rows = 12;
   std::vector<double> const x = wave(rows, 0.8, 0.5), y = wave(rows, 0.3), other = wave(rows, 0.5);
-  Case const here(text, 0.1, {x}, {y, other});
+  KindsCase const here(text, 0.1, {x}, {y, other});
   CHECK(data_lag(here.model) == 2);
   double sum = 0, one = y[1], two = y[0], z = 2, z1 = 2, z2 = 2;
   for (std::size_t i = 2; i < rows; ++i) {
@@ -244,8 +244,8 @@ TEST_CASE("a gap that the state goes on from is refused, and left alone in a fre
   )";
   std::vector<double> y = wave(10, 0.3);
   y[5] = missing;
-  CHECK_THROWS_AS(Case(text, 0.1, {}, {y}).experiment(), UserError);
-  CHECK_NOTHROW(Case(text, 0.1, {}, {y}, PredictionRule::free_run).experiment());
+  CHECK_THROWS_AS(KindsCase(text, 0.1, {}, {y}).experiment(), UserError);
+  CHECK_NOTHROW(KindsCase(text, 0.1, {}, {y}, PredictionRule::free_run).experiment());
 }
 
 TEST_CASE("counts of a change since the last row are Poisson with the mean of that interval") {
@@ -257,7 +257,7 @@ TEST_CASE("counts of a change since the last row are Poisson with the mean of th
     observe gone ~ poisson(-since_last(n))
   )";
   std::vector<double> const counts = {missing, 95, 80, missing, 77, 60};
-  Case const here(text, 1, {}, {counts});
+  KindsCase const here(text, 1, {}, {counts});
   double sum = 0;
   for (std::size_t i = 1; i < counts.size(); ++i) {
     double const t = static_cast<double>(i), mean = 1000 * (std::exp(-0.1 * (t - 1)) - std::exp(-0.1 * t));
@@ -277,15 +277,15 @@ TEST_CASE("nothing has changed at the first row: a count of 0 is certain there a
   )";
   std::vector<double> const possible = {0, 2}, impossible = {1, 2};
   double const lr = std::log(3.0) - std::log(5.0), ly = std::log(2.0) - std::log(5.0);  // mean 2, shape 3, count 2
-  CHECK(Case(text, 1, {}, {possible}).at({2}) == doctest::Approx(std::log(6.0) + 3 * lr + 2 * ly).epsilon(1e-12));
-  CHECK(std::isinf(Case(text, 1, {}, {impossible}).at({2})));
+  CHECK(KindsCase(text, 1, {}, {possible}).at({2}) == doctest::Approx(std::log(6.0) + 3 * lr + 2 * ly).epsilon(1e-12));
+  CHECK(std::isinf(KindsCase(text, 1, {}, {impossible}).at({2})));
 }
 
 TEST_CASE("models of every kind give the same bytes for any lanes and threads") {
   std::vector<double> const x = wave(40, 0.8), y = wave(40, 0.3);
   std::vector<double> counts;
   for (int i = 0; i < 40; ++i) counts.push_back(i % 5);
-  std::vector<Case> const cases = {
+  std::vector<KindsCase> const cases = {
       {filter, 0.1, {x}, {y}},
       {filter, 0.1, {x}, {y}, PredictionRule::one_step},
       {autoregressive, 0.1, {}, {y}, PredictionRule::free_run},
@@ -301,7 +301,7 @@ TEST_CASE("models of every kind give the same bytes for any lanes and threads") 
   };
   std::vector<std::vector<double>> vectors;
   for (int w = 0; w < 37; ++w) vectors.push_back({0.9 * std::sin(w), std::cos(1.3 * w)});
-  for (Case const& each : cases) {
+  for (KindsCase const& each : cases) {
     std::vector<double> const reference = each.all(vectors, {.lanes = 1, .threads = 1});
     CHECK(each.all(vectors, {.lanes = 4, .threads = 1}) == reference);
     CHECK(each.all(vectors, {.lanes = 16, .threads = 2}) == reference);

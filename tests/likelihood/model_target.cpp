@@ -12,7 +12,7 @@ using namespace sysid;
 
 namespace {
 
-CheckedFile checked(std::string const& text) {
+CheckedFile checked_file(std::string const& text) {
   Source source("case.sysid", text);
   Diagnostics diagnostics;
   auto file = load(source, diagnostics);
@@ -37,12 +37,12 @@ model oscillator {
 }
 )";
 
-struct Case {
-  std::shared_ptr<CompiledModel const> compiled = compile(checked(text).models.front(), false, "rk4");
+struct TargetCase {
+  std::shared_ptr<CompiledModel const> compiled = compile(checked_file(text).models.front(), false, "rk4");
   Experiment experiment;
   std::vector<double> force;
 
-  Case() {
+  TargetCase() {
     int const n = 40;
     for (int i = 0; i < n; ++i) {
       experiment.time.push_back(0.01 * i);
@@ -62,7 +62,7 @@ struct Case {
 };
 
 // The same likelihood by a plain loop in metres and newtons; densities per mm and per m/s^2.
-double by_hand(Case const& c, double m, double k, double sigma_mm) {
+double by_hand(TargetCase const& c, double m, double k, double sigma_mm) {
   double const h = 0.01, sigma = 1e-3 * sigma_mm, k_si = 1e3 * k;
   double y = 2e-3, v = 0, sum = 0;
   auto const a = [&](double position, double speed, double x) { return (x - 3 * speed - k_si * position) / m; };
@@ -96,7 +96,7 @@ LaneArray theta_of(ModelTarget const& target) {
 }  // namespace
 
 TEST_CASE("the log likelihood is the sum over scored samples that are there, per declared unit, with all constants") {
-  Case const c;
+  TargetCase const c;
   ModelTarget const target(c.compiled, c.experiment, {});
   Ledger ledger;
   std::vector<double> out(3);
@@ -108,7 +108,7 @@ TEST_CASE("the log likelihood is the sum over scored samples that are there, per
 }
 
 TEST_CASE("half the sum of squared residuals is minus the log likelihood up to one constant for all parameters") {
-  Case const c;
+  TargetCase const c;
   ModelTarget const target(c.compiled, c.experiment, {});
   CHECK(target.residual_count() == 34 + 34 + 2);  // 35 scored rows each, one missing in each channel, one scale row per channel
   LaneArray residuals(target.residual_count(), 3);
@@ -123,7 +123,7 @@ TEST_CASE("half the sum of squared residuals is minus the log likelihood up to o
 }
 
 TEST_CASE("the log prior is the declared density per declared unit, and the Jacobian makes it one over the coordinates") {
-  Case const c;
+  TargetCase const c;
   ModelTarget const target(c.compiled, c.experiment, {});
   LaneArray const theta = theta_of(target);
   std::vector<double> declared(3), unconstrained(3);
@@ -150,7 +150,7 @@ TEST_CASE("the log prior is the declared density per declared unit, and the Jaco
 }
 
 TEST_CASE("prior draws follow the priors in declared units") {
-  Case const c;
+  TargetCase const c;
   ModelTarget const target(c.compiled, c.experiment, {});
   int const n = 4000;
   LaneArray theta(3, n), declared(3, n);
@@ -184,7 +184,7 @@ model runaway {
   experiment.measured = {std::vector<double>(200, 0.0)};
   TargetOptions options;
   options.describe = [](NodeId, Graph const&) { return std::string("the cube"); };
-  ModelTarget const target(compile(checked(unstable).models.front(), false, "rk4"), experiment, options);
+  ModelTarget const target(compile(checked_file(unstable).models.front(), false, "rk4"), experiment, options);
   LaneArray declared(1, 3), theta(1, 3);
   declared(0, 0) = -1;
   declared(0, 1) = 900;

@@ -13,7 +13,7 @@ using namespace sysid;
 
 namespace {
 
-Model model_of(std::string const& parameters) {
+Model model_with(std::string const& parameters) {
   Source source("case.sysid",
                 "model m {\ninput x\nstate y\ninitial y = 0\n" + parameters + "\ny' = x\nobserve level ~ normal(y, sd = 1)\n}\n");
   Diagnostics diagnostics;
@@ -29,7 +29,7 @@ std::string const hierarchy =
     "parameter m per experiment [kg] = 2\n"
     "parameter s ~ log_uniform(1, 10)\n";
 
-double normal(double x, double mean, double sd) {
+double normal_log_density(double x, double mean, double sd) {
   return -0.5 * std::log(2 * std::numbers::pi) - std::log(sd) - 0.5 * (x - mean) * (x - mean) / (sd * sd);
 }
 double phi(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
@@ -50,7 +50,8 @@ TEST_CASE("an experiment's own parameter is named by it, also where it has an in
 }
 
 TEST_CASE("own parameters take a row per experiment in their place; what a data block fixes is not sampled") {
-  ParameterSpace const space(model_of(hierarchy), {{"a", constants({})}, {"b", constants({{2, 8e3}})}, {"c", constants({{3, 7}})}});
+  ParameterSpace const space(model_with(hierarchy),
+                             {{"a", constants({})}, {"b", constants({{2, 8e3}})}, {"c", constants({{3, 7}})}});
   std::vector<std::string> rows, sampled;
   for (FittedParameter const& row : space.rows()) rows.push_back(row.name);
   for (ParameterInfo const& info : space.infos()) sampled.push_back(info.name);
@@ -74,7 +75,7 @@ TEST_CASE("own parameters take a row per experiment in their place; what a data 
 }
 
 TEST_CASE("the joint prior is the product over the experiments given what they share; the Jacobian follows the coordinates") {
-  ParameterSpace const space(model_of(hierarchy), {{"a", {}}, {"b", constants({{2, 8e3}})}, {"c", {}}});
+  ParameterSpace const space(model_with(hierarchy), {{"a", {}}, {"b", constants({{2, 8e3}})}, {"c", {}}});
   double const values[] = {9, 2, 11, 7, 3};  // mu, tau, k[a], k[c], s
   LaneArray declared(5, 1), theta(5, 1), back(5, 1);
   for (int p = 0; p < 5; ++p) declared(p, 0) = values[p];
@@ -85,8 +86,8 @@ TEST_CASE("the joint prior is the product over the experiments given what they s
   space.log_prior(theta, out, false);
   space.log_prior(theta, with, true);
   // The fixed member is no draw from the population.
-  double const by_hand = normal(9, 10, 2) + std::log(2.0) + normal(2, 0, 3) + normal(11, 9, 2) + normal(7, 9, 2) -
-                         2 * std::log(phi(9.0 / 2)) - std::log(3 * std::log(10.0));
+  double const by_hand = normal_log_density(9, 10, 2) + std::log(2.0) + normal_log_density(2, 0, 3) + normal_log_density(11, 9, 2) +
+                         normal_log_density(7, 9, 2) - 2 * std::log(phi(9.0 / 2)) - std::log(3 * std::log(10.0));
   CHECK(out[0] == doctest::Approx(by_hand).epsilon(1e-11));
   // mu moves freely in SI, tau and the ks by a logarithm, s between its logarithmic bounds.
   double const share = std::log(3.0) / std::log(10.0);
@@ -96,7 +97,7 @@ TEST_CASE("the joint prior is the product over the experiments given what they s
 }
 
 TEST_CASE("draws from a hierarchical prior have the moments of the population") {
-  ParameterSpace const space(model_of("parameter mu ~ normal(1, sd = 2)\nparameter k per experiment ~ normal(mu, sd = 0.5)"),
+  ParameterSpace const space(model_with("parameter mu ~ normal(1, sd = 2)\nparameter k per experiment ~ normal(mu, sd = 0.5)"),
                              {{"a", {}}, {"b", {}}});
   int const n = 20000;
   LaneArray theta(3, n), declared(3, n);
@@ -116,7 +117,7 @@ TEST_CASE("draws from a hierarchical prior have the moments of the population") 
 }
 
 TEST_CASE("a new experiment draws its own parameters given the shared ones and takes its constants as they are") {
-  ParameterSpace const space(model_of(hierarchy), {{"a", {}}, {"b", {}}});
+  ParameterSpace const space(model_with(hierarchy), {{"a", {}}, {"b", {}}});
   int const n = 20000;
   LaneArray declared(space.dimension(), n);
   for (int w = 0; w < n; ++w) {

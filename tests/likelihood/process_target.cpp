@@ -13,7 +13,7 @@ namespace gp = gaussian_process;
 
 namespace {
 
-Model checked(std::string const& text) {
+Model process_model(std::string const& text) {
   Source source("case.sysid", text);
   Diagnostics diagnostics;
   auto const file = load(source, diagnostics);
@@ -21,13 +21,13 @@ Model checked(std::string const& text) {
   return file->models.front();
 }
 
-struct Case {
+struct ProcessCase {
   Experiment experiment;
   std::shared_ptr<ProcessModel const> model;
   std::shared_ptr<ParameterSpace const> space;
   std::unique_ptr<ProcessTarget> target;
 
-  Case(std::string const& text, int rows, int inputs, int threads = 1) {
+  ProcessCase(std::string const& text, int rows, int inputs, int threads = 1) {
     Stream stream(StreamKey{.seed = 3});
     for (int i = 0; i < rows; ++i) experiment.time.push_back(0.1 * i);
     for (int k = 0; k < inputs; ++k) {
@@ -40,7 +40,7 @@ struct Case {
     experiment.measured[0][5] = std::nan("");
     experiment.scored.assign(static_cast<std::size_t>(rows), 1);
     experiment.scored[0] = 0;
-    model = std::make_shared<ProcessModel const>(checked(text), false, "rk4");
+    model = std::make_shared<ProcessModel const>(process_model(text), false, "rk4");
     space = std::make_shared<ParameterSpace const>(model->reduced(), std::vector<ExperimentMember>{{"case", {}}});
     TargetOptions options;
     options.execution.threads = threads;
@@ -75,7 +75,7 @@ model line {
 }  // namespace
 
 TEST_CASE("the likelihood of a model with a Gaussian process is the textbook's, in the declared unit") {
-  Case const c(two_kernels, 25, 2);
+  ProcessCase const c(two_kernels, 25, 2);
   CHECK(c.model->marginalised() == std::vector<std::string>{"level", "slope"});
   REQUIRE(c.target->dimension() == 6);  // offset, s, lu, lv, w, sigma
   LaneArray declared(6, 1), theta(6, 1);
@@ -135,7 +135,7 @@ model slow {
 }
 )";
   for (std::string const& text : {two_kernels, lagged, moving}) {
-    Case c(text, 25, text == two_kernels ? 2 : 1);
+    ProcessCase c(text, 25, text == two_kernels ? 2 : 1);
     if (text == lagged) {  // a missing sample is an input that is missing
       c.experiment.measured[0][5] = 1e-3;
       for (std::size_t i = 0; i < 4; ++i) c.experiment.scored[i] = 0;
@@ -171,7 +171,7 @@ model slow {
 }
 
 TEST_CASE("a lane is the same bytes whatever the batch and the threads") {
-  Case const one(two_kernels, 25, 2, 1), two(two_kernels, 25, 2, 2);
+  ProcessCase const one(two_kernels, 25, 2, 1), two(two_kernels, 25, 2, 2);
   LaneArray theta(6, 7);
   one.target->sample_prior({5, Purpose::prior, 0, 0}, theta);
   std::vector<double> all(7), threaded(7);
@@ -195,7 +195,7 @@ TEST_CASE("only coefficients that nothing else reads are integrated out") {
         "log_normal(median = 1, sd = 1)\n  parameter sigma ~ log_uniform(0.1, 1)\n" +
         lines + "  function f(x) ~ gp(matern52(amplitude = 1, length = l))\n  observe y ~ normal(" + centre +
         " + f(u), sd = sigma)\n}\n";
-    return ProcessModel(checked(text), false, "rk4").marginalised();
+    return ProcessModel(process_model(text), false, "rk4").marginalised();
   };
   using Names = std::vector<std::string>;
   CHECK(integrated("", "a + b*u") == Names{"a", "b"});

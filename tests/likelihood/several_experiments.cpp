@@ -66,7 +66,7 @@ std::shared_ptr<ParameterSpace const> space(std::vector<ExperimentMember> member
   return std::make_shared<ParameterSpace const>(oscillator(), std::move(members));
 }
 
-struct Case {
+struct ExperimentsCase {
   bool free_start;
   std::shared_ptr<CompiledModel const> compiled = compile(oscillator(), free_start, "rk4");
   std::shared_ptr<ParameterSpace const> both = space({{"first", {}}, {"second", added(0.3)}});
@@ -101,7 +101,7 @@ LaneArray part_of(LaneArray const& theta, int which) {
 
 TEST_CASE("the log likelihood is the sum over the experiments, each with its own parameters, constants and channels") {
   for (bool const free_start : {false, true}) {
-    Case const c{free_start};
+    ExperimentsCase const c{free_start};
     ModelTarget const both = c.target();
     REQUIRE(both.dimension() == 8);
     LaneArray const theta = draws(both, 9);
@@ -135,7 +135,7 @@ TEST_CASE("the log likelihood is the sum over the experiments, each with its own
 }
 
 TEST_CASE("threads and lanes change no byte of a target over several experiments") {
-  Case const c{true};
+  ExperimentsCase const c{true};
   ModelTarget const reference = c.target();
   LaneArray const theta = draws(reference, 70);
   std::vector<double> expected(70), found(70);
