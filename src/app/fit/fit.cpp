@@ -99,8 +99,7 @@ class Fit {
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     preparation_.findings.insert(preparation_.findings.end(), size.begin(), size.end());
-    likelihood_->set_target(preparation_.solver, session_.interruptible());
-    print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared));
+    print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
     return !what_.settle || refine_solver(session_, task_, make, backend_.aim, what_.solver, preparation_, context);
   }
 

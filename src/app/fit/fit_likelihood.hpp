@@ -45,7 +45,7 @@ class FitLikelihood {
   /// Whether finite sums that stand for unknown functions can be trusted.
   virtual Findings check_functions(FitResult const& result) const = 0;
   /// Where finite sums are read outside their range, with these values of the sampled parameters, declared.
-  virtual Findings check_ranges(std::vector<double> const& sampled) const = 0;
+  virtual Findings check_ranges(std::vector<double> const& sampled, SolverSettings const& solver) const = 0;
   /// Bands along an experiment, constraints and values that are undefined there. Restoring forces are added to `forces`.
   virtual FittedRows fitted_rows(Draws const& draws, int experiment, std::vector<RestoringForce>& forces) const = 0;
   /// What the report's settings hold beside those of every fit.

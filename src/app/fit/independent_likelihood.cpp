@@ -68,15 +68,15 @@ class IndependentLikelihood : public FitLikelihood {
 
   Findings check_functions(FitResult const& result) const override {
     Findings findings = check_expansions(model(), function_parameters(*space_, result).values);
-    Findings const ranges = check_ranges(best_of(result));
+    Findings const ranges = check_ranges(best_of(result), solver_);
     findings.insert(findings.end(), ranges.begin(), ranges.end());
     return findings;
   }
 
-  Findings check_ranges(std::vector<double> const& sampled) const override {
+  Findings check_ranges(std::vector<double> const& sampled, SolverSettings const& solver) const override {
     Findings findings;
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
-      Findings const more = sysid::check_ranges(model(), experiment(e), solver_, start_rows(what_.start), parameters_at(sampled, e),
+      Findings const more = sysid::check_ranges(model(), experiment(e), solver, start_rows(what_.start), parameters_at(sampled, e),
                                                 session_.interruptible());
       findings.insert(findings.end(), more.begin(), more.end());
     }

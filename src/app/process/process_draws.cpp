@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/process/process_fit.hpp"
 #include "core/text/diagnostic.hpp"
-#include "diagnostics/drift.hpp"
 #include "gaussian_process/regression.hpp"
 #include "linear_algebra/decompositions.hpp"
 
@@ -125,14 +123,6 @@ Trajectory::Result forecast_draws(ProcessForecast const& forecast, ParameterSpac
     forecast.run(fitted_parameters(all, declared), own.columns(d, 1), each, key, static_cast<std::uint64_t>(d * each), result);
   }
   return result;
-}
-
-Findings process_drift(Source const& source, ProcessModel const& model, Experiment const& experiment, SolverSettings const& solver,
-                       int start_rows, ExecutionOptions const& execution, ConstLanes own) {
-  if (model.model().invariants.empty()) return {};
-  auto const white = compile_white(model, start_rows > 0, solver.method);
-  Trajectory const trajectory(white, experiment, solver, start_rows, execution);
-  return drift_findings(source, white->model, trajectory.run(own, {}), experiment.name);
 }
 
 }  // namespace sysid

@@ -2,11 +2,9 @@
 #pragma once
 #include <vector>
 
-#include "core/text/source.hpp"
 #include "likelihood/process/process_forecast.hpp"
 #include "likelihood/process/process_target.hpp"
 #include "result/draws.hpp"
-#include "result/finding.hpp"
 
 namespace sysid {
 
@@ -25,10 +23,5 @@ LaneArray fitted_parameters(ParameterSpace const& all, std::vector<double> const
 /// of the draws.
 Trajectory::Result forecast_draws(ProcessForecast const& forecast, ParameterSpace const& all, LaneArray const& spread,
                                   ConstLanes own, int wanted, StreamKey key);
-
-/// How far trajectories of the model without its processes, which constraints do not read, drift from constraints that were
-/// differentiated. own: parameters of the experiment [parameters x draws], SI.
-Findings process_drift(Source const& source, ProcessModel const& model, Experiment const& experiment, SolverSettings const& solver,
-                       int start_rows, ExecutionOptions const& execution, ConstLanes own);
 
 }  // namespace sysid

@@ -17,7 +17,7 @@ std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_pt
                                               std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution);
 
-/// The model with every process at zero, for what the samples do not decide: derived quantities, constraints.
+/// The model with every process at zero, which derived quantities are computed with.
 std::shared_ptr<CompiledModel const> compile_white(ProcessModel const& model, bool free_start, std::string const& method);
 
 ExitCode run_process_predict(Session& session, Task const& task, PredictTask const& what);
