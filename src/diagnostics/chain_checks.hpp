@@ -6,6 +6,7 @@
 
 #include "core/numeric/statistics.hpp"
 #include "result/finding.hpp"
+#include "result/summary.hpp"
 
 namespace sysid {
 

@@ -4,7 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "answer.hpp"
+#include "app/answer.hpp"
 #include "core/system/interrupt.hpp"
 
 using namespace sysid;
