@@ -1,31 +1,32 @@
 // The commands of the prompt, one row each, and how one is told from a statement of the language.
+#include "repl/commands.hpp"
+
 #include <algorithm>
 
 #include "repl/words.hpp"
-#include "repl/workbench.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::repl {
 
 std::span<CommandRow const> commands() {
   static constexpr CommandRow rows[] = {
-      {"load", "load FILE", "takes the statements of a file into the work; runs nothing", &Workbench::load},
-      {"reload", "reload", "takes the file again that was loaded or saved last", &Workbench::reload},
-      {"save", "save FILE", "writes the work as a file that `sysid run` repeats", &Workbench::save},
-      {"columns", "columns FILE.csv", "what a data file holds", &Workbench::columns},
+      {"load", "load FILE", "takes the statements of a file into the work; runs nothing", &command::load},
+      {"reload", "reload", "takes the file again that was loaded or saved last", &command::reload},
+      {"save", "save FILE", "writes the work as a file that `sysid run` repeats", &command::save},
+      {"columns", "columns FILE.csv", "what a data file holds", &command::columns},
       {"list", "list, list TOPIC", "the work; functions, distributions, kernels, backends, discovery, solvers or modules",
-       &Workbench::list},
-      {"show", "show, show NAME", "the text of the work, of one of its statements, or what a task found", &Workbench::show_text},
-      {"check", "check", "what the data can tell, before any sampling", &Workbench::check},
-      {"run", "run, run TASK ...", "runs tasks of the work: those that have not been run, or those named", &Workbench::run},
+       &command::list},
+      {"show", "show, show NAME", "the text of the work, of one of its statements, or what a task found", &command::show},
+      {"check", "check", "what the data can tell, before any sampling", &command::check},
+      {"run", "run, run TASK ...", "runs tasks of the work: those that have not been run, or those named", &command::run},
       {"refit", "refit [FIT] [as NAME] [with ...]", "fits the model as it is now again, beginning where the last fit ended",
-       &Workbench::refit},
-      {"compare", "compare, compare TASK ...", "fits and predictions side by side: evidence and errors", &Workbench::compare},
-      {"resume", "resume", "goes on with a task that Ctrl-C has stopped", &Workbench::resume},
-      {"change", "change NAME", "the model or data block that statements typed from here on change", &Workbench::change},
-      {"drop", "drop NAME", "takes a statement out of the work, or a declaration out of the model", &Workbench::drop},
-      {"help", "help, help WORD", "this; what a word of the language or a message means", &Workbench::help},
-      {"quit", "quit", "ends the session, as Ctrl-D does", &Workbench::quit},
+       &command::refit},
+      {"compare", "compare, compare TASK ...", "fits and predictions side by side: evidence and errors", &command::compare},
+      {"resume", "resume", "goes on with a task that Ctrl-C has stopped", &command::resume},
+      {"change", "change NAME", "the model or data block that statements typed from here on change", &command::change},
+      {"drop", "drop NAME", "takes a statement out of the work, or a declaration out of the model", &command::drop},
+      {"help", "help, help WORD", "this; what a word of the language or a message means", &command::help},
+      {"quit", "quit", "ends the session, as Ctrl-D does", &command::quit},
   };
   return rows;
 }
