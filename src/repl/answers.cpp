@@ -1,4 +1,6 @@
 // Expressions over results: a number, a summary of many, or a plot.
+#include "repl/answers.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,8 @@
 
 #include "core/text/number.hpp"
 #include "diagnostics/convergence.hpp"
-#include "repl/workbench.hpp"
+#include "repl/commands.hpp"
+#include "repl/quantity.hpp"
 #include "report/text/summary_text.hpp"
 #include "syntax/unparse.hpp"
 
@@ -73,44 +76,10 @@ std::string along_time(Quantity const& quantity, PlotSize size) {
 std::string along_draws(Quantity const& quantity, PlotSize size) {
   std::vector<Curve> curves;
   curves.push_back({numbers_up_to(quantity.values.size()), quantity.all_shown(), true});
-  return plot_curves(curves, {quantity.chains.size() > 1 ? "draw, one chain after the other" : "draw", ""}, axis_of(quantity),
-                     size);
+  return plot_curves(curves, {quantity.chains.size() > 1 ? "draw, one chain after the other" : "draw", ""}, axis_of(quantity), size);
 }
 
-}  // namespace
-
-bool Workbench::answer(ast::Expression const& tree, std::string const& text) {
-  Diagnostics diagnostics;
-  std::vector<ast::FunctionDefinition const*> functions;
-  if (checked_)
-    for (ast::Item const& item : checked_->file.tree.items)
-      if (auto const* function = std::get_if<ast::FunctionDefinition>(&item)) functions.push_back(function);
-  Evaluator evaluator(results_, functions, diagnostics);
-  auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node);
-  auto const* name = std::get_if<ast::Reference>(&tree.node);
-  std::optional<std::string> said;
-  if (call != nullptr && (*call)->function.text == "plot") {
-    said = plot(**call, evaluator, diagnostics);
-  } else if (call != nullptr && ((*call)->function.text == "trace" || (*call)->function.text == "histogram")) {
-    diagnostics.add({Severity::error,
-                     "",
-                     fmt::format("`{}` is a plot, not a number", (*call)->function.text),
-                     Label{tree.span, {}},
-                     {},
-                     fmt::format("`plot({})`", unparse(tree))});
-  } else if (name != nullptr && name->index.empty() && evaluator.result(name->name.text) != nullptr) {
-    said = evaluator.result(name->name.text)->summary;
-  } else if (name != nullptr && name->index.empty() && work_.find(name->name.text) < work_.items.size()) {
-    return show_text(name->name.text);
-  } else if (auto const quantity = evaluator.value(tree)) {
-    said = described(*quantity) + "\n";
-  }
-  show(diagnostics, text);
-  if (said) answer_lines(*said);
-  return said.has_value();
-}
-
-std::string Workbench::plot_result(Result const& result) const {
+std::string plot_result(Result const& result, PlotSize plot_size) {
   constexpr std::size_t most_rows = 200;  // more are a black band
   for (RecordSeries const& record : result.records)
     for (SeriesColumn const& quantity : record.quantities) {
@@ -122,15 +91,14 @@ std::string Workbench::plot_result(Result const& result) const {
         measured.y.push_back(quantity.measured[i]);
         predicted.y.push_back(quantity.mean[i]);
       }
-      return fmt::format(
-          "{} on {}: measured (dots) and predicted (line), the first {} rows\n{}", quantity.name, record.experiment,
-          predicted.x.size(),
-          plot_curves({predicted, measured}, {record.axis, record.unit}, {quantity.name, quantity.unit}, plot_size_));
+      return fmt::format("{} on {}: measured (dots) and predicted (line), the first {} rows\n{}", quantity.name, record.experiment,
+                         predicted.x.size(),
+                         plot_curves({predicted, measured}, {record.axis, record.unit}, {quantity.name, quantity.unit}, plot_size));
     }
   return "";
 }
 
-std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& evaluator, Diagnostics& diagnostics) const {
+std::optional<std::string> plot(ast::Call const& call, PlotSize plot_size, Evaluator& evaluator, Diagnostics& diagnostics) {
   auto const refuse = [&](Span span, std::string message, std::string help) -> std::optional<std::string> {
     diagnostics.add({Severity::error, "", std::move(message), Label{span, {}}, {}, std::move(help)});
     return std::nullopt;
@@ -148,14 +116,13 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
         auto const [message, help] = without_draws(*each);
         return refuse(arguments[each == &*x ? 0 : 1].value.span, message, help);
       }
-    if (auto const why = unpaired(*x, *y))
-      return refuse(call.span, *why, "both must be draws of one fit, or samples of one record");
-    drawn = plot_curves({{x->all_shown(), y->all_shown(), false}}, axis_of(*x), axis_of(*y), plot_size_);
+    if (auto const why = unpaired(*x, *y)) return refuse(call.span, *why, "both must be draws of one fit, or samples of one record");
+    drawn = plot_curves({{x->all_shown(), y->all_shown(), false}}, axis_of(*x), axis_of(*y), plot_size);
   } else {
     ast::Expression const& what = arguments[0].value;
     auto const* name = std::get_if<ast::Reference>(&what.node);
     if (name != nullptr && name->index.empty() && evaluator.result(name->name.text) != nullptr) {
-      drawn = plot_result(*evaluator.result(name->name.text));
+      drawn = plot_result(*evaluator.result(name->name.text), plot_size);
     } else {
       auto const* inner = std::get_if<ast::Box<ast::Call>>(&what.node);
       bool const trace = inner != nullptr && (*inner)->function.text == "trace" && (*inner)->arguments.size() == 1;
@@ -167,15 +134,49 @@ std::optional<std::string> Workbench::plot(ast::Call const& call, Evaluator& eva
         return refuse(what.span, message, help.empty() ? examples : help + ", or plot(residual(CHANNEL)), plot(FIT)");
       }
       if (trace)
-        drawn = quantity->kind == Quantity::Kind::rows ? along_time(*quantity, plot_size_) : along_draws(*quantity, plot_size_);
+        drawn = quantity->kind == Quantity::Kind::rows ? along_time(*quantity, plot_size) : along_draws(*quantity, plot_size);
       else if (histogram || quantity->kind == Quantity::Kind::draws)
-        drawn = plot_histogram(quantity->all_shown(), axis_of(*quantity), plot_size_);
+        drawn = plot_histogram(quantity->all_shown(), axis_of(*quantity), plot_size);
       else
-        drawn = along_time(*quantity, plot_size_);
+        drawn = along_time(*quantity, plot_size);
     }
   }
   if (drawn.empty()) return refuse(call.span, "there are no finite values to plot", examples);
   return drawn;
+}
+
+}  // namespace
+
+bool answer(Context& context, ast::Expression const& tree, std::string const& text) {
+  Diagnostics diagnostics;
+  std::vector<ast::FunctionDefinition const*> functions;
+  if (context.work.checked)
+    for (ast::Item const& item : context.work.checked->file.tree.items)
+      if (auto const* function = std::get_if<ast::FunctionDefinition>(&item)) functions.push_back(function);
+  Evaluator evaluator(context.results.all, functions, diagnostics);
+  auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node);
+  auto const* name = std::get_if<ast::Reference>(&tree.node);
+  std::optional<std::string> said;
+  if (call != nullptr && (*call)->function.text == "plot") {
+    said = plot(**call, context.plot_size, evaluator, diagnostics);
+  } else if (call != nullptr && ((*call)->function.text == "trace" || (*call)->function.text == "histogram")) {
+    diagnostics.add({Severity::error,
+                     "",
+                     fmt::format("`{}` is a plot, not a number", (*call)->function.text),
+                     Label{tree.span, {}},
+                     {},
+                     fmt::format("`plot({})`", unparse(tree))});
+  } else if (name != nullptr && name->index.empty() && evaluator.result(name->name.text) != nullptr) {
+    said = evaluator.result(name->name.text)->summary;
+  } else if (name != nullptr && name->index.empty() &&
+             context.work.statements.find(name->name.text) < context.work.statements.items.size()) {
+    return command::show(context, name->name.text);
+  } else if (auto const quantity = evaluator.value(tree)) {
+    said = described(*quantity) + "\n";
+  }
+  context.output.show(diagnostics, text);
+  if (said) context.output.answer(*said);
+  return said.has_value();
 }
 
 }  // namespace sysid::repl

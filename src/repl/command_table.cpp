@@ -1,33 +1,33 @@
 // The commands of the prompt, one row each, and how one is told from a statement of the language.
+#include "repl/commands.hpp"
+
 #include <algorithm>
 
-#include "core/text/words.hpp"
 #include "repl/words.hpp"
-#include "repl/workbench.hpp"
 #include "syntax/words.hpp"
+#include "core/text/words.hpp"
 
 namespace sysid::repl {
 
 std::span<CommandRow const> commands() {
   static constexpr CommandRow rows[] = {
-      {"load", "load FILE", "loads the statements of a file into the work; runs nothing", &Workbench::load},
-      {"reload", "reload", "loads the file again that was loaded or saved last", &Workbench::reload},
-      {"save", "save FILE", "writes the work as a file for `sysid run`", &Workbench::save},
-      {"columns", "columns FILE.csv", "shows the columns of a data file", &Workbench::columns},
+      {"load", "load FILE", "loads the statements of a file into the work; runs nothing", &command::load},
+      {"reload", "reload", "loads the file again that was loaded or saved last", &command::reload},
+      {"save", "save FILE", "writes the work as a file for `sysid run`", &command::save},
+      {"columns", "columns FILE.csv", "shows the columns of a data file", &command::columns},
       {"list", "list, list TOPIC", "lists the work; or functions, distributions, kernels, backends, discovery, solvers or modules",
-       &Workbench::list},
-      {"show", "show, show NAME", "shows the text of the work or of one of its statements, or the result of a task",
-       &Workbench::show_text},
-      {"check", "check", "checks what the data can determine, before any sampling", &Workbench::check},
-      {"run", "run, run TASK ...", "runs the tasks of the work that have not been run, or those given", &Workbench::run},
+       &command::list},
+      {"show", "show, show NAME", "shows the text of the work or of one of its statements, or the result of a task", &command::show},
+      {"check", "check", "checks what the data can determine, before any sampling", &command::check},
+      {"run", "run, run TASK ...", "runs the tasks of the work that have not been run, or those given", &command::run},
       {"refit", "refit [FIT] [as NAME] [with ...]", "fits the current model again, starting where the last fit ended",
-       &Workbench::refit},
-      {"compare", "compare, compare TASK ...", "compares fits and predictions: evidence and errors", &Workbench::compare},
-      {"resume", "resume", "continues a task that was stopped by Ctrl-C", &Workbench::resume},
-      {"change", "change NAME", "selects the model or data block that the next statements change", &Workbench::change},
-      {"drop", "drop NAME", "removes a statement from the work, or a declaration from the model", &Workbench::drop},
-      {"help", "help, help WORD", "shows this help, or explains a word of the language or a message", &Workbench::help},
-      {"quit", "quit", "ends the session, like Ctrl-D", &Workbench::quit},
+       &command::refit},
+      {"compare", "compare, compare TASK ...", "compares fits and predictions: evidence and errors", &command::compare},
+      {"resume", "resume", "continues a task that was stopped by Ctrl-C", &command::resume},
+      {"change", "change NAME", "selects the model or data block that the next statements change", &command::change},
+      {"drop", "drop NAME", "removes a statement from the work, or a declaration from the model", &command::drop},
+      {"help", "help, help WORD", "shows this help, or explains a word of the language or a message", &command::help},
+      {"quit", "quit", "ends the session, like Ctrl-D", &command::quit},
   };
   return rows;
 }

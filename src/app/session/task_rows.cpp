@@ -5,7 +5,7 @@
 
 #include "app/session/preconditions.hpp"
 #include "app/session/reporting.hpp"
-#include "data/digest.hpp"
+#include "core/system/digest.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {

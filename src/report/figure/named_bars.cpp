@@ -7,6 +7,7 @@
 
 #include "core/text/number.hpp"
 #include "report/figure/series.hpp"
+#include "core/text/utf8.hpp"
 
 namespace sysid::plot {
 

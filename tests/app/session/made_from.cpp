@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "answer.hpp"
+#include "app/answer.hpp"
 #include "app/run/compare.hpp"
 #include "app/run/report_results.hpp"
 #include "app/running.hpp"

@@ -18,7 +18,7 @@ using namespace sysid;
 namespace {
 
 std::vector<std::vector<std::string>> read_fixture(std::string const& name) {
-  std::ifstream file(std::string(SYSID_SOURCE_DIR) + "/tests/inference/fixtures/" + name);
+  std::ifstream file(std::string(SYSID_SOURCE_DIR) + "/tests/diagnostics/fixtures/" + name);
   REQUIRE(file.good());
   std::vector<std::vector<std::string>> rows;
   for (std::string line, cell; std::getline(file, line);) {

@@ -10,7 +10,7 @@
 #include "app/stored_pages.hpp"
 #include "experiment/true_parameters.hpp"
 #include "mechanics/second_difference.hpp"
-#include "running.hpp"
+#include "app/running.hpp"
 
 using namespace sysid;
 

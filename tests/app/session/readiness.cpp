@@ -1,7 +1,7 @@
 // Data of all tasks are looked at before the first task begins.
 #include <doctest/doctest.h>
 
-#include "answer.hpp"
+#include "app/answer.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/line.hpp"
+#include "app/selection/line.hpp"
 #include "app/selection/likelihood_check.hpp"
 
 using namespace sysid;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/line.hpp"
+#include "app/selection/line.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "app/discovering.hpp"
+#include "discovery/discovering.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

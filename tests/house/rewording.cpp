@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "answer.hpp"
+#include "app/answer.hpp"
 #include "load/load.hpp"
 
 using namespace sysid;

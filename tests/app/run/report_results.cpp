@@ -6,7 +6,7 @@
 #include <boost/crc.hpp>
 #include <nlohmann/json.hpp>
 
-#include "answer.hpp"
+#include "app/answer.hpp"
 #include "app/running.hpp"
 #include "app/session/reporting.hpp"
 #include "app/stored_pages.hpp"

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "app/markdown.hpp"
+#include "house/markdown.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "app/discovered.hpp"
+#include "discovery/discovered.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/session/session.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/discovered.hpp"
+#include "discovery/discovered.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

@@ -6,7 +6,7 @@
 #include <regex>
 #include <set>
 
-#include "answer.hpp"
+#include "app/answer.hpp"
 #include "result/finding.hpp"
 
 using namespace sysid;

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "answer.hpp"
+#include "app/answer.hpp"
 #include "core/system/interrupt.hpp"
 
 using namespace sysid;

@@ -20,7 +20,7 @@
 #include <map>
 #include <regex>
 
-#include "app/markdown.hpp"
+#include "house/markdown.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/run/pipeline.hpp"
 #include "app/running.hpp"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "app/catalogue/module_page.hpp"
-#include "app/markdown.hpp"
+#include "house/markdown.hpp"
 #include "check/checking.hpp"
 #include "load/modules.hpp"
 

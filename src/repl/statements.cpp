@@ -1,0 +1,176 @@
+// Entries to a checked work: nothing means anything else at the prompt than in a file, since it is a file that is checked.
+#include "repl/statements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/session/preconditions.hpp"
+#include "data/table.hpp"
+#include "experiment/experiments.hpp"
+#include "load/load.hpp"
+#include "repl/answers.hpp"
+#include "repl/change.hpp"
+#include "repl/commands.hpp"
+#include "repl/entry.hpp"
+#include "repl/tasks.hpp"
+#include "repl/words.hpp"
+#include "syntax/entry.hpp"
+#include "syntax/parse.hpp"
+#include "core/text/words.hpp"
+
+namespace sysid::repl {
+namespace {
+
+void suggest_command(Diagnostics& diagnostics, std::string const& entry) {
+  std::vector<Diagnostic> all = diagnostics.all();
+  if (all.front().code != "E1105") return;
+  std::vector<std::string> names;
+  for (CommandRow const& row : commands()) names.emplace_back(row.name);
+  std::string const word = entry.substr(0, std::min(entry.find(' '), entry.size()));
+  if (std::string near = did_you_mean(word, names); !near.empty()) all.front().help = std::move(near);
+  diagnostics.replace(std::move(all));
+}
+
+/// Puts a part into the draft; tasks to run when it has been checked. False when it cannot be.
+bool draft(Context& context, EntryPart const& part, std::string const& entry, Work& work, std::vector<std::string>& tasks,
+           std::vector<std::string>& notices) {
+  auto const put = [&](WorkItem item) {
+    auto const more = work.put(std::move(item), context.results.tasks());
+    notices.insert(notices.end(), more.begin(), more.end());
+  };
+  std::string const text = entry.substr(part.span.begin, part.span.end - part.span.begin);
+  auto const length = static_cast<std::uint32_t>(text.size());
+  if (part.kind == EntryPart::Kind::items) {
+    ast::Item const tree = item_of(text);
+    WorkItem item{kind_of(tree), name_of(tree), "", text, false, {{{0, length}, part.span.begin}}};
+    if (item.kind == ItemKind::task) {
+      item.text = with_seed(context, text);
+      tasks.push_back(item.name);
+    }
+    if (item.kind == ItemKind::model) context.work.model = item.name;
+    if (item.kind == ItemKind::data) context.work.data = item.name;
+    put(std::move(item));
+    return true;
+  }
+  bool const of_model = part.kind == EntryPart::Kind::model_statement;
+  std::string const& name = of_model ? context.work.model : context.work.data;
+  std::size_t const place = work.find(of_model ? ItemKind::model : ItemKind::data, name);
+  if (name.empty() || place == work.items.size()) {
+    Diagnostics diagnostics;
+    diagnostics.add(
+        {Severity::error,
+         "",
+         of_model ? "this statement belongs to a model, but there is none yet" : "this statement belongs to a data block, but there is none yet",
+         Label{part.span, {}},
+         {},
+         of_model ? "begin with `model NAME {`, or `load FILE`" : "begin with `data NAME {`, or `load FILE`"});
+    context.output.show(diagnostics, entry);
+    return false;
+  }
+  put(with_statement(work.items[place], entry, part.span));
+  return true;
+}
+
+/// Asks the files of data blocks that a draft adds or changes for their columns, as far as the files are there.
+void ask_for_columns(Context& context, Work const& draft, Source const& source, CheckedFile const& file, Diagnostics& diagnostics) {
+  std::ostream nowhere(nullptr);
+  Session const session(source, file, context.options, context.progress, nowhere, nowhere);
+  for (DataBlock const& block : file.data) {
+    std::size_t const now = draft.find(ItemKind::data, block.name),
+                      before = context.work.statements.find(ItemKind::data, block.name);
+    bool const changed = now < draft.items.size() && (before == context.work.statements.items.size() ||
+                                                      context.work.statements.items[before].text != draft.items[now].text);
+    std::filesystem::path const path = session.folder() / block.path;
+    // What a task has yet to make may look otherwise then.
+    Task const* made = maker(session, block);
+    if (!changed || !std::filesystem::is_regular_file(path) || (made != nullptr && !context.results.made.contains(made->name)))
+      continue;
+    auto const refused = [&](auto const& ask) {
+      try {
+        ask();
+        return false;
+      } catch (UserError const& error) {
+        diagnostics.add(error.diagnostic());
+        return true;
+      } catch (IoError const&) {
+        return true;  // who reads it says so
+      }
+    };
+    std::optional<Table> table;
+    if (refused([&] { table = Table::read(path.string(), block.path_span); })) continue;
+    auto const ask = [&](ColumnUse const& use) { refused([&] { table->numbers(use.column, use.span); }); };
+    if (block.time) ask(*block.time);
+    for (DataInputUse const& input : block.inputs) ask(input);
+    for (DataMeasureUse const& measure : block.measured) ask(measure);
+  }
+}
+
+}  // namespace
+
+bool adopt(Context& context, Work draft, std::string const& entry) {
+  Source source(draft.path.string(), draft.text());
+  Diagnostics diagnostics;
+  auto file = sysid::load(source, diagnostics);
+  // What comes from a file is said of the tasks that read it.
+  if (file && !entry.empty()) ask_for_columns(context, draft, source, *file, diagnostics);
+  context.output.show(diagnostics, source, draft, entry);
+  if (!file || diagnostics.has_errors()) return false;
+  for (WorkItem& item : draft.items) item.typed.clear();
+  if (draft.text() != context.work.statements.text()) context.work.unsaved = true;
+  context.work.statements = std::move(draft);
+  context.work.checked = std::make_shared<CheckedText const>(CheckedText{std::move(source), std::move(*file)});
+  return true;
+}
+
+bool enter_statements(Context& context, std::string const& entry) {
+  Diagnostics diagnostics;
+  auto const parts = parts_of(entry, diagnostics);
+  if (!diagnostics.all().empty()) {
+    suggest_command(diagnostics, trimmed(entry));
+    context.output.show(diagnostics, entry);
+    return false;
+  }
+  for (std::size_t i = 0; i < parts.size();) {
+    if (parts[i].kind == EntryPart::Kind::expression) {
+      // Blanks before it, so that places are those in the entry.
+      std::string text(parts[i].span.begin, ' ');
+      text += entry.substr(parts[i].span.begin, parts[i].span.end - parts[i].span.begin);
+      auto const tree = parse_expression(Source("prompt", text), diagnostics);
+      if (!tree || !answer(context, *tree, text)) return false;
+      ++i;
+      continue;
+    }
+    // What stands together is checked together, up to a task, which is run before what follows.
+    Work changed = context.work.statements;
+    std::string const model = context.work.model, data = context.work.data;
+    std::vector<std::string> tasks, notices;
+    for (; i < parts.size() && parts[i].kind != EntryPart::Kind::expression && tasks.empty(); ++i)
+      if (!draft(context, parts[i], entry, changed, tasks, notices)) {
+        context.work.model = model;
+        context.work.data = data;
+        return false;
+      }
+    changed.prune();
+    Work const before = context.work.statements;
+    auto const checked_before = context.work.checked;
+    bool const unsaved_before = context.work.unsaved;
+    if (!adopt(context, std::move(changed), entry)) {
+      context.work.model = model;
+      context.work.data = data;
+      return false;
+    }
+    for (std::string const& notice : notices) context.output.say(notice);
+    for (std::string const& task : tasks) {
+      if (run_task(context, task, context.work.checked, false)) continue;
+      // What could not be run is no part of the work.
+      context.work.statements = before;
+      context.work.checked = checked_before;
+      context.work.unsaved = unsaved_before;
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace sysid::repl
