@@ -41,7 +41,7 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
     if (hyper_parameters[k].name != "length" || hyper_parameters[k].column < 0) continue;
     auto const column = inputs.col(hyper_parameters[k].column);
     double const range = column.maxCoeff() - column.minCoeff();
-    std::string const& name = names[static_cast<std::size_t>(hyper_parameters[k].column)];
+    auto const& name = names[static_cast<std::size_t>(hyper_parameters[k].column)];
     bool const scaled = hyper_parameters[k].unit.input == 1;  // of the periodic kernel it is a pure number
     if (!scaled || range <= 0 || regression.parameters[k] <= far * range || name == last) continue;
     last = name;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "check/units/units.hpp"
+#include "check/message/error_words.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -71,7 +72,7 @@ Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
 }
 
 Diagnostic pure_argument(Label argument, std::string const& function, std::string help) {
-  return about({function}, at(Severity::error, "E2206", std::move(argument), {}, fmt::format("`{}` takes a pure number", function),
+  return errors::about({function}, at(Severity::error, "E2206", std::move(argument), {}, fmt::format("`{}` takes a pure number", function),
                               std::move(help)));
 }
 Diagnostic exponent_with_unit(Label exponent, std::string help) {
@@ -128,7 +129,7 @@ Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) 
                          : fmt::format("write `2*pi*{0}` for `{0}` if it counts cycles", name));
 }
 Diagnostic cycles_in_angle(Span argument, std::string const& function) {
-  return about({function}, at(Severity::warning, "E2210", {argument, "cycles"}, {},
+  return errors::about({function}, at(Severity::warning, "E2210", {argument, "cycles"}, {},
                               fmt::format("`{}` takes radians, but this counts cycles", function), "multiply by 2*pi"));
 }
 
