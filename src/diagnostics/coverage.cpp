@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "core/system/files.hpp"
 #include "diagnostics/residual_checks.hpp"
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
@@ -55,32 +53,6 @@ std::string prediction_verdict(Report const& report, bool missed) {
                                       [](Finding const& each) { return each.severity == Severity::warning; });
   if (warnings > 0) return with_care(warnings);
   return "all trajectories stay finite";
-}
-
-void add_source(std::filesystem::path const& fit, Report& report) {
-  auto const summary = nlohmann::json::parse(read_file(fit / "summary.json"), nullptr, false);
-  if (!summary.is_object() || !summary.contains("findings")) return;
-  std::vector<std::string> failed, doubtful;
-  for (auto const& finding : summary["findings"]) {
-    std::string const severity = finding.value("severity", ""), code = finding.value("code", "");
-    std::vector<std::string>* const codes = severity == "error" ? &failed : severity == "warning" ? &doubtful : nullptr;
-    if (codes != nullptr && std::find(codes->begin(), codes->end(), code) == codes->end()) codes->push_back(code);
-  }
-  std::string const name = summary.value("task", "");
-  if (!failed.empty())
-    report.findings.push_back(
-        {FindingCode::from_doubtful_fit,
-         Severity::error,
-         {name},
-         fmt::format("the fit `{}`, from which these draws are taken, failed its checks: {}", name, fmt::join(failed, ", ")),
-         "follow the help in the verdict of the fit, then predict again"});
-  else if (!doubtful.empty())
-    report.findings.push_back(
-        {FindingCode::from_doubtful_fit,
-         Severity::warning,
-         {name},
-         fmt::format("the fit `{}`, from which these draws are taken, has warnings: {}", name, fmt::join(doubtful, ", ")),
-         "look at the verdict of the fit"});
 }
 
 bool add_coverage(Report& report, bool fed_back) {

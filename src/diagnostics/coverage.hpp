@@ -1,7 +1,5 @@
 // Whether data lie where a prediction says, and what its bands are good for.
 #pragma once
-#include <filesystem>
-
 #include "result/report.hpp"
 
 namespace sysid {
@@ -9,10 +7,6 @@ namespace sysid {
 /// Whether some channel leaves its 95 % band far more often than it should: a warning for each. fed_back: the noise of a sample
 /// shows in later ones, which a free run leaves out.
 bool add_coverage(Report& report, bool fed_back);
-
-/// `from_doubtful_fit`: an error where the fit whose results are in that folder has failed its checks or is unfinished, a warning
-/// where it is to be used with care.
-void add_source(std::filesystem::path const& fit, Report& report);
 
 /// What a prediction's bands allow, from its findings and failures; missed: as `add_coverage` says.
 std::string prediction_verdict(Report const& report, bool missed);

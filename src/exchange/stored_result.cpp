@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/session/results.hpp"
 #include "app/session/stored_draws.hpp"
 #include "core/system/files.hpp"
 #include "exchange/refused.hpp"
@@ -17,6 +18,7 @@ StoredResult read_stored_result(std::filesystem::path const& folder) {
   if (!whole)
     throw refused(fmt::format("`{}` is no result of a task", (folder / "summary.json").string()),
                   "run the task again with --force");
+  if (!has_deciding_fields(stored.summary)) throw older_version(folder);
   return stored;
 }
 

@@ -14,11 +14,11 @@ struct StoredResult {
 
   std::string task() const { return summary.value("task", std::string()); }
   std::string what() const { return summary.value("what", std::string()); }
-  bool is(std::string_view verb) const { return what().starts_with(std::string(verb) + " "); }
+  bool is(std::string_view verb) const { return summary.value("verb", std::string()) == verb; }
   std::uint64_t seed() const { return summary.value("seed", std::uint64_t{0}); }
 };
 
-/// UserError where summary.json is that of no task, IoError where it cannot be read.
+/// UserError where summary.json is that of no task or of an older version, IoError where it cannot be read.
 StoredResult read_stored_result(std::filesystem::path const& folder);
 
 /// Draws of a fit, parameters and what derives from them, under the user's names and in declared units. UserError where they do

@@ -87,9 +87,14 @@ void mark_past(Experiment& experiment, Model const& model, Span place) {
 
 }  // namespace
 
+bool predicts_from_data(Model const& model) {
+  for (int c = -1; c < static_cast<int>(model.channels.size()); ++c)
+    if (!past_samples(model, c).empty()) return true;
+  return false;
+}
+
 std::string prediction_text(Model const& model, PredictionRule rule) {
-  bool from_data = false;
-  for (int c = -1; c < static_cast<int>(model.channels.size()); ++c) from_data = from_data || !past_samples(model, c).empty();
+  bool const from_data = predicts_from_data(model);
   bool const from_model = !model.states.empty();
   return fmt::format("{}: from {}", prediction_name(rule),
                      from_data && from_model ? "measured samples and the model's own past samples"

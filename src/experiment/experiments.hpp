@@ -58,6 +58,9 @@ std::string data_names(CheckedFile const& file, std::vector<ExperimentUse> const
 /// own.
 std::vector<PriorInfo> priors_of(ParameterSpace const& space, std::vector<PriorInfo> const& of_model);
 
+/// Whether the model, under its rule, reads measured past samples.
+bool predicts_from_data(Model const& model);
+
 /// Which rule is in force and what it comes to: "as_written: from measured samples".
 std::string prediction_text(Model const& model, PredictionRule rule);
 

@@ -55,6 +55,7 @@ struct DataInfo {
   int scored = 0;                  // of the split
   std::string scored_rows;         // which: "101..500", counted from 1
   std::string samples_sha256;      // of the measured samples that the likelihood reads, with their rows and in their declared units
+  std::string inputs_sha256;       // of what the model is given beside them: columns, units and rules of its inputs, constants
   std::vector<std::string> notes;  // "input x = force [N], held (zero_order)"
   std::vector<TrueValue> truth = {};
 };
@@ -82,9 +83,13 @@ struct CheckRecord {
 };
 
 struct Report {
-  std::string version;  // of sysid
-  std::string task;     // "posterior"
-  std::string what;     // "fit duffing to bench.train with mh"
+  std::string version;          // of sysid
+  std::string task;             // "posterior"
+  std::string what;             // "fit duffing to bench.train with mh": for people; programs decide by the next four
+  std::string verb;             // that the task is written with: "fit"
+  std::string prediction_rule;  // as the language has it: "as_written", "one_step", "free_run"; empty where time is not discrete
+  bool measured_past = false;   // whether the model under that rule predicts from measured past samples
+  int lags = 0;                 // how many samples it looks back; 0: it reads none of the past
   std::string model_name, model_title;
   std::vector<std::string> equations;  // statements of the model in the language, one each; of a discovery, what it found
   std::string model_text;              // the user's text

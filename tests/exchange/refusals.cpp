@@ -54,6 +54,12 @@ TEST_CASE("an export refuses folders without draws, files that are there and res
   CHECK(refusal<UserError>([&] {
           export_netcdf(find_results(results / "renamed"), &session, 200, out);
         }).ends_with("are of another text of model `deck`"));
+  auto older = nlohmann::ordered_json::parse(read_file(results / "renamed/summary.json"));
+  older.erase("verb");
+  write_file(results / "renamed/summary.json", older.dump(2));
+  CHECK(refusal<UserError>([&] {
+          find_results(results / "renamed");
+        }).ends_with("renamed` was written by an older version of sysid"));
   write_file(results / "renamed/summary.json", "{\"task\": 1}");
   CHECK(refusal<UserError>([&] { find_results(results / "renamed"); }).ends_with("summary.json` is no result of a task"));
 }

@@ -60,6 +60,7 @@ Report duffing(int draws) {
   report.version = "0.1.0";
   report.task = "posterior";
   report.what = "fit duffing to bench.train with mh";
+  report.verb = "fit";
   report.model_name = "duffing";
   report.model_title = "Duffing's oscillator";
   report.equations = {"m*y'' + c*y' + k*y + k3*y^3 = x", "displacement ~ normal(y, precision = beta)"};
@@ -128,6 +129,7 @@ Report duffing(int draws) {
        500,
        "1..500",
        "5994471abb01112afcc18159f6cc74b4f511b99806da59b3caf5a9c173cacfc5",
+       "2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae",
        {"rows 1..500 of 1500", "input x = force [N], held between samples (zero_order)", "measure displacement = y_noisy [mm]"}});
   report.findings.push_back(
       {FindingCode::selection_ended, Severity::note, {}, "no posterior mean moves by more than 0.01 sd at half the step", ""});

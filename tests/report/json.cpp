@@ -19,6 +19,10 @@ TEST_CASE("the summary holds each parameter with unit and diagnostics, exactly")
   CHECK(k3["mean"] == report.summary[3].mean);
   CHECK(k3["mcse_mean"] == report.summary[3].mcse_mean);
   for (char const* key : {"median", "sd", "mad", "q5", "q95", "rhat", "ess_bulk", "ess_tail"}) CHECK_MESSAGE(k3.contains(key), key);
+  CHECK(json["verb"] == "fit");
+  CHECK(json["prediction_rule"] == "");
+  CHECK(json["measured_past"] == false);
+  CHECK(json["lags"] == 0);
   CHECK(json["seed"] == 1);
   CHECK(json["settings"]["samples"] == 25000);
   CHECK(json["settings"]["proposal"] == "adaptive");

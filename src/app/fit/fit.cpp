@@ -146,6 +146,7 @@ class Fit {
     Report report = begin_report(
         session_, task_, what_.model,
         fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
+    add_prediction_rule(model_, what_.prediction, report);
     report.priors = priors_of(likelihood_->space(), report.priors);
     for (ExperimentData const& each : data_) add_data(session_.file, each, model_, report);
     report.findings.insert(report.findings.end(), result.findings.begin(), result.findings.end());

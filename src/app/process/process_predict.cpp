@@ -3,6 +3,7 @@
 
 #include "app/process/process_draws.hpp"
 #include "app/process/process_trajectories.hpp"
+#include "app/session/made_from.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
 #include "app/session/resolved.hpp"
@@ -33,6 +34,7 @@ class ProcessPredict {
             "predict {} on {} with draws({}){}", fit_task_.name, data_names(session_.file, what_.experiments), what_.draws,
             model.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model, what_.prediction)) : std::string()),
         seed_);
+    add_prediction_rule(model, what_.prediction, report);
     if (trajectories_.fitted().draws.total() == 1)
       report.findings.push_back({FindingCode::optimum_alone,
                                  Severity::note,

@@ -11,10 +11,12 @@
 #include <set>
 
 #include "app/session/made_from.hpp"
+#include "app/session/results.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
+#include "model/past.hpp"
 
 namespace sysid {
 namespace {
@@ -31,7 +33,8 @@ struct StoredSummary {
   std::string model;               // as it is called here
   std::optional<Finding> earlier;  // that it was made from a fit which has been run again
 
-  bool is(std::string_view verb) const { return summary.value("what", std::string()).starts_with(std::string(verb) + " "); }
+  bool is(std::string_view verb) const { return summary.value("verb", std::string()) == verb; }
+  int lags() const { return summary.value("lags", 0); }
   int warnings() const {
     json const findings = summary.value("findings", json::array());
     return static_cast<int>(std::count_if(findings.begin(), findings.end(),
@@ -57,6 +60,7 @@ StoredSummary read_summary(fs::path const& folder) {
   if (!whole)
     throw refused(fmt::format("`{}` is no result of a task", (folder / "summary.json").string()),
                   "run the task again with --force");
+  if (!has_deciding_fields(result.summary)) throw older_version(folder);
   result.model = result.summary.value("model", std::string());
   return result;
 }
@@ -114,11 +118,7 @@ void require_same_samples(StoredSummary const& one, StoredSummary const& other) 
   std::string const message = fmt::format("`{}` and `{}` are fitted to different samples: {} and {}", one.name, other.name,
                                           data_text(one), data_text(other));
   if (data_text(one) != data_text(other)) {
-    bool looks_back = false;
-    for (StoredSummary const* each : {&one, &other})
-      for (json const& data : each->summary["data"])
-        for (json const& note : data.value("notes", json::array()))
-          looks_back = looks_back || (note.is_string() && note.get<std::string>().find("looks back") != std::string::npos);
+    bool const looks_back = one.lags() > 0 || other.lags() > 0;
     throw refused(message, looks_back ? "evidences are densities of the samples: let the part begin behind the longest lag of all "
                                         "models, and each is fitted to the same rows"
                                       : "evidences are densities of the samples: name folders of fits to the same rows");
@@ -167,9 +167,9 @@ std::string model_text(StoredSummary const& result) {
 /// model.
 std::string identity(StoredSummary const& result) {
   json const settings = result.summary.value("settings", json::object());
-  std::string all = model_text(result) + settings.value("prediction", "") + settings.value("start_state", "");
-  for (json const& data : result.summary["data"]) all += data.value("sha256", "") + data.value("notes", json::array()).dump();
-  return all;
+  json all = {model_text(result), result.summary.value("prediction_rule", ""), settings.value("start_state", "")};
+  for (json const& data : result.summary["data"]) all.push_back({data.value("sha256", ""), data.value("inputs_sha256", "")});
+  return all.dump();
 }
 
 /// Which fits of models of one name are not of the same, as an equation before and after a change.
@@ -214,9 +214,11 @@ void add_probabilities(std::vector<StoredSummary> const& results, std::vector<Co
 }
 
 std::string kind_of(json const& summary) {
-  std::string const rule = summary.value("settings", json::object()).value("prediction", "");
-  if (rule.empty()) return "";
-  return rule.find("a free run") != std::string::npos ? "free run" : "one step";
+  std::string const rule = summary.value("prediction_rule", "");
+  if (rule == prediction_name(PredictionRule::free_run)) return "free run";
+  if (rule == prediction_name(PredictionRule::one_step)) return "one step";
+  if (rule == prediction_name(PredictionRule::as_written)) return summary.value("measured_past", false) ? "one step" : "free run";
+  return rule;  // none, or a number of steps
 }
 
 void add_predictions(StoredSummary const& result, std::vector<ComparedPrediction>& predictions) {

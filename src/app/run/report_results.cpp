@@ -10,6 +10,7 @@
 #include "app/run/compare.hpp"
 #include "app/session/made_from.hpp"
 #include "app/session/results.hpp"
+#include "check/checked/task_kinds.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "experiment/prior_density.hpp"
@@ -96,7 +97,7 @@ void add_comparisons(std::vector<StoredTask> const& tasks, RunReport& run) {
   std::vector<std::pair<std::string, std::vector<fs::path>>> fits;  // by their samples
   std::vector<fs::path> predictions;
   for (StoredTask const& task : tasks) {
-    if (task.report.what.starts_with("predict ")) predictions.push_back(task.folder);
+    if (task.report.verb == row_of(TaskKind::predict).verb) predictions.push_back(task.folder);
     std::string const samples = samples_of(task.report);
     if (!task.report.evidence || !task.report.evidence->log_evidence || samples.empty()) continue;
     auto group = std::find_if(fits.begin(), fits.end(), [&](auto const& each) { return each.first == samples; });

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/selection/selection_trajectories.hpp"
+#include "app/session/made_from.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
 #include "app/session/resolved.hpp"
@@ -61,6 +62,7 @@ class PredictSelection {
     SelectionTrajectories::Along leading = trajectories_.along(lead, e);
     add_restoring_forces(leading.model(), leading.trajectory->quantities(), leading.result, leading.parameters,
                          leading.data->experiment, report.forces);
+    add_prediction_rule(leading.model(), what_.prediction, report);
     add_data(session_.file, *leading.data, leading.model(), report);
     add_ranges(lead, leading, report);
     int const leading_failed = leading.result.failed();

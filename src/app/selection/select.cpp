@@ -191,6 +191,7 @@ class Select {
     Report report = begin_report(
         session_, task_, leading.fit->model,
         fmt::format("select {} to {} with {}", set_.name, data_names(session_.file, first.fit->experiments), what_.backend), seed_);
+    add_prediction_rule(leading.compiled->model, leading.fit->prediction, report);
     report.priors = priors_of(*leading.space, report.priors);
     report.findings = selection.result.findings;
     for (ExperimentData const& each : first.data) add_data(session_.file, each, first.compiled->model, report);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/system/digest.hpp"
@@ -49,6 +50,32 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
                  {source},
                  fmt::format("this was made from an earlier run of `{}` than the one stored beside it", source),
                  "make it again: `sysid predict FILE --force`"};
+}
+
+void add_source(std::filesystem::path const& fit, Report& report) {
+  auto const summary = nlohmann::json::parse(read_file(fit / "summary.json"), nullptr, false);
+  if (!summary.is_object() || !summary.contains("findings")) return;
+  std::vector<std::string> failed, doubtful;
+  for (auto const& finding : summary["findings"]) {
+    std::string const severity = finding.value("severity", ""), code = finding.value("code", "");
+    std::vector<std::string>* const codes = severity == "error" ? &failed : severity == "warning" ? &doubtful : nullptr;
+    if (codes != nullptr && std::find(codes->begin(), codes->end(), code) == codes->end()) codes->push_back(code);
+  }
+  std::string const name = summary.value("task", "");
+  if (!failed.empty())
+    report.findings.push_back(
+        {FindingCode::from_doubtful_fit,
+         Severity::error,
+         {name},
+         fmt::format("the fit `{}`, from which these draws are taken, failed its checks: {}", name, fmt::join(failed, ", ")),
+         "follow the help in the verdict of the fit, then predict again"});
+  else if (!doubtful.empty())
+    report.findings.push_back(
+        {FindingCode::from_doubtful_fit,
+         Severity::warning,
+         {name},
+         fmt::format("the fit `{}`, from which these draws are taken, has warnings: {}", name, fmt::join(doubtful, ", ")),
+         "look at the verdict of the fit"});
 }
 
 }  // namespace sysid

@@ -53,6 +53,22 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
   return sha256(all);
 }
 
+// SHA-256 of what the model is given beside the measured samples: of each input its column, unit and rule, and the constants of the
+// experiment. Equal digests and equal files mean the same inputs.
+std::string inputs_digest(DataBlock const& block, ExperimentUse const& use, Model const& model) {
+  std::vector<std::string> given;
+  for (Quantity const& input : model.inputs)
+    for (DataInputUse const& bound : block.inputs)
+      if (bound.input == input.name)
+        given.push_back(fmt::format(
+            "{}\n{}\n{}\n{}\n", input.name, bound.column, bound.unit ? bound.unit->text : std::string(),
+            bound.rule && model.dynamics == Dynamics::continuous ? std::string(rule_name(*bound.rule)) : std::string()));
+  for (std::size_t p = 0; p < model.parameters.size(); ++p)
+    if (use.constants[p]) given.push_back(fmt::format("{}\n{}\n", model.parameters[p].name, shortest(*use.constants[p])));
+  std::sort(given.begin(), given.end());  // models may declare them in any order
+  return sha256(fmt::format("{}", fmt::join(given, "")));
+}
+
 DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
   DataInfo info;
@@ -63,6 +79,7 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   info.scored = static_cast<int>(std::count(data.experiment.scored.begin(), data.experiment.scored.end(), 1));
   info.scored_rows = scored_rows(data.experiment);
   info.samples_sha256 = samples_digest(data.experiment, model);
+  info.inputs_sha256 = inputs_digest(block, data.use, model);
   info.truth = true_values(data.record.comments, model, data.use.name);
   for (Quantity const& input : model.inputs)
     for (DataInputUse const& use : block.inputs)

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/made_from.hpp"
-#include "core/system/digest.hpp"
 #include "app/session/task_rows.hpp"
+#include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "experiment/experiments.hpp"
 #include "experiment/prior_density.hpp"
@@ -100,6 +100,7 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   report.version = SYSID_VERSION;
   report.task = task.name;
   report.what = std::move(what);
+  report.verb = verb_of(task);
   report.seed = seed;
   add_repetition(session, task, report);
   report.timing = {{"file", std::filesystem::absolute(session.source.name()).lexically_normal().string()}};
@@ -131,6 +132,13 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
     if (written == nullptr || !within(place(statement), flat->span)) add(statement);
   report.priors = declared_priors(session, model_index);
   return report;
+}
+
+void add_prediction_rule(Model const& model, PredictionRule rule, Report& report) {
+  report.lags = data_lag(model);
+  if (model.dynamics != Dynamics::discrete) return;
+  report.prediction_rule = prediction_name(rule);
+  report.measured_past = predicts_from_data(model);
 }
 
 std::vector<PriorInfo> declared_priors(Session const& session, int model_index) {

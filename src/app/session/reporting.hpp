@@ -11,6 +11,10 @@ namespace sysid {
 /// A report with everything known before the task has run.
 Report begin_report(Session const& session, Task const& task, int model, std::string what, std::uint64_t seed);
 
+/// The rule of a discrete-time model, whether it predicts from measured past samples, and how many samples it looks back. model:
+/// as it is compiled under the rule.
+void add_prediction_rule(Model const& model, PredictionRule rule, Report& report);
+
 /// The task's place in its file and the command that makes its result again, from the folder in which the run was started. Of seeds
 /// that were drawn the command carries one where all tasks that it takes have it; else they are named, to be written into the file.
 void add_repetition(Session const& session, Task const& task, Report& report);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "core/system/files.hpp"
-#include "core/text/diagnostic.hpp"
 #include "report/file/result_folder.hpp"
 
 namespace sysid {
@@ -13,6 +12,15 @@ std::filesystem::path checkpoint_path(std::filesystem::path const& folder) { ret
 
 bool complete(std::filesystem::path const& folder) {
   return std::filesystem::exists(folder / "summary.json") && !std::filesystem::exists(checkpoint_path(folder));
+}
+
+UserError older_version(std::filesystem::path const& folder) {
+  return UserError({Severity::error,
+                    "",
+                    fmt::format("`{}` was written by an older version of sysid", folder.string()),
+                    std::nullopt,
+                    {},
+                    "run the task again with --force"});
 }
 
 void claim_results(std::filesystem::path const& folder, RunOptions const& options) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/session/options.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 
@@ -14,5 +15,16 @@ std::filesystem::path checkpoint_path(std::filesystem::path const& folder);
 
 /// Whether a task ended there (a summary without a checkpoint).
 bool complete(std::filesystem::path const& folder);
+
+/// Whether a summary holds the fields that its readers decide by. Json: an object, in the order of its keys or not.
+template <class Json>
+bool has_deciding_fields(Json const& summary) {
+  return summary.contains("verb") && summary["verb"].is_string() && summary.contains("prediction_rule") &&
+         summary["prediction_rule"].is_string() && summary.contains("measured_past") && summary["measured_past"].is_boolean() &&
+         summary.contains("lags") && summary["lags"].is_number_integer();
+}
+
+/// For results in that folder without these fields.
+UserError older_version(std::filesystem::path const& folder);
 
 }  // namespace sysid

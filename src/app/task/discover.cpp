@@ -100,6 +100,8 @@ class Discover {
     report.task = task_.name;
     report.what = fmt::format("discover {} from {} with {}, derivatives = {}", dictionary_.name,
                               data_names(session_.file, what_.experiments), what_.selector, what_.form);
+    report.verb = verb_of(task_);
+    report.lags = data_lag(dictionary_.measured);
     report.seed = seed_;
     add_repetition(session_, task_, report);
     report.model_name = dictionary_.name;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/process/process_fit.hpp"
+#include "app/session/made_from.hpp"
 #include "app/session/posterior_trajectories.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
@@ -45,6 +46,7 @@ class Predict {
                     model_.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model_, what_.prediction))
                                                           : std::string()),
         seed_);
+    add_prediction_rule(model_, what_.prediction, report);
     if (trajectories_.fitted().draws.total() == 1)
       report.findings.push_back(
           {FindingCode::optimum_alone,

@@ -122,6 +122,10 @@ std::string summary_json(Report const& report) {
   Json out;
   out["task"] = report.task;
   out["what"] = report.what;
+  out["verb"] = report.verb;
+  out["prediction_rule"] = report.prediction_rule;
+  out["measured_past"] = report.measured_past;
+  out["lags"] = report.lags;
   out["model"] = report.model_name;
   out["parameters"] = parameters(report.summary);
   if (thinned(report) && report.draws.total() > 1) out["kept_draws"] = kept_draws(report);
@@ -165,6 +169,7 @@ std::string summary_json(Report const& report) {
                            {"scored", data.scored},
                            {"scored_rows", data.scored_rows},
                            {"samples_sha256", data.samples_sha256},
+                           {"inputs_sha256", data.inputs_sha256},
                            {"notes", data.notes}});
   out["settings"] = facts(report.settings);
   return dump(out);

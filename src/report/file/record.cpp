@@ -69,7 +69,8 @@ using json = nlohmann::json;
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorNumbers, distribution, arguments, lower, upper, scale)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorInfo, name, unit, text, numbers, q5, q95)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, notes, truth)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, inputs_sha256, notes,
+                                   truth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
@@ -235,16 +236,16 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 
 // --- the whole
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, model_name, model_title, equations, model_text, resolved_text,
-                                   priors, data, draws, summary, verdict, findings, fit, predictions, modes, evidence, noise,
-                                   functions, forces, tables, selection, discovery, ledger, seed, place, command, unseeded,
-                                   settings, versions)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, verb, prediction_rule, measured_past, lags, model_name, model_title,
+                                   equations, model_text, resolved_text, priors, data, draws, summary, verdict, findings, fit,
+                                   predictions, modes, evidence, noise, functions, forces, tables, selection, discovery, ledger,
+                                   seed, place, command, unseeded, settings, versions)
 
 namespace {
 
 /// Raised when members keep their names and change their meaning. Other members tell themselves: the bytes are whole and do not
 /// fit.
-constexpr int form = 2;
+constexpr int form = 3;
 
 /// Any change of a byte shows: what is read needs no further doubt.
 std::uint32_t checksum(std::vector<std::uint8_t> const& bytes) {

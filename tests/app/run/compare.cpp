@@ -10,6 +10,7 @@
 #include "app/run/report_results.hpp"
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
+#include "core/text/diagnostic.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -96,6 +97,59 @@ free = predict b_arx on points.test with draws(20), prediction = free_run, seed 
   json const printed = json::parse(comparison_json(found));
   CHECK(printed.at("fits").at(3).at("log_evidence").is_null());
   CHECK(printed.at("predictions").size() == 3);
+}
+
+TEST_CASE("results are compared by their fields, whatever their sentences say") {
+  CaseRun const run = runs(R"(
+a_still = fit still to points.train with map, seed = 1
+b_arx = fit arx to points.train with map, seed = 1
+c_head = fit longer to points.head with map, seed = 1
+free = predict b_arx on points.test with draws(20), prediction = free_run, seed = 1
+one = predict b_arx on points.test with draws(20), seed = 1
+)");
+  auto const results = run.folder.path() / "results";
+  char const* const alike[] = {"a_still", "b_arx", "free", "one"};
+  auto const compared = [&] {
+    std::vector<std::filesystem::path> folders;
+    for (char const* task : alike) folders.push_back(results / task);
+    return compare(folders);
+  };
+  auto const refusal = [&](std::filesystem::path const& other) {
+    try {
+      compare({results / "b_arx", other});
+    } catch (UserError const& error) {
+      return error.diagnostic().message + "; " + error.diagnostic().help;
+    }
+    return std::string("not refused");
+  };
+  auto const rewrite = [&](std::string const& task, auto const& change) {
+    json summary = run.summary(task);
+    change(summary);
+    write_file(results / task / "summary.json", summary.dump(2));
+  };
+  // Predictions hold the digest of the summary that they were made from, which the other words change.
+  auto const without_source = [](json& summary) { summary["versions"].erase("made_from"); };
+  for (char const* task : {"free", "one"}) rewrite(task, without_source);
+  std::string const table = comparison_json(compared()), refused = refusal(results / "c_head");
+  CHECK(refused.find("behind the longest lag of all models") != std::string::npos);
+  CHECK(run.summary("a_still").at("lags") == 1);
+  CHECK(run.summary("c_head").at("lags") == 3);
+  CHECK(run.summary("free").at("verb") == "predict");
+  CHECK(run.summary("free").at("prediction_rule") == "free_run");
+  CHECK(run.summary("one").at("prediction_rule") == "as_written");
+  CHECK(run.summary("one").at("measured_past") == true);
+  for (char const* task : {"a_still", "b_arx", "c_head", "free", "one"})
+    rewrite(task, [](json& summary) {
+      summary["what"] = "other words";
+      if (summary["settings"].contains("prediction")) summary["settings"]["prediction"] = "other words";
+      for (json& data : summary["data"]) data["notes"] = {"other words"};
+    });
+  CHECK(comparison_json(compared()) == table);
+  CHECK(refusal(results / "c_head") == refused);
+
+  rewrite("c_head", [](json& summary) { summary.erase("lags"); });
+  CHECK(refusal(results / "c_head") == fmt::format("`{}` was written by an older version of sysid; run the task again with --force",
+                                                   (results / "c_head").string()));
 }
 
 TEST_CASE("one model with two inputs for the same samples is weighed as two") {

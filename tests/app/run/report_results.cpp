@@ -11,6 +11,7 @@
 #include "app/session/reporting.hpp"
 #include "app/stored_pages.hpp"
 #include "report/figure/gnuplot.hpp"
+#include "report/file/record.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -127,6 +128,31 @@ TEST_CASE("fits of the same samples stand side by side on the page of a run, of 
   std::string const second = read_file(apart.folder.path() / "all.html");
   CHECK(second.find("log Bayes factor</th>") == std::string::npos);
   CHECK(second.find("2 different sets of samples, between which evidences cannot be compared") != std::string::npos);
+}
+
+TEST_CASE("predictions are found on the page of a run by their verb, not by the words of a summary") {
+  std::string const second = "again = predict posterior on dish with draws(12), seed = 2\n";
+  DishRun const run(false, text + second);
+  report_results(run.results, run.folder.path() / "all.html", false);
+  std::string const page = read_file(run.folder.path() / "all.html");
+  std::string const together = "<a href=\"#together\">";
+  CHECK(page.find(together) != std::string::npos);
+  for (char const* task : {"forecast", "again"}) {
+    auto summary = nlohmann::ordered_json::parse(read_file(run.results / task / "summary.json"));
+    CHECK(summary.at("verb") == "predict");
+    summary["what"] = "other words";
+    write_file(run.results / task / "summary.json", summary.dump(2));
+  }
+  report_results(run.results, run.folder.path() / "all.html", false);
+  CHECK(read_file(run.folder.path() / "all.html") == page);
+  for (char const* task : {"forecast", "again"}) {
+    fs::path const path = run.results / task / "report.cbor";
+    Report record = read_record(read_file(path), path);
+    record.what = "other words";
+    write_file(path, record_bytes(record));
+  }
+  report_results(run.results, run.folder.path() / "all.html", false);
+  CHECK(read_file(run.folder.path() / "all.html").find(together) != std::string::npos);
 }
 
 TEST_CASE("tasks that were interrupted before they had a result have a line on the page of their run") {
