@@ -68,6 +68,7 @@ using json = nlohmann::json;
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorNumbers, distribution, arguments, lower, upper, scale)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorInfo, name, unit, text, numbers, q5, q95)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FixedValue, name, value, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, notes, truth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
@@ -235,10 +236,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 
 // --- the whole
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, model_name, model_title, equations, model_text, resolved_text,
-                                   priors, data, draws, summary, verdict, findings, fit, predictions, modes, evidence, noise,
-                                   functions, forces, tables, selection, discovery, ledger, seed, place, command, unseeded,
-                                   settings, versions)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, model_name, model_title, equations, formulas, model_text,
+                                   resolved_text, priors, fixed, data, draws, summary, verdict, findings, fit, predictions, modes,
+                                   evidence, noise, functions, forces, tables, selection, discovery, ledger, seed, place, command,
+                                   unseeded, settings, versions)
 
 namespace {
 
