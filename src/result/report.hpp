@@ -13,6 +13,7 @@
 #include "result/draws.hpp"
 #include "result/evidence.hpp"
 #include "result/finding.hpp"
+#include "result/fixed_value.hpp"
 #include "result/function.hpp"
 #include "result/mode.hpp"
 #include "result/prediction.hpp"
@@ -92,9 +93,11 @@ struct Report {
   int lags = 0;                 // how many samples it looks back; 0: it reads none of the past
   std::string model_name, model_title;
   std::vector<std::string> equations;  // statements of the model in the language, one each; of a discovery, what it found
+  std::vector<std::string> formulas;   // the equations as MathML, one each; empty where one is shown as its text
   std::string model_text;              // the user's text
   std::string resolved_text;           // the file that reproduces this run, every setting spelt out
   std::vector<PriorInfo> priors;
+  std::vector<FixedValue> fixed;  // of a selection and of a discovery none
   std::vector<DataInfo> data;
   Draws draws;                   // may be empty (simulate, predict)
   std::vector<Summary> summary;  // of the draws, parameters first

@@ -4,11 +4,9 @@
 #include <string_view>
 #include <vector>
 
-namespace sysid {
+#include "result/fixed_value.hpp"
 
-struct FixedValue {
-  std::string name, value, unit;  // "added[bench]", "500", "g"
-};
+namespace sysid {
 
 /// Of the model of this name in a text: `parameter m [kg] = 3.2`, and for each of the data blocks a value `per experiment`, the
 /// block's own where it has one. Empty where the text has no such model.

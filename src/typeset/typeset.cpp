@@ -131,6 +131,21 @@ std::optional<ast::ModelStatement> model_statement(std::string_view text) {
   return model->statements.front();
 }
 
+std::vector<std::string> formulas(std::vector<std::string> const& statements) {
+  std::vector<std::string> out(statements.size());
+  std::vector<ast::ModelStatement> trees;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < statements.size(); ++i)
+    if (auto tree = model_statement(statements[i])) {
+      trees.push_back(std::move(*tree));
+      places.push_back(i);
+    }
+  std::vector<std::optional<std::string>> const displayed = mathml(trees);
+  for (std::size_t i = 0; i < displayed.size(); ++i)
+    if (displayed[i]) out[places[i]] = *displayed[i];
+  return out;
+}
+
 std::string mathml(ast::Expression const& expression) {
   Symbols symbols;
   Formula const formula(mathml_notation(), symbols);

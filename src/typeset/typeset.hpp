@@ -20,6 +20,9 @@ std::vector<std::optional<std::string>> mathml(std::vector<ast::ModelStatement> 
 /// The statement that a text is: "m*y'' + k*y = x", "observe force ~ normal(y, sd = s)". Nothing when it is none of a model.
 std::optional<ast::ModelStatement> model_statement(std::string_view text);
 
+/// The MathML of statements of one model that are given as texts, one each; empty where a text is none or has no formula.
+std::vector<std::string> formulas(std::vector<std::string> const& statements);
+
 /// An expression inside a line of a page.
 std::string mathml(ast::Expression const& expression);
 

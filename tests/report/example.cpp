@@ -8,6 +8,7 @@
 #include "core/numeric/random.hpp"
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/scores.hpp"
+#include "typeset/typeset.hpp"
 
 namespace sysid::example {
 
@@ -64,6 +65,7 @@ Report duffing(int draws) {
   report.model_name = "duffing";
   report.model_title = "Duffing's oscillator";
   report.equations = {"m*y'' + c*y' + k*y + k3*y^3 = x", "displacement ~ normal(y, precision = beta)"};
+  report.formulas = formulas(report.equations);
   report.model_text = "model duffing \"Duffing's oscillator\" {\n  m*y'' + c*y' + k*y + k3*y^3 = x   # <as printed>\n}\n";
   report.resolved_text = report.model_text + "posterior = fit duffing to bench.train with mh(samples = 25000)\n";
   report.seed = 1;

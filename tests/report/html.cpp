@@ -91,6 +91,7 @@ TEST_CASE("pages keep the rules whatever is in them") {
   std::string const bytes(raw, sizeof raw - 1);  // a zero byte among them
   hostile.task = hostile.what = hostile.model_title = hostile.model_text = hostile.command = bytes;
   hostile.equations = {bytes};
+  hostile.formulas = {""};
   hostile.findings.push_back({FindingCode::noise_size, Severity::error, {bytes}, bytes, bytes});
   hostile.summary[0].name = hostile.priors[0].name = hostile.summary[0].unit = bytes;
   hostile.data[0].notes = {bytes};
@@ -295,22 +296,26 @@ TEST_CASE("a posterior beyond its prior's 90 % is seen and said to be there") {
 
 TEST_CASE("parameters that are fixed stand beside those that are estimated") {
   Report report = example::duffing(20);
-  report.resolved_text =
-      "model duffing {\n input x [N]\n state y [m]\n parameter m0 [kg] = 3.2\n parameter added per experiment [kg] = 0\n"
-      " parameter c [N s/m] ~ log_uniform(1, 2)\n m0*y'' + c*y' = x\n observe y ~ normal(y, sd = 1)\n}\n"
-      "data bench {\n file \"a.csv\"\n constant added = 500 [g]\n}\n";
+  report.fixed = {{"m0", "3.2", "kg"}, {"added[bench]", "500", "g"}};
   std::string page = report_html(report, {});
   CHECK(page.find("m0 <span class=\"unit\">kg</span></th><td>fixed</td><td></td><td class=\"n\">3.2</td>") != std::string::npos);
   CHECK(page.find("added[bench] <span class=\"unit\">g</span></th><td>fixed</td><td></td><td class=\"n\">500</td>") !=
         std::string::npos);
   CHECK(test::broken_rules(page) == "");
-  // A prediction has no summary, and of the data blocks it does not know.
-  report.model_text = report.resolved_text.substr(0, report.resolved_text.find("data bench"));
-  report.resolved_text.clear();
+  // A prediction has no summary: they have a table of their own.
   report.summary.clear();
   page = report_html(report, {});
   CHECK(page.find("Fixed parameters") != std::string::npos);
-  CHECK(page.find("added[bench]") == std::string::npos);
+  CHECK(page.find("added[bench]") != std::string::npos);
+}
+
+TEST_CASE("an equation is shown as its formula, or as its text where it has none") {
+  Report report = example::duffing(20);
+  report.equations = {"k*y = x", "y^ < & \"", "late"};
+  report.formulas = {"<math display=\"block\" alttext=\"k*y = x\"><mi>k</mi></math>", ""};
+  std::string const page = report_html(report, {});
+  CHECK(page.find("<p>" + report.formulas[0] + "</p>\n<p><code>y^ &lt; &amp; &quot;</code></p>\n<p><code>late</code></p>") !=
+        std::string::npos);
 }
 
 TEST_CASE("names begin as they are written, words with a capital, and units have one form") {

@@ -17,6 +17,7 @@
 #include "report/page/terminal.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
+#include "typeset/fixed_values.hpp"
 #include "typeset/typeset.hpp"
 
 namespace sysid {
@@ -46,6 +47,16 @@ std::string quoted_for_shell(std::string const& word) {
   std::string out = word.starts_with('-') ? "'./" : "'";
   for (char const c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
+}
+
+/// The parameters of the model that are not estimated.
+std::vector<FixedValue> fixed_parameters(Report const& report) {
+  if (report.selection || report.discovery) return {};
+  std::vector<std::string> records;
+  for (DataInfo const& each : report.data) records.push_back(each.name.substr(0, each.name.find('.')));
+  // The file as it ran has the records too; a prediction has the model alone.
+  std::string const& text = report.resolved_text.empty() ? report.model_text : report.resolved_text;
+  return fixed_values(text, report.model_name, records);
 }
 
 }  // namespace
@@ -161,7 +172,9 @@ std::vector<PriorInfo> declared_priors(Session const& session, int model_index) 
   return priors;
 }
 
-void keep_result(Session& session, Task const& task, Report const& report) {
+void keep_result(Session& session, Task const& task, Report& report) {
+  report.formulas = formulas(report.equations);
+  report.fixed = fixed_parameters(report);
   std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
   session.out << terminal_summary(report);
   if (!undrawn.empty()) session.notices << fmt::format("{}: {}\n", task.name, undrawn_words(undrawn));

@@ -22,8 +22,9 @@ void add_repetition(Session const& session, Task const& task, Report& report);
 /// The priors of a model as they stand in its text, in the order of its declarations.
 std::vector<PriorInfo> declared_priors(Session const& session, int model);
 
-/// Writes the folder of a task's results and prints their summary; a notice names pictures that could not be drawn.
-void keep_result(Session& session, Task const& task, Report const& report);
+/// Writes the folder of a task's results and prints their summary; a notice names pictures that could not be drawn. The formulas
+/// and fixed values of the report are set from its texts first: the writers of results parse nothing.
+void keep_result(Session& session, Task const& task, Report& report);
 
 /// SHA-256 of a model's text.
 std::string model_digest(Session const& session, std::string const& model);

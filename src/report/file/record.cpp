@@ -68,6 +68,7 @@ using json = nlohmann::json;
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorNumbers, distribution, arguments, lower, upper, scale)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorInfo, name, unit, text, numbers, q5, q95)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FixedValue, name, value, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, inputs_sha256, notes,
                                    truth)
@@ -237,9 +238,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 // --- the whole
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, verb, prediction_rule, measured_past, lags, model_name, model_title,
-                                   equations, model_text, resolved_text, priors, data, draws, summary, verdict, findings, fit,
-                                   predictions, modes, evidence, noise, functions, forces, tables, selection, discovery, ledger,
-                                   seed, place, command, unseeded, settings, versions)
+                                   equations, formulas, model_text, resolved_text, priors, fixed, data, draws, summary, verdict,
+                                   findings, fit, predictions, modes, evidence, noise, functions, forces, tables, selection,
+                                   discovery, ledger, seed, place, command, unseeded, settings, versions)
 
 namespace {
 

@@ -8,7 +8,6 @@
 #include "core/text/number.hpp"
 #include "core/text/xml.hpp"
 #include "report/page/html_words.hpp"
-#include "report/page/typeset.hpp"
 #include "report/text/summary_text.hpp"
 
 namespace sysid {

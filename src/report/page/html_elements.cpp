@@ -12,7 +12,6 @@
 #include "core/text/utf8.hpp"
 #include "core/text/xml.hpp"
 #include "report/figure/gnuplot.hpp"
-#include "report/page/typeset.hpp"
 
 namespace sysid {
 

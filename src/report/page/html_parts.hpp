@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "report/page/html_elements.hpp"
-#include "typeset/fixed_values.hpp"
 
 namespace sysid {
 
@@ -13,8 +12,6 @@ namespace sysid {
 /// Parameters from prior to posterior, the evidence, and the tables of this kind of task.
 std::string result_html(Report const& report);
 std::string modes_html(Report const& report);
-/// Parameters that are not estimated; empty where there is none, of selections and of discoveries.
-std::vector<FixedValue> fixed_parameters(Report const& report);
 
 /// Names stay as they are written; words begin with a capital.
 enum class TitleBegins { with_a_word, with_a_name };

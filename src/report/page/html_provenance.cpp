@@ -5,7 +5,6 @@
 
 #include "core/text/number.hpp"
 #include "core/text/xml.hpp"
-#include "report/page/typeset.hpp"
 
 namespace sysid {
 

@@ -10,7 +10,6 @@
 #include "core/text/xml.hpp"
 #include "diagnostics/contraction.hpp"
 #include "report/page/html_words.hpp"
-#include "report/page/typeset.hpp"
 #include "report/text/report_text.hpp"
 #include "report/text/summary_text.hpp"
 
@@ -68,7 +67,7 @@ std::string parameters(Report const& report) {
       row.push_back(pretty_number(cell));
     table.rows.push_back(std::move(row));
   }
-  for (FixedValue const& each : fixed_parameters(report)) {
+  for (FixedValue const& each : report.fixed) {
     table.rows.push_back({with_unit(each.name, each.unit), "fixed", "", number_html(each.value)});
     table.rows.back().resize(table.header.size());
   }
@@ -85,15 +84,6 @@ std::string parameters(Report const& report) {
 }
 
 }  // namespace
-
-std::vector<FixedValue> fixed_parameters(Report const& report) {
-  if (report.selection || report.discovery) return {};
-  std::vector<std::string> records;
-  for (DataInfo const& each : report.data) records.push_back(each.name.substr(0, each.name.find('.')));
-  // The file as it ran has the records too; a prediction has the model alone.
-  std::string const& text = report.resolved_text.empty() ? report.model_text : report.resolved_text;
-  return fixed_values(text, report.model_name, records);
-}
 
 std::string result_html(Report const& report) {
   std::string out = parameters(report);

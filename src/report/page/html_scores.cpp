@@ -9,7 +9,6 @@
 #include "core/text/xml.hpp"
 #include "diagnostics/scores.hpp"
 #include "report/page/html_words.hpp"
-#include "report/page/typeset.hpp"
 
 namespace sysid {
 

@@ -9,7 +9,6 @@
 #include "core/text/xml.hpp"
 #include "report/page/html_parts.hpp"
 #include "report/page/html_words.hpp"
-#include "report/page/typeset.hpp"
 #include "report/text/report_text.hpp"
 
 namespace sysid {
@@ -38,7 +37,10 @@ std::string model_html(Report const& report) {
   std::string out;
   if (!report.equations.empty()) {
     out += "<div class=\"equations\" role=\"group\" tabindex=\"0\" aria-label=\"Equations\">\n";
-    for (std::string const& equation : typeset(report.equations)) out += fmt::format("<p>{}</p>\n", equation);
+    for (std::size_t i = 0; i < report.equations.size(); ++i) {
+      bool const formula = i < report.formulas.size() && !report.formulas[i].empty();
+      out += fmt::format("<p>{}</p>\n", formula ? report.formulas[i] : code(report.equations[i]));
+    }
     out += "</div>\n";
   }
   HtmlTable priors{"Priors", {"parameter", "prior"}, {}, 2};
@@ -49,8 +51,7 @@ std::string model_html(Report const& report) {
   // With the others where these have a table of their own.
   HtmlTable fixed{"Fixed parameters", {"parameter", "value"}, {}, 1};
   if (report.summary.empty())
-    for (FixedValue const& each : fixed_parameters(report))
-      fixed.rows.push_back({with_unit(each.name, each.unit), number_html(each.value)});
+    for (FixedValue const& each : report.fixed) fixed.rows.push_back({with_unit(each.name, each.unit), number_html(each.value)});
   if (!fixed.rows.empty()) out += html(fixed);
   return out + folded("The model as it was written", report.model_text);
 }

@@ -1,0 +1,12 @@
+// Apart from the report, so that what reads it from a text includes nothing else of results.
+#pragma once
+#include <string>
+
+namespace sysid {
+
+/// A parameter that is not estimated, as its file states it.
+struct FixedValue {
+  std::string name, value, unit;  // "added[bench]", "500", "g"
+};
+
+}  // namespace sysid
