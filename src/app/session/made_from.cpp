@@ -47,8 +47,8 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   return Finding{FindingCode::made_from_earlier,
                  Severity::warning,
                  {source},
-                 fmt::format("this was made from an earlier run of `{}` than the one stored beside it", source),
-                 "make it again: `sysid predict FILE --force`"};
+                 fmt::format("this prediction used an earlier run of `{}` than the one stored beside it", source),
+                 "run it again: `sysid predict FILE --force`"};
 }
 
 }  // namespace sysid
