@@ -110,7 +110,7 @@ Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention) 
 
 Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention) {
   return error("E4012", mention, fmt::format("{}: `{}` is beyond the range of floating-point numbers", place(cell), shown(text)),
-               "correct the number");
+               "the largest number is 1.8e308; a missing sample of a measured column is an empty cell or NA");
 }
 
 Diagnostic not_a_count(Cell const& cell, double value, Mention mention) {

@@ -80,7 +80,7 @@ Findings band_findings(Prediction const& prediction, int failed, int failed_else
          {quantity.name},
          fmt::format("{}{} is undefined somewhere along {} of {} trajectories; its band is that of the others", quantity.name,
                      several ? " on " + prediction.experiment : std::string(), left_out, widest.draws),
-         "look for a root or a logarithm of what may be negative, or a division by what may be zero"});
+         "check for a root or a logarithm of a negative number, or a division by zero"});
   }
   return findings;
 }

@@ -64,8 +64,8 @@ void check_motion(ChainReport const& report, Findings& findings) {
                                     : stuck.size() == 1 ? percent(most)
                                                         : "at most " + percent(most),
                                     report.adaptive ? "" : ", because the fixed proposal does not fit the posterior"),
-                        report.adaptive ? "let it adapt longer (burn_in), and look at the failures the run counted"
-                                        : "use proposal = adaptive, which learns its size and shape during burn-in"});
+                        report.adaptive ? "let it adapt longer (burn_in), and check the counted failures"
+                                        : "use proposal = adaptive, which adapts its size and shape during burn-in"});
   }
   if (!poor.empty()) {
     std::uint64_t least = least_distinct;
@@ -88,7 +88,7 @@ void check_agreement(ChainReport const& report, Findings& findings) {
   findings.push_back({loud ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
                       loud ? fmt::format("the chains disagree: R-hat of {} is far above {}", bad.text, rhat_bar)
                            : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_bar),
-                      loud ? "do not use the means and sds; run longer chains, and look for a second mode or for parameters that "
+                      loud ? "do not use the means and sds; run longer chains, and check for a second mode or for parameters that "
                              "the data cannot separate"
                            : "run longer chains (samples)"});
 }
@@ -120,7 +120,7 @@ void check_defined(ChainReport const& report, Findings& findings) {
   if (bad.empty()) return;
   findings.push_back({FindingCode::no_diagnostics, Severity::error, bad.names,
                       fmt::format("convergence cannot be judged, because all draws are equal, too few or not finite: {}", bad.text),
-                      "run longer chains (samples), and look at the failures the run counted"});
+                      "run longer chains (samples), and check the counted failures"});
 }
 
 }  // namespace

@@ -41,14 +41,14 @@ std::string prediction_verdict(Report const& report, bool missed) {
                        [&](Finding const& each) { return each.code == code && each.severity == severity; });
   };
   if (has(FindingCode::from_doubtful_fit, Severity::error))
-    return "do not use these bands: the fit that they are drawn from has failed its checks";
+    return "do not use these bands: the fit whose draws they use failed its checks";
   if (has(FindingCode::worse_than_the_mean, Severity::error))
     return "do not use these bands: the mean of the record predicts better";
   if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
   if (report.ledger.failed() > 0) return "use with care: some trajectories do not stay finite";
   if (has(FindingCode::worse_than_the_mean, Severity::warning)) return "use with care: the mean of the record predicts better";
   if (missed) return "use with care: the data lie outside their bands";
-  if (has(FindingCode::from_doubtful_fit, Severity::warning)) return "use with care, as the fit that this is drawn from";
+  if (has(FindingCode::from_doubtful_fit, Severity::warning)) return "use with care: the fit whose draws are used has warnings";
   auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
                                       [](Finding const& each) { return each.severity == Severity::warning; });
   if (warnings > 0) return with_care(warnings);
@@ -62,7 +62,7 @@ bool add_coverage(Report& report, bool fed_back) {
       if (score.name == "nmse" && score.value > as_bad_as_the_mean(measured_samples(report, line)))
         report.findings.push_back(worse_than_the_mean(
             score.value > useless_nmse ? Severity::error : Severity::warning, {line.channel, line.experiment}, line.what(),
-            score.value, "look at units, signs and columns of this record, at where it starts, and at the verdict of the fit"));
+            score.value, "check units, signs and columns of this record, its start, and the verdict of the fit"));
   for (FitLine const& line : fit_lines(report))
     for (Score const& score : line.scores) {
       if (score.name != "coverage_95" || !misses(score.value, static_cast<double>(measured_samples(report, line)))) continue;
@@ -72,9 +72,10 @@ bool add_coverage(Report& report, bool fed_back) {
            Severity::warning,
            {line.channel, line.experiment},
            fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
-           fed_back ? "a free run leaves out the noise that enters later samples: its bands include the parameters and the noise "
-                      "of each sample alone"
-                    : "the model or its noise does not describe these data: look at the residuals, and at inputs outside the range "
+           fed_back ? "a free run does not carry the noise of earlier samples forward: its bands include only the parameters and "
+                      "the noise "
+                      "of each sample"
+                    : "the model or its noise does not describe these data: check the residuals, and inputs outside the range "
                       "that was fitted"});
     }
   return any;

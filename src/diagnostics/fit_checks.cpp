@@ -85,7 +85,7 @@ Findings check_use(Model const& model, StartRule const& start) {
                           {name},
                           fmt::format("{} enters initial values alone, which `start = {}` replaces: its posterior is its prior",
                                       name, start_text(start)),
-                          "leave the start to the model, `start = record`, or leave the parameter out"});
+                          "use `start = record`, which starts from the initial values, or remove the parameter"});
     else
       findings.push_back({FindingCode::unused_parameter,
                           Severity::warning,

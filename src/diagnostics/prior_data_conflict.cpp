@@ -13,7 +13,7 @@ std::string times_apart(double ratio) {
 
 Finding prior_far_from_data(std::vector<std::string> names, std::string message) {
   return {FindingCode::prior_far_from_data, Severity::warning, std::move(names), std::move(message),
-          "look at the units of the data columns, and at priors that are wide or misplaced"};
+          "check the units of the data columns, and priors that are wide or misplaced"};
 }
 
 }  // namespace sysid

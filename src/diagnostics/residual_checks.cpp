@@ -154,7 +154,7 @@ double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& left
 
 // coloured: what the fit leaves is more than noise.
 void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
-  constexpr char const* look = "look at units, signs and columns, at the initial values and the priors, then at the model";
+  constexpr char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
   double const left = unexplained(of, spikes(of));
   if (left > as_bad_as_the_mean(of.observed.size()))
     findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.names(),
@@ -179,7 +179,7 @@ void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
   findings.push_back({FindingCode::samples_far_off, Severity::warning, of.names(),
                       fmt::format("{} of {} {} far from all others ({})", counted(places.size(), "sample"), of.name(),
                                   places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
-                      "look at these rows: leave out what is no measurement (an empty cell), or state noise with heavy "
+                      "check these rows: empty the cells that are not measurements, or use noise with heavy "
                       "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
@@ -187,13 +187,12 @@ void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Find
   ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (!size.fires()) return;
-  char const* help = "the noise is larger than stated, or the model is incomplete: estimate the noise, then look at the residuals";
+  char const* help = "the noise is larger than stated, or the model is incomplete: estimate the noise, then check the residuals";
   if (of.noise_is_estimated())
-    help =
-        "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: look at the residuals";
+    help = "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: check the residuals";
   else if (size.per_sample < 1)
     help = "the stated noise is too large: estimate it";
-  if (with_outliers) help = "a few samples far off make the noise look larger: look at these first";
+  if (with_outliers) help = "a few outlying samples make the noise appear larger: check these first";
   findings.push_back(
       {FindingCode::noise_size, Severity::error, of.names(),
        fmt::format("the residuals of {} do not have the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
@@ -289,7 +288,7 @@ void name_held(Report const& report, Findings& findings) {
   for (Finding& each : findings)
     if (each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean)
       each.help +=
-          fmt::format("; {} {} as wide as the prior: is it right?", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
+          fmt::format("; {} {} as wide as the prior: check this prior", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
 }
 
 Findings check_priors(Report const& report) {

@@ -70,8 +70,10 @@ Finding shaped(SolverSettings const& solver, bool chosen, std::vector<std::strin
                       solver.finer_words(), what),
           chosen ? fmt::format("fit again with `{}` or finer", solver.finer().option())
           : solver.fixed_step()
-              ? fmt::format("fit again with `{}` or more, or leave `substeps` out and it is chosen", solver.finer().option())
-              : fmt::format("fit again with `{}`, or leave the tolerances out and they are chosen", solver.finer().option())};
+              ? fmt::format("fit again with `{}` or more, or remove `substeps`, which is then chosen automatically",
+                            solver.finer().option())
+              : fmt::format("fit again with `{}`, or remove the tolerances, which are then chosen automatically",
+                            solver.finer().option())};
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ Finding interrupted_finding(std::string const& what) {
           Severity::error,
           {},
           "the run was interrupted: " + what,
-          "go on with --resume: the result is that of an uninterrupted run, byte for byte"};
+          "continue with --resume: the result will be identical to that of an uninterrupted run"};
 }
 
 Findings by_weight(Findings findings) {
@@ -31,7 +31,7 @@ Findings by_weight(Findings findings) {
 }
 
 std::string with_care(std::ptrdiff_t warnings) {
-  return fmt::format("use with care: {} to look at", warnings == 1 ? "one thing" : fmt::format("{} things", warnings));
+  return fmt::format("use with care: {}", warnings == 1 ? "1 warning" : fmt::format("{} warnings", warnings));
 }
 
 Verdict judge(Findings const& findings) {

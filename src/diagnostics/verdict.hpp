@@ -14,7 +14,7 @@ struct Verdict {
   std::string text;   // one or more lines in plain words, no trailing newline
 };
 
-/// "use with care: 2 things to look at".
+/// "use with care: 2 warnings".
 std::string with_care(std::ptrdiff_t warnings);
 
 /// Of a run that was stopped; what: "these are the draws so far".

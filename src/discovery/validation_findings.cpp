@@ -35,10 +35,9 @@ std::optional<Finding> given_up(JudgedReport const& judged) {
   if (names.empty()) return std::nullopt;
   return Finding{
       FindingCode::not_refitted, Severity::warning, names,
-      fmt::format(
-          "{} given up: implicit equations are simulated one after the other, and {} more of that than is spent on a judgement",
-          quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
-      "take fewer rows, or a smaller `top`, or leave the implicit terms out of the dictionary"};
+      fmt::format("{} skipped: implicit equations are simulated one after the other, and {} more simulations than the limit",
+                  quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
+      "use fewer rows, or a smaller `top`, or remove the implicit terms from the dictionary"};
 }
 
 std::optional<Finding> idle_terms(JudgedStructure const& best) {
@@ -53,8 +52,8 @@ std::optional<Finding> idle_terms(JudgedStructure const& best) {
   return Finding{FindingCode::term_idle, Severity::warning, std::move(names),
                  fmt::format("in the simulated fit the {} of {} {} less than two sds from zero",
                              one ? "coefficient" : "coefficients", fmt::join(idle, ", "), one ? "is" : "are"),
-                 fmt::format("leave {0} out of the dictionary, or take a record in which {1} more", one ? "it" : "them",
-                             one ? "it moves" : "they move")};
+                 fmt::format("remove {0} from the dictionary, or use a record in which {1} more", one ? "it" : "them",
+                             one ? "it varies" : "they vary")};
 }
 
 std::optional<Finding> lost_free_run(JudgedReport const& judged) {
@@ -91,7 +90,7 @@ void add_overestimated_noise(JudgedStructure const& best, Findings& findings) {
                           fmt::format("the residual of `{}` in simulation is {} times the noise that the regression assumed: the "
                                       "sds of the regression are overestimated",
                                       each.channel, significant(each.residual / each.noise, 3)),
-                          fmt::format("say what it is: `noise({} = {}{})`", each.channel, significant(each.residual, 3),
+                          fmt::format("state the noise: `noise({} = {}{})`", each.channel, significant(each.residual, 3),
                                       each.unit.empty() ? "" : fmt::format(" [{}]", each.unit))});
 }
 
@@ -129,7 +128,7 @@ Findings judged_findings(JudgedReport const& judged) {
     if (costly) return findings;
     add(FindingCode::not_refitted, Severity::warning, {},
         fmt::format("no structure could be judged by simulation: {}", best.failure),
-        "the coefficients are those of the regression: look at the record's length and step, and at terms that diverge");
+        "the coefficients are those of the regression: check the length and step of the record, and terms that diverge");
     return findings;
   }
   if (auto idle = idle_terms(best)) findings.push_back(std::move(*idle));
@@ -147,7 +146,7 @@ Findings judged_findings(JudgedReport const& judged) {
     add(FindingCode::draws_not_bounded, Severity::warning, {},
         fmt::format("{} of {} draws of the coefficients do not stay within ten times the range of the record in a free run",
                     best.draws - best.bounded, best.draws),
-        "a term may destabilise where the record hardly goes: leave it out, or take a record of larger amplitude");
+        "a term may destabilise the motion where the record has few samples: remove it, or use a record of larger amplitude");
   if (auto lost = lost_free_run(judged)) findings.push_back(std::move(*lost));
   if (explains_motion(judged)) add_overestimated_noise(best, findings);
   return findings;

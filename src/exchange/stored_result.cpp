@@ -16,7 +16,7 @@ StoredResult read_stored_result(std::filesystem::path const& folder) {
   bool const whole = stored.summary.is_object() && text("task") && text("what") && text("model") && object("versions") &&
                      object("parameters") && stored.summary.contains("seed") && stored.summary["seed"].is_number_unsigned();
   if (!whole)
-    throw refused(fmt::format("`{}` is no result of a task", (folder / "summary.json").string()),
+    throw refused(fmt::format("`{}` is not the result of a task", (folder / "summary.json").string()),
                   "run the task again with --force");
   if (!has_deciding_fields(stored.summary)) throw older_version(folder);
   return stored;
@@ -34,7 +34,7 @@ Draws stored_draws(StoredResult const& stored) {
   for (Chain const& chain : draws.chains)
     if (chain.values.size() != length)
       throw refused(fmt::format("the chains in `{}` are not of one length", stored.folder.string()),
-                    "a file was cut short: run the fit again with --force");
+                    "a file is truncated: run the fit again with --force");
   if (length == 0)
     throw refused(fmt::format("there are no draws in `{}`", stored.folder.string()), "run the fit again with --force");
   return draws;

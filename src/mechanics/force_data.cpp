@@ -90,7 +90,7 @@ void add_differentiated(ForceModel const& link, Displacements const& samples, Di
                         std::vector<double> const& force, Experiment const& experiment, RestoringForce& out) {
   out.why_no_data = "the samples are not equally far apart";
   if (!equidistant(experiment.time)) return;
-  out.why_no_data = "the smoothing that the noise of the samples asks for would bend the force";
+  out.why_no_data = "smoothing against the noise of the samples would distort the force";
   double const step = experiment.time[1] - experiment.time[0], spread = spread_of(force);
   double noise = 0;  // of the force, where second differences have none but that of the samples
   for (std::size_t k = 0; k < samples.held.size(); ++k) {
@@ -191,7 +191,8 @@ void add_data(ForceModel const& link, std::vector<MeasuredMotion> const& motions
               Experiment const& experiment, RestoringForce& out) {
   auto const& held = link.link().held;
   if (held.empty()) {
-    out.why_no_data = "what holds these masses does not divide them, so that their motion does not tell the forces apart";
+    out.why_no_data =
+        "the connections of these masses do not separate them, so their motion does not determine the forces one by one";
     return;
   }
   std::vector<double> force;

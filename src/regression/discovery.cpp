@@ -59,7 +59,7 @@ void add_interchangeable(Equation const& equation, Eigen::MatrixXd const& joint,
       if (std::min(one, other) < 0.05 || any < 0.9 || both > 0.25 * std::min(one, other)) continue;
       Concern concern{.kind = Concern::Kind::interchangeable, .terms = {a, b}, .value = any};
       concern.clause = fmt::format(
-          "{} stand for each other: one is needed with probability {:.2f}, which one the data do not say "
+          "{} can replace each other: one is needed with probability {:.2f}, but the data do not show which one "
           "({:.2f} and {:.2f})",
           names_of(equation, {a, b}), any, one, other);
       concerns.push_back(std::move(concern));
@@ -212,7 +212,7 @@ class Finder {
     }
     if (!choice.converged) {
       Concern concern{.kind = Concern::Kind::no_convergence, .value = static_cast<double>(choice.iterations)};
-      concern.clause = fmt::format("the choice of terms had not settled after {} iterations", choice.iterations);
+      concern.clause = fmt::format("the selection of terms did not converge in {} iterations", choice.iterations);
       found_.concerns.push_back(std::move(concern));
     }
   }
@@ -223,7 +223,7 @@ class Finder {
     if (found_.noise_ratio < unexplained_above || share < unexplained_share) return;
     Concern concern{.kind = Concern::Kind::unexplained, .value = found_.noise_ratio};
     concern.clause = fmt::format(
-        "what the terms leave unexplained is {:.3g} times what the measurement noise accounts for: a forcing or a term is "
+        "the residual is {:.3g} times what the measurement noise explains: a forcing or a term is "
         "missing{}",
         found_.noise_ratio, found_.own_noise > 0 ? ", or a recorded input is noisy itself" : "");
     found_.concerns.push_back(std::move(concern));
@@ -243,8 +243,9 @@ class Finder {
     double const worth = 1 + 2 * sum;
     if (portmanteau < far_from_white || worth < correlated_above) return;
     Concern concern{.kind = Concern::Kind::correlated, .value = worth};
-    concern.clause = fmt::format("what the terms leave is correlated from window to window: {} windows are worth about {:.0f}",
-                                 rows, static_cast<double>(rows) / worth);
+    concern.clause =
+        fmt::format("the residual is correlated from window to window: {} windows are worth about {:.0f} independent ones", rows,
+                    static_cast<double>(rows) / worth);
     found_.concerns.push_back(std::move(concern));
   }
 

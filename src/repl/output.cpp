@@ -23,12 +23,12 @@ std::string at_the_prompt(std::string text) {
   replace_all(text, "sysid explain CODE, for each word in brackets", "`help WORD`, for each word in brackets");
   replace_all(text, "sysid explain ", "help ");
   replace_all(text, "`./sysid list ", "`list ");
-  replace_all(text, "go on with --resume", "go on with `resume`");
-  replace_all(text, "--resume goes on from there", "`resume` goes on from there");
+  replace_all(text, "continue with --resume", "continue with `resume`");
+  replace_all(text, "--resume continues from there", "`resume` continues from there");
   replace_all(text, "--resume starts it again", "`resume` starts it again");
   replace_all(text, "add --force to replace them, or -o DIR to write elsewhere",
               "give the task another name, or start the prompt with --force or another -o");
-  replace_all(text, "go on with `resume`, or start again with --force",
+  replace_all(text, "continue with `resume`, or start again with --force",
               "give the task another name, or start the prompt with --force or another -o");
   return text;
 }
@@ -97,7 +97,8 @@ bool Output::guarded(Source const& source, std::function<bool()> const& act) {
   } catch (std::bad_alloc const&) {
     return refuse("out of memory");
   } catch (std::exception const& error) {
-    return refuse(fmt::format("this is an error in sysid, not in your file: {}", error.what()), "please `save` the work and report it with that file");
+    return refuse(fmt::format("this is an error in sysid, not in your file: {}", error.what()),
+                  "please `save` the work and report it with that file");
   }
 }
 

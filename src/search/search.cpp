@@ -117,12 +117,12 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
     return Finding{
         FindingCode::flat_direction, Severity::warning, names,
         fmt::format("the data do not determine a combination of {}: its posterior is as wide as the prior", listed(names)),
-        "fix an amplitude or a length, or measure what tells the functions apart"};
+        "fix an amplitude or a length, or measure a quantity that distinguishes the functions"};
   return Finding{FindingCode::flat_direction, Severity::warning, names,
                  fmt::format("the data do not determine a combination of {}: moving {} together leaves the fit nearly unchanged, "
                              "and the posterior is as wide there as the prior",
                              listed(names), listed(moves)),
-                 "fix one of them, give them narrower priors, or measure what tells them apart"};
+                 "fix one of them, give them narrower priors, or measure a quantity that distinguishes them"};
 }
 
 void add_findings(Objective const& objective, SearchResult& result) {
@@ -135,7 +135,7 @@ void add_findings(Objective const& objective, SearchResult& result) {
          {},
          fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
                      describe(objective.target, modes[i])),
-         "look at both solutions: add data or prior knowledge that tells them apart, or run more chains and report both"});
+         "compare both solutions: add data or prior knowledge that distinguishes them, or run more chains and report both"});
   }
   auto const parameters = static_cast<std::size_t>(objective.dimension());
   for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters)
@@ -211,11 +211,11 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
     result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(most_passes * breadth.draws));
     if (begun) {  // draws are finite, but all climbs from them end where the likelihood does
       std::string const places = failed_places(context.ledger);
-      result.failure->message = fmt::format("all climbs from draws of the prior end where the model cannot be simulated{}{}",
+      result.failure->message = fmt::format("all local searches from prior draws end where the model cannot be simulated{}{}",
                                             places.empty() ? "" : ": ", places);
       result.failure->help =
-          "look at the units of the data and at the priors: the data pull the parameters out of the range in which the model has a "
-          "solution; or let the solver choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff";
+          "check the units of the data and the priors: the data move the parameters out of the range in which the model has a "
+          "solution; or let the solver choose its steps: `solver = dopri5`, or `solver = cvode` if the model is stiff";
     }
     return result;
   }
@@ -336,8 +336,8 @@ Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
           Severity::error,
           {},
           fmt::format("the likelihood is finite at none of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
-          "look at this part of the equations, narrow the priors towards values for which the model can be solved, or let the "
-          "solver choose its steps: `solver = dopri5`, `solver = cvode` where the model is stiff"};
+          "check this part of the equations, narrow the priors towards values for which the model can be solved, or let the "
+          "solver choose its steps: `solver = dopri5`, or `solver = cvode` if the model is stiff"};
 }
 
 }  // namespace sysid

@@ -74,7 +74,7 @@ TEST_CASE("paragraphs and list items of a page are filled anew; what has a layou
   CHECK(filled("short\nlines\n", 80) == "short lines\n");
   CHECK(filled("- an item of many words\n  that goes on\n- the next\n12. a number\nprose\n", 14) ==
         "- an item of\n  many words\n  that goes on\n- the next\n12. a number\nprose\n");
-  CHECK(filled("Bad:\n    let k = 1\nMended:\n", 80) == "Bad:\n    let k = 1\nMended:\n");
+  CHECK(filled("Bad:\n    let k = 1\nCorrected:\n", 80) == "Bad:\n    let k = 1\nCorrected:\n");
 }
 
 TEST_CASE("the sentence of a row goes on below itself, or below its row where it has too little room") {

@@ -105,7 +105,7 @@ TEST_CASE("samples far off are named by their rows in the file") {
     json const findings = findings_of_late_rows(stated, value);
     REQUIRE(find(findings, "samples_far_off") != nullptr);
     REQUIRE(find(findings, "noise_size") != nullptr);
-    CHECK(find(findings, "noise_size")->at("help").get<std::string>().find("look at these first") != std::string::npos);
+    CHECK(find(findings, "noise_size")->at("help").get<std::string>().find("check these first") != std::string::npos);
   }
 }
 

@@ -18,7 +18,7 @@ TEST_CASE("warnings and notes pass but are shown") {
   CHECK(verdict.pass);
   CHECK(verdict.exit_code == 0);
   CHECK(verdict.text ==
-        "use with care: one thing to look at\n  warning[second_mode]: a second mode\n    what to do: look at both\n"
+        "use with care: 1 warning\n  warning[second_mode]: a second mode\n    what to do: look at both\n"
         "  note[reads_noise]: a note\n  more: sysid explain CODE, for each word in brackets");
 }
 

@@ -83,7 +83,7 @@ TEST_CASE("terms that are nearly one are named") {
   DiscoveryAnswer const near = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1", "threshold(share = 1e-9), seed = 1"),
                                    Made(900, {.offset = 20}).csv());
   REQUIRE_FALSE(near.finding("terms_nearly_collinear").is_null());
-  CHECK(contains(near.finding("terms_nearly_collinear").at("message"), "barely told apart"));
+  CHECK(contains(near.finding("terms_nearly_collinear").at("message"), "can hardly be distinguished"));
   CHECK(near.exit == 0);
 }
 

@@ -170,7 +170,7 @@ TEST_CASE("two channels of one state are fitted together, and noise that was tak
   json const finding = both.finding("noise_overestimated");
   CHECK(finding.at("severity") == "note");
   CHECK(contains(finding.at("message"), "`speed`"));
-  std::string const help = finding.at("help"), begin = "say what it is: `";
+  std::string const help = finding.at("help"), begin = "state the noise: `";
   REQUIRE(help.starts_with(begin + "noise(speed = 0.00"));
   // The advice taken, there is nothing left to say, and the regression's residual is its noise.
   std::string const said = help.substr(begin.size(), help.size() - begin.size() - 1);
@@ -228,7 +228,7 @@ TEST_CASE("implicit equations that would cost too much are given up at once, and
   json const finding = answer.finding("not_refitted");
   REQUIRE_FALSE(finding.is_null());
   CHECK(finding.at("severity") == "warning");
-  CHECK(contains(finding.at("message"), "given up: implicit equations are simulated one after the other"));
+  CHECK(contains(finding.at("message"), "skipped: implicit equations are simulated one after the other"));
   for (json const& structure : judged(answer).at("structures"))
     CHECK(contains(structure.at("failure"), "skipped: the refit of this implicit equation"));
   CHECK_FALSE(answer.source.empty());

@@ -61,7 +61,7 @@ TEST_CASE("an export refuses folders without draws, files that are there and res
           find_results(results / "renamed");
         }).ends_with("renamed` was written by an older version of sysid"));
   write_file(results / "renamed/summary.json", "{\"task\": 1}");
-  CHECK(refusal<UserError>([&] { find_results(results / "renamed"); }).ends_with("summary.json` is no result of a task"));
+  CHECK(refusal<UserError>([&] { find_results(results / "renamed"); }).ends_with("summary.json` is not the result of a task"));
 }
 
 TEST_CASE("the same groups are the same bytes, and two variables of one name get two") {

@@ -207,7 +207,7 @@ TEST_CASE("degenerate cases end in words") {
     REQUIRE(result.failure);
     CHECK(result.failure->message ==
           "10 of 1000 draws from the priors could be simulated after 10 simulations: `simulations = 10` is reached");
-    CHECK(result.failure->help == "allow more, or take fewer `particles`");
+    CHECK(result.failure->help == "allow more, or use fewer `particles`");
   }
   SUBCASE("nothing can be simulated") {
     Toy const toy({{"broken", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return std::nan(""); }}});

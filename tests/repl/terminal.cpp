@@ -119,7 +119,7 @@ TEST_CASE("Ctrl-C stops a run and keeps its draws; what is not saved is kept, to
   terminal.until("%", 60);
   usleep(1500000);
   terminal.type("\x03");
-  CHECK(shows(terminal.until(terminal.prompt, 60), "go on with `resume`"));
+  CHECK(shows(terminal.until(terminal.prompt, 60), "continue with `resume`"));
   CHECK(shows(terminal.enter("mean(k)"), "[N/m]"));
   terminal.type("\x04");
   CHECK(terminal.ended() == 0);

@@ -25,7 +25,7 @@ TEST_CASE("the terminal shows aligned columns under the user's names, failures a
         "100000 simulations, 3 failed\n"
         "  3 x non-finite: k3*y^3 at duffing.sysid:12 (first at t = 0.01250 s)\n"
         "\n"
-        "verdict: use with care: one thing to look at\n"
+        "verdict: use with care: 1 warning\n"
         "  warning[second_mode]: a second mode holds 2 %\n"
         "    what to do: look at the starts\n"
         "  more: sysid explain second_mode\n");

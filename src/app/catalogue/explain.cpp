@@ -87,7 +87,7 @@ class PageReader {
       }
       if (!in_section_ || heads_section(line)) continue;
       if (line == "Bad:") into_ = &ErrorSection::bad;
-      if (line == "Mended:") into_ = &ErrorSection::mended;
+      if (line == "Corrected:") into_ = &ErrorSection::mended;
       sections_.back().body += fmt::format("{}\n", line);
     }
     return std::move(sections_);

@@ -22,9 +22,9 @@ struct Example {
 
 /// A section `## E2001: title`, or of a finding: `## chains_disagree: title`.
 ///
-/// Examples stand behind a line `Bad:` or `Mended:`. A block "sysid file" is a whole file; a block "sysid" continues the frame, the
-/// last block outside sections that is a "sysid inside" (its model takes the statements) or a "sysid above" (the lines follow it).
-/// Blocks "csv NAME" and "module NAME" are files beside it, of the section or of the frame.
+/// Examples stand behind a line `Bad:` or `Corrected:`. A block "sysid file" is a whole file; a block "sysid" continues the frame,
+/// the last block outside sections that is a "sysid inside" (its model takes the statements) or a "sysid above" (the lines follow
+/// it). Blocks "csv NAME" and "module NAME" are files beside it, of the section or of the frame.
 struct ErrorSection {
   std::string code;
   std::string title;

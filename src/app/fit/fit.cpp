@@ -56,7 +56,7 @@ class Fit {
     if (std::shared_ptr<json const> const stored = checkpoint_.stored()) {
       preparation_ = restore_preparation(stored->at("preparation"));
       if (stored->contains("state")) context.resume = std::make_shared<json const>(stored->at("state"));
-      session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+      session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
     } else if (!prepare()) {
       return stop_early(session_, task_, checkpoint_);
     }
@@ -108,8 +108,8 @@ class Fit {
     SearchSolver const search = search_solver(make, what_.solver, seed_);
     if (context.stop_requested()) return false;
     if (search.solver != what_.solver)
-      session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws leave the range of numbers\n",
-                                      task_.name, accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
+      session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws overflow\n", task_.name,
+                                      accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
     preparation_.solver = search.solver;
     return true;
   }

@@ -25,9 +25,9 @@ std::string measured_channels(LookedAt const& look) {
 std::string obstacle(LookedAt const& look, PriorDraws const& prior, std::vector<int> const& sized) {
   auto const responds = [](JudgedParameter const& each) { return each.role == ParameterRole::response; };
   if (std::none_of(prior.coordinates.begin(), prior.coordinates.end(), responds)) return "no sampled parameter enters the response";
-  if (sized.size() < 2) return "no prior draws predict responses of the size measured";
+  if (sized.size() < 2) return "fewer than two prior draws predict a response of the measured size";
   if (look.effort.looked_at == 0)
-    return fmt::format("slopes towards {} parameters of a model of this size would take longer than a check may",
+    return fmt::format("derivatives with respect to {} parameters would take too long for a model of this size",
                        prior.coordinates.size());
   return {};
 }
@@ -57,8 +57,8 @@ Findings check_prior_size(Session& session, FitTask const& what, std::vector<Exp
 void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
   if (Parameter const* parameter = improper(written)) {
-    page.left_out = fmt::format("the checks that need prior draws: the prior of `{}` is improper ({})", parameter->name,
-                                parameter->prior->row->name);
+    page.left_out =
+        fmt::format("the prior-based checks: the prior of `{}` is improper ({})", parameter->name, parameter->prior->row->name);
     return;
   }
   if (!written.processes.empty()) {
@@ -76,7 +76,7 @@ void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentDat
   }
   std::vector<LocalResponse> const responses = local_responses(look, prior, sized);
   if (responses.size() < 2) {
-    page.left_out = unlooked + "the response is not smooth in the parameters at the draws looked at";
+    page.left_out = unlooked + "the response is not smooth in the parameters at the prior draws that were examined";
     return;
   }
   page.information.emplace();

@@ -51,7 +51,7 @@ void check_bands(TaskPage& page) {
              {input.name, coverage.name},
              fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `{}` is exact only up to {}",
                          input.name, coverage.name, input.high, input.high / coverage.rate, input.rule, row_of(*rule).band),
-             "was it held between the samples, or sampled without a filter against aliases?"});
+             "check whether it was held between the samples, or sampled without an anti-aliasing filter"});
 }
 
 // Each candidate as the fit of it would be, unless the selection cannot begin.

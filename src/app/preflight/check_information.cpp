@@ -92,8 +92,8 @@ class Description {
       add(FindingCode::not_identifiable, Severity::error, std::move(names),
           fmt::format("{} (at {} of {} prior draws)", text, space.draws, space.draws),
           direction.kind == NullDirection::Kind::no_influence
-              ? "fix it to a value (`=` in place of `~`), measure what it acts on, or excite it"
-              : "fix one of them to a known value (`=` in place of `~`), or measure what tells them apart");
+              ? "fix it to a value (`=` in place of `~`), measure a quantity that it affects, or excite it"
+              : "fix one of them to a known value (`=` in place of `~`), or measure a quantity that distinguishes them");
     }
     int const size = static_cast<int>(named_);
     page_.information->rank_low = page_.information->rank_high = size;
@@ -116,20 +116,21 @@ class Description {
     bool const vague = !line.relative || line.prior_width > informed;
     if (!null_[i] && vague && least > barely_narrowed)
       add(FindingCode::barely_narrowed, Severity::warning, {line.name},
-          fmt::format("the data are expected to tell little about {}: expected sd {:.0f} to {:.0f} % of the prior's (at {} of {} "
+          fmt::format("the data are expected to contain little information on {}: expected sd {:.0f} to {:.0f} % of the prior's "
+                      "(at {} of {} "
                       "prior draws)",
                       line.name, 100 * least, 100 * most, locals_.size(), locals_.size()),
-          "its posterior will be its prior: state what is known of it, or fix it");
+          "its posterior will be close to its prior: use an informative prior, or fix it to a value");
   }
 
   std::string unasked(JudgedParameter const& coordinate) {
     if (coordinate.role == ParameterRole::noise) return "from the residuals";
     if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
-    if (coordinate.role == ParameterRole::none) return "used nowhere";  // the checker has warned of it
+    if (coordinate.role == ParameterRole::none) return "not used";  // the checker has warned of it
     add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},
         fmt::format("only derived quantities depend on {}: the data do not inform it", coordinate.words.name),
         "fix it to a value (`=` in place of `~`), or use it in an equation");
-    return "read by derived quantities alone";
+    return "used in derived quantities only";
   }
 
   // A pair of which little but a combination is known: at every draw, or at most of them with the same combination each time.
@@ -156,7 +157,7 @@ class Description {
       for (double const simple : {1.0, 2.0, 0.5})
         if (std::abs(std::abs(middle) / simple - 1) < 0.1) slope = middle > 0 ? simple : -simple;
       NullDirection const direction{NullDirection::Kind::sum, {{static_cast<int>(i), 1, 1}, {static_cast<int>(j), slope, slope}}};
-      combination = fmt::format("nearly only {} is determined, ", determined_combination(direction, asked_));
+      combination = fmt::format("hardly more than {} is determined, ", determined_combination(direction, asked_));
     }
     std::string const pair = fmt::format("{} and {} are nearly confounded", asked_[static_cast<std::size_t>(i)].name,
                                          asked_[static_cast<std::size_t>(j)].name);
@@ -164,13 +165,14 @@ class Description {
                                          *std::min_element(sizes.begin(), sizes.end()),
                                          *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
     if (widest < still_unknown) {
-      page_.information->ridges.push_back(fmt::format("{}, yet both are narrowed: {}", pair, size));
+      page_.information->ridges.push_back(fmt::format("{}, but both are narrower than their priors: {}", pair, size));
       return;
     }
     add(FindingCode::nearly_confounded, Severity::warning,
         {asked_[static_cast<std::size_t>(i)].name, asked_[static_cast<std::size_t>(j)].name},
         fmt::format("{}: {}{}", pair, combination, size),
-        "fix one of them, or record what tells them apart; what depends on their combination alone is well known");
+        "fix one of them, or measure a quantity that distinguishes them; what depends only on their combination is well "
+        "determined");
   }
 
   std::vector<JudgedParameter> const& coordinates_;

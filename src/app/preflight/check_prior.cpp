@@ -39,24 +39,21 @@ void judge_failures(LookedAt const& look) {
   double const share = static_cast<double>(page.failed) / page.draws;
   double const lost = static_cast<double>(page.failed_as_stated - page.failed) / page.draws;
   if (page.failed == page.draws)
-    look.add(FindingCode::prior_fails, Severity::error, {},
-             fmt::format("the simulation fails at every one of {} prior draws", page.draws),
-             "look at the priors, the units of the input and the equation at the place named");
+    look.add(FindingCode::prior_fails, Severity::error, {}, fmt::format("the simulation fails at all {} prior draws", page.draws),
+             "check the priors, the units of the input and the named part of the equation");
   else if (share > many_failures)
-    look.add(
-        FindingCode::prior_fails, !look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
-        fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
-                    look.candidate()
-                        ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}, other things equal",
-                                      1 / (1 - share))
-                        : ""),
-        "narrow the priors, or look at the equation at the place named");
+    look.add(FindingCode::prior_fails, !look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
+             fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
+                         look.candidate()
+                             ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}", 1 / (1 - share))
+                             : ""),
+             "narrow the priors, or check the named part of the equation");
   if (!look.settles() && lost > many_failures)
     look.add(FindingCode::integration_step, Severity::warning, {},
              fmt::format("with {} {:.0f} % of the prior draws overflow, which adaptive steps do not", look.what.solver.text(),
                          100 * lost),
-             fmt::format("{}: take shorter steps, or `solver = dopri5` or `cvode`",
-                         look.candidate() ? "what fails is never accepted" : "the search does not see what fails"));
+             fmt::format("{}: use shorter steps, or `solver = dopri5` or `cvode`",
+                         look.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations"));
 }
 
 void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double apart) {

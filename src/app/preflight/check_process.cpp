@@ -178,13 +178,13 @@ class Look {
           fmt::format("{:.0f} % of the prior draws have a length of `{}` in {} below the spacing of its inputs: the function acts "
                       "as additional noise there",
                       100 * part, process.name, input.name),
-          "look at the unit of the input, and at the prior of the length");
+          "check the unit of the input and the prior of the length");
     else if (double const flat = share(drawn, [&](double length) { return length > nearly_straight * range; }); flat >= most)
       add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
           fmt::format("{:.0f} % of the prior draws have a length of `{}` in {} of more than {} times the range of its inputs: the "
                       "function is nearly straight there",
                       100 * flat, process.name, input.name, nearly_straight),
-          "look at the unit of the input, and at the prior of the length");
+          "check the unit of the input and the prior of the length");
   }
 
   /// process: nothing where it is the noise of the channel.

@@ -40,12 +40,12 @@ double middle(std::vector<double> values) {
 void describe_distances(LookedAt const& look, PriorDraws const& prior, double response_move, double shift) {
   look.page.information->response_move = response_move;
   std::string const help =
-      look.page.information->advised.empty() ? "take a finer solver" : fmt::format("take {}", look.page.information->advised);
+      look.page.information->advised.empty() ? "use a finer solver" : fmt::format("use {}", look.page.information->advised);
   if (!(response_move <= gross_move))
     look.add(FindingCode::integration_step, Severity::warning, {},
              fmt::format("with {} the solver changes the distances: {} moves the median response by {} of its sd",
                          look.what.solver.text(), look.what.solver.finer_words(),
-                         std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than all"),
+                         std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than 100 %"),
              help);
   else if (prior.noise.empty() && shift > visible_shift)
     look.add(FindingCode::integration_step, Severity::warning, {},
@@ -79,8 +79,8 @@ void describe_solvers(LookedAt const& look, PriorDraws const& prior, std::vector
              fmt::format("with {} the solver changes the result: with {} parameters move by up to {}", look.what.solver.text(),
                          look.what.solver.finer_words(), moves.front() > 5 ? "many sds" : fmt::format("{:.2g} sd", moves.front())),
              information.advised.empty()
-                 ? "leave its settings out and they are chosen"
-                 : fmt::format("take {}, or leave its settings out and they are chosen", information.advised));
+                 ? "remove its settings, which are then chosen automatically"
+                 : fmt::format("use {}, or remove its settings, which are then chosen automatically", information.advised));
   if (look.candidate()) describe_distances(look, prior, middle(std::move(response_moves)), middle(std::move(shifts)));
 }
 

@@ -86,7 +86,7 @@ class ProcessPredict {
            {each.process, each.input},
            fmt::format("`{}` of `{}` lies up to {:.2g} times the width of its fitted range outside it{}", each.input, each.process,
                        each.widths, where),
-           "there the prediction is the white part, and its band is that of the kernel's prior, not of data"});
+           "there the process returns to zero, and its band follows from the prior of the kernel, not from data"});
   }
 
   Session& session_;

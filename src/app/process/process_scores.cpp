@@ -29,12 +29,13 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
         names.emplace_back(process.name, input.name);
       }
   if (int const repeated = gaussian_process::repeated_inputs(inputs, columns); repeated > 0)
-    findings.push_back({FindingCode::duplicate_inputs,
-                        Severity::note,
-                        {target.model().model().channels[c].name},
-                        fmt::format("{} of {} samples of {} have the inputs of another sample: what differs between them is noise",
-                                    repeated, inputs.rows(), target.model().model().channels[c].name),
-                        ""});
+    findings.push_back(
+        {FindingCode::duplicate_inputs,
+         Severity::note,
+         {target.model().model().channels[c].name},
+         fmt::format("{} of {} samples of {} have the inputs of another sample: differences between them are treated as noise",
+                     repeated, inputs.rows(), target.model().model().channels[c].name),
+         ""});
   auto const hyper_parameters = layout.covariance.hyper_parameters();
   std::pair<std::string, std::string> last;
   for (std::size_t k = 0; k < hyper_parameters.size(); ++k) {
@@ -51,7 +52,7 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
                         fmt::format("the length-scale of `{}` of `{}` is {:.2g} times the range that was fitted: along this input "
                                     "the process is constant or linear, and its prior determines the length",
                                     name.second, name.first, regression.parameters[k] / range),
-                        "leave the input out if the fit is no worse without it; otherwise add a linear term to the white part"});
+                        "remove the input if the fit is as good without it; otherwise add a linear term to the white part"});
   }
 }
 

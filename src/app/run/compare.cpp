@@ -58,7 +58,7 @@ StoredSummary read_summary(fs::path const& folder) {
   bool const whole = result.summary.is_object() && result.summary.contains("what") && result.summary["what"].is_string() &&
                      result.summary.value("data", json::array()).is_array();
   if (!whole)
-    throw refused(fmt::format("`{}` is no result of a task", (folder / "summary.json").string()),
+    throw refused(fmt::format("`{}` is not the result of a task", (folder / "summary.json").string()),
                   "run the task again with --force");
   if (!has_deciding_fields(result.summary)) throw older_version(folder);
   result.model = result.summary.value("model", std::string());
@@ -106,7 +106,7 @@ std::string samples_of(StoredSummary const& result) {
   for (json const& data : result.summary["data"]) {
     std::string const digest = data.value("samples_sha256", "");
     if (digest.empty())
-      throw refused(fmt::format("`{}` does not say which samples it was fitted to", result.folder.string()),
+      throw refused(fmt::format("`{}` does not record which samples it was fitted to", result.folder.string()),
                     "it was written by an earlier program: run the task again with --force");
     all += digest + "\n";
   }
@@ -119,8 +119,8 @@ void require_same_samples(StoredSummary const& one, StoredSummary const& other) 
                                           data_text(one), data_text(other));
   if (data_text(one) != data_text(other)) {
     bool const looks_back = one.lags() > 0 || other.lags() > 0;
-    throw refused(message, looks_back ? "evidences are densities of the samples: let the part begin behind the longest lag of all "
-                                        "models, and each is fitted to the same rows"
+    throw refused(message, looks_back ? "evidences are densities of the samples: start the rows after the longest lag of all "
+                                        "models, so that each is fitted to the same rows"
                                       : "evidences are densities of the samples: name folders of fits to the same rows");
   }
   throw refused(message + " of other files, channels or units",

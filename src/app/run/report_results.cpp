@@ -31,7 +31,7 @@ Report whole_result(fs::path const& folder) {
   if (!fs::exists(folder / "summary.json"))
     throw UserError({Severity::error,
                      "",
-                     fmt::format("`{}` holds no whole result: it has no `summary.json`", folder.string()),
+                     fmt::format("`{}` holds no complete result: it has no `summary.json`", folder.string()),
                      std::nullopt,
                      {},
                      "run the task again with --force"});
@@ -145,7 +145,12 @@ void redraw_figures(fs::path const& folder, std::vector<FigureFormat> const& for
     if (auto const undrawn = write_figures(drawn_figures(task.report, false), task.folder, formats); !undrawn.empty())
       words += fmt::format("{}`{}`: {}", words.empty() ? "" : "; ", task.folder.string(), undrawn_words(undrawn));
   if (!words.empty())
-    throw UserError({Severity::error, "", words, std::nullopt, {}, "draw one by hand, as its first line says, to see why"});
+    throw UserError({Severity::error,
+                     "",
+                     words,
+                     std::nullopt,
+                     {},
+                     "run gnuplot on one of the scripts, as its first line shows, to see the error"});
 }
 
 }  // namespace sysid

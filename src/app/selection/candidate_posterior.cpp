@@ -83,7 +83,7 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     if (asked) session.progress.end(false);
     return asked;
   };
-  session.progress.begin("the likelihood's side", candidates.size());
+  session.progress.begin("computing likelihoods", candidates.size());
   // The most probable one first: it says how much is little.
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0);
@@ -174,7 +174,7 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
                         Severity::warning,
                         {candidates[k].what->name},
                         what,
-                        "where the model is stiff, take `solver = cvode`; it may be chaotic on this record"});
+                        "if the model is stiff, use `solver = cvode`; it may also be chaotic on this record"});
   }
   return findings;
 }

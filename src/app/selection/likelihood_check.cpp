@@ -93,7 +93,7 @@ Findings compare_probabilities(SelectionResult const& result, std::vector<std::o
     if (model.died_in > 0) each += fmt::format(", it was lost in population {}", model.died_in);
   }
   return {{FindingCode::probabilities_disagree, Severity::warning, std::move(names), each,
-           "stop at a smaller change of the threshold, take more `particles`, or use the probabilities by the likelihood if its "
+           "stop at a smaller change of the threshold, use more `particles`, or use the probabilities by the likelihood if its "
            "noise model is right"}};
 }
 

@@ -34,16 +34,16 @@ Polish polish_candidates(Session& session, std::vector<Candidate> const& candida
       polish.findings.push_back({FindingCode::not_polished,
                                  Severity::warning,
                                  {model.name},
-                                 fmt::format("`{}` was not polished: {}", model.name, why),
+                                 fmt::format("`polish` has no draws of `{}`: {}", model.name, why),
                                  ""});
     };
     if (candidates[k].space->dimension() == 0) continue;  // one point, which is known
     if (posteriors[k].modes.empty()) {
-      missed("no climb from its particles ends at a finite likelihood");
+      missed("no local search from its particles ends at a finite likelihood");
       continue;
     }
     if (posteriors[k].given_up) {
-      missed("the climb to its mode was given up, for by the likelihood it is less probable than another by 30 nats and more");
+      missed("the search for its mode was stopped: by the likelihood another model is more probable by at least 30 nats");
       continue;
     }
     auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.options.execution);

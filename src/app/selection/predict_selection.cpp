@@ -89,7 +89,7 @@ class PredictSelection {
                                  {experiment.name},
                                  fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands",
                                              all.failed(), what_.draws, several ? " on " + experiment.name : ""),
-                                 "the posterior reaches where a model diverges on this input"});
+                                 "a model diverges on this input at some draws: narrow the priors, or check the equation"});
     for (Finding& finding : band_findings(report.predictions.back(), all.failed(), leading_failed, several))
       report.findings.push_back(std::move(finding));
   }

@@ -70,7 +70,7 @@ class Select {
                        .checkpoint_interval = session_.options.checkpoint_interval,
                        .resume = checkpoint_.stored()};
     if (context.resume)
-      session_.notices << fmt::format("{}: going on from the checkpoint\n", task_.name);
+      session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
     else
       print_data_findings(session_, task_, candidates_.front().data, candidates_.front().compiled->model);
     SelectionResult result = selector.run(target, what_.settings, context);
@@ -82,7 +82,7 @@ class Select {
                        {},
                        result.failure->help});
     if (result.populations.empty()) {
-      session_.notices << fmt::format("{}: interrupted before the first population was whole; --resume goes on from there\n",
+      session_.notices << fmt::format("{}: interrupted before the first population was complete; --resume continues from there\n",
                                       task_.name);
       return ExitCode::interrupted;
     }
@@ -167,7 +167,7 @@ class Select {
     report.selection = std::move(selection);
     keep_result(session_, task_, report);
     if (interrupted) {
-      session_.notices << fmt::format("{}: interrupted; go on with --resume\n", task_.name);
+      session_.notices << fmt::format("{}: interrupted; continue with --resume\n", task_.name);
       return ExitCode::interrupted;
     }
     remove_file(checkpoint_.path());
@@ -220,7 +220,7 @@ class Select {
 
   static void note_end(SelectionReport const& selection, bool interrupted, bool polished, Report& report) {
     if (interrupted)
-      report.findings.push_back(interrupted_finding("this is what it had by then"));
+      report.findings.push_back(interrupted_finding("these are the particles of the last complete population"));
     else if (!selection.result.ran_out)
       report.findings.push_back({FindingCode::selection_ended, Severity::note, {}, selection.result.stopped_by, ""});
     bool const spread = std::any_of(selection.result.models.begin(), selection.result.models.end(),
@@ -231,7 +231,7 @@ class Select {
                                  {},
                                  "the sd of the particles depends on the threshold and is not that of the posterior: it is larger "
                                  "after an early stop, smaller after a late one",
-                                 polished ? "" : "`polish = yes` goes on with the likelihood and prints both"});
+                                 polished ? "" : "`polish = yes` continues with chains on the likelihood and prints both"});
   }
 
   void add_settings(SelectionReport const& selection, Report& report) const {

@@ -110,8 +110,8 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
            {},
            fmt::format("the final threshold {} is {} times the distance that {} leaves, {}", significant(threshold, 4),
                        significant(threshold / lowest->distance, 2), selection.floor_words, significant(lowest->distance, 4)),
-           "models that differ by less than that are not told apart: stop at a smaller change of the threshold, or none of the "
-           "models is the right one"}};
+           "models that differ by less cannot be distinguished: stop at a smaller change of the threshold, or none of the "
+           "models is right"}};
 }
 
 FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
@@ -144,7 +144,7 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
            Severity::warning,
            {selected.name},
            fmt::format("with {} {}", solver.finer_words(), what),
-           "take a finer solver, `substeps = 4` or `solver = dopri5`"}};
+           "use a finer solver, `substeps = 4` or `solver = dopri5`"}};
 }
 
 }  // namespace sysid

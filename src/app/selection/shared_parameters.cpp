@@ -59,10 +59,10 @@ void summarise_shared(Session const& session, CandidateSet const& set, std::vect
     for (std::string const& row : rows)
       if (auto summary = averaged(row, selection.result)) selection.shared.push_back(std::move(*summary));
     if (selection.shared.size() > before) continue;
-    selection.shared_unmoved.push_back(unmoved(session, name, candidates,
-                                               rows.empty()
-                                                   ? "only the noise reads it, and a simulation without noise says nothing of it"
-                                                   : "no model that has it is left"));
+    selection.shared_unmoved.push_back(
+        unmoved(session, name, candidates,
+                rows.empty() ? "only the noise uses it, and a simulation without noise gives no information about it"
+                             : "no remaining model has it"));
   }
 }
 

@@ -25,13 +25,13 @@ Diagnostic no_result(Task const& task, Finding const& failure) {
 ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& checkpoint) {
   bool const kept = std::filesystem::exists(checkpoint.path());
   session.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task.name,
-                                 kept ? "goes on from there" : "starts it again");
+                                 kept ? "continues from there" : "starts it again");
   return ExitCode::interrupted;
 }
 
 ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation) {
   if (!std::filesystem::exists(checkpoint.path())) checkpoint.save({{"preparation", store(preparation)}});
-  session.notices << fmt::format("{}: interrupted before its result was checked; --resume goes on from there\n", task.name);
+  session.notices << fmt::format("{}: interrupted before its result was checked; --resume continues from there\n", task.name);
   return ExitCode::interrupted;
 }
 
@@ -43,7 +43,7 @@ Findings failure_findings(Ledger const& sampling) {
            severity,
            {},
            fmt::format("{:.1f} % of the solves while sampling failed, first in {}", 100 * share, sampling.failures().front().where),
-           "the posterior reaches where the model diverges: narrow the prior or look at the equation there"}};
+           "the model diverges in a part of the posterior: narrow the prior, or check the equation there"}};
 }
 
 Summary of_column(Draws const& draws, std::size_t column) {
@@ -86,7 +86,7 @@ ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpo
   report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
   keep_result(session, task, report);
   if (interrupted) {
-    session.notices << fmt::format("{}: interrupted; go on with --resume\n", task.name);
+    session.notices << fmt::format("{}: interrupted; continue with --resume\n", task.name);
     return ExitCode::interrupted;
   }
   remove_file(checkpoint.path());

@@ -48,8 +48,8 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   return Finding{FindingCode::made_from_earlier,
                  Severity::warning,
                  {source},
-                 fmt::format("this was made from an earlier run of `{}` than the one stored beside it", source),
-                 "make it again: `sysid predict FILE --force`"};
+                 fmt::format("this prediction used an earlier run of `{}` than the one stored beside it", source),
+                 "run it again: `sysid predict FILE --force`"};
 }
 
 void add_source(std::filesystem::path const& fit, Report& report) {
@@ -75,7 +75,7 @@ void add_source(std::filesystem::path const& fit, Report& report) {
          Severity::warning,
          {name},
          fmt::format("the fit `{}`, from which these draws are taken, has warnings: {}", name, fmt::join(doubtful, ", ")),
-         "look at the verdict of the fit"});
+         "read the verdict of the fit"});
 }
 
 }  // namespace sysid

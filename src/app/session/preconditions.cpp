@@ -24,7 +24,7 @@ Diagnostic refused(Task const& task, std::string code, std::string message, std:
 }
 
 Diagnostic refused_settings(Task const& task, std::string_view backend, std::string const& why) {
-  return refused(task, "E6203", fmt::format("these settings of `{}` do not go together: {}", backend, why), "change one of them");
+  return refused(task, "E6203", fmt::format("these settings of `{}` conflict: {}", backend, why), "change one of them");
 }
 
 /// of: " of `model`" where there are several. Asked of parameters that have a prior in `model`.
@@ -32,7 +32,7 @@ std::optional<Diagnostic> improper_prior(Task const& task, std::string_view back
   for (Parameter const& parameter : model.parameters)
     if (parameter.prior && !parameter.prior->row->proper)
       return refused(task, "E6204",
-                     fmt::format("`{}` needs priors that can be drawn from; that of `{}`{} is {}", backend, parameter.name, of,
+                     fmt::format("`{}` needs proper priors, but that of `{}`{} is {}", backend, parameter.name, of,
                                  parameter.prior->row->name),
                      fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
   return std::nullopt;
@@ -70,7 +70,7 @@ std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std:
                                   std::vector<std::vector<ExperimentData>> const& data) {
   SelectorRow const& selector = *find_selector(what.backend);
   if (std::string const why = selector.refuse(what.settings); !why.empty()) return refused_settings(task, selector.name, why);
-  // The noise has particles in no population, but the likelihood's side starts from draws of it.
+  // The noise has particles in no population, but computing likelihoods starts from draws of it.
   bool const with_noise = what.settings.flag("cross_check") || what.settings.flag("polish");
   for (std::size_t c = 0; c < what.fits.size(); ++c) {
     Model const& model = models[static_cast<std::size_t>(what.fits[c].model)];

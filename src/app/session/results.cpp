@@ -33,7 +33,7 @@ void claim_results(std::filesystem::path const& folder, RunOptions const& option
                        fmt::format("`{}` holds an interrupted run", folder.string()),
                        std::nullopt,
                        {},
-                       "go on with --resume, or start again with --force"});
+                       "continue with --resume, or start again with --force"});
     prepare_result(folder, options.force);
     remove_file(checkpoint_path(folder));
   }

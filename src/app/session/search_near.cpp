@@ -65,7 +65,7 @@ SearchResult search_near(Session& session, int earlier, Target const& target, Ai
                                Severity::note,
                                {name},
                                fmt::format("the search began only at the result of `{}` and may have missed other modes", name),
-                               "fit once more without `search = near(...)` before the numbers are used"});
+                               "fit again without `search = near(...)` before you use the numbers"});
   return result;
 }
 

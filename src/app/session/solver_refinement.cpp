@@ -11,7 +11,7 @@ namespace sysid {
 namespace {
 
 Finding not_settled(SettledSolver const& settled) {
-  std::string const help = "where the model is stiff, fit it with `solver = cvode`; it may be chaotic on this record";
+  std::string const help = "if the model is stiff, fit it with `solver = cvode`; it may also be chaotic on this record";
   if (!settled.given_up)
     return {FindingCode::step_not_settled,
             Severity::error,

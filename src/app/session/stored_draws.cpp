@@ -27,7 +27,7 @@ std::vector<std::vector<double>> read_draws_rows(std::filesystem::path const& pa
     if (columns.back() == nullptr)
       throw UserError({Severity::error,
                        "E6201",
-                       fmt::format("`{}` has no column `{}`: it is of another model", path.string(), name),
+                       fmt::format("`{}` has no column `{}`: it belongs to another model", path.string(), name),
                        std::nullopt,
                        {},
                        "run the fit again, with --force or another -o"});
@@ -78,7 +78,7 @@ std::filesystem::path stored_results(Session& session, Task const& task, std::st
                      fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
                      std::nullopt,
                      {},
-                     fmt::format("go on with it first: sysid {} FILE --resume", verb)});
+                     fmt::format("finish it first: sysid {} FILE --resume", verb)});
   if (!complete(folder))
     throw UserError({Severity::error,
                      "E6202",

@@ -186,12 +186,13 @@ Findings check_expansions(Model const& model, ConstLanes parameters) {
   Findings findings;
   for (Expansion const& expansion : model.expansions)
     if (double const part = error(model, expansion, parameters); !(part <= much))
-      findings.push_back({FindingCode::basis_inaccurate,
-                          Severity::warning,
-                          {expansion.name},
-                          fmt::format("the finite sum of `{}` differs from its process by {:.0f} % of the process's variance",
-                                      expansion.name, 100 * part),
-                          "take more `terms` where a length is short against the range, or a wider `within` where it is long"});
+      findings.push_back(
+          {FindingCode::basis_inaccurate,
+           Severity::warning,
+           {expansion.name},
+           fmt::format("the finite sum of `{}` differs from its process by {:.0f} % of the process's variance", expansion.name,
+                       100 * part),
+           "use more `terms` if the length-scale is short compared with the range, or a wider `within` if it is long"});
   return findings;
 }
 

@@ -83,7 +83,7 @@ class Discover {
   }
 
   ExitCode stop() const {
-    session_.notices << fmt::format("{}: interrupted; it begins again\n", task_.name);
+    session_.notices << fmt::format("{}: interrupted; the next run starts it again\n", task_.name);
     return ExitCode::interrupted;
   }
 

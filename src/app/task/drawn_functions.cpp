@@ -18,7 +18,7 @@ namespace {
                    "the Gaussian process `" + process.name + "` " + message,
                    Label{process.span, {}},
                    {},
-                   "look at the values of its hyper-parameters"});
+                   "check the values of its hyper-parameters"});
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ class Predict {
            {experiment.name},
            fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands", result.failed(),
                        trajectories_.wanted(), data_.size() > 1 ? " on " + experiment.name : ""),
-           "the posterior reaches where the model diverges on this input"});
+           "the model diverges on this input at some draws: narrow the priors, or check the equation"});
     for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), data_.size() > 1))
       report.findings.push_back(std::move(finding));
   }

@@ -12,6 +12,7 @@
 #include "app/task/drawn_functions.hpp"
 #include "app/task/signals.hpp"
 #include "check/checked/task_kinds.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/drift.hpp"
@@ -19,7 +20,6 @@
 #include "experiment/experiments.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/file/made_record.hpp"
-#include "core/numeric/statistics.hpp"
 
 namespace sysid {
 namespace {
@@ -132,10 +132,10 @@ std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
   }
   throw UserError({Severity::error,
                    "E5001",
-                   fmt::format("the simulation `{}` does not settle: what it feeds back changes in every round", task.name),
+                   fmt::format("the simulation `{}` does not converge: its feedback changes in every round", task.name),
                    Label{task.span, {}},
                    {},
-                   "the model may be chaotic, so that rounding grows into values: take fewer samples, or other values"});
+                   "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});
 }
 
 // With another output folder a data block that reads `results/NAME/FILE` still reads what an earlier run left there.
@@ -145,7 +145,7 @@ void warn_of_older_data(Session& session, Task const& task, std::filesystem::pat
     std::filesystem::path const read = session.folder() / block.path;
     bool const same_name = read.filename() == written.filename() && read.parent_path().filename() == task.name;
     if (same_name && absolute(read) != absolute(written))
-      session.notices << fmt::format("{}: warning: data `{}` reads {}, not what was written now\n", task.name, block.name,
+      session.notices << fmt::format("{}: warning: data `{}` reads {}, not the file written by this task\n", task.name, block.name,
                                      read.string());
   }
 }
@@ -244,7 +244,7 @@ class Simulate {
       throw failed(
           fmt::format("the simulation `{}` {}", task_.name,
                       functions_ ? "does not stay finite" : first_failure(session_, what_, *compiled_, experiment_, parameters_)),
-          "take smaller steps (substeps = 10), `solver = cvode` where the model is stiff, or other values");
+          "use smaller steps (substeps = 10), `solver = cvode` if the model is stiff, or other values");
     for (auto const& channel : result.noisy)
       for (auto const& values : channel)
         if (what_.noise_fraction < 0 && std::any_of(values.begin(), values.end(), [](double y) { return std::isnan(y); }))

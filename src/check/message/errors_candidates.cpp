@@ -25,9 +25,10 @@ Diagnostic probabilities(ast::Name const& set, double sum, int open, int models)
 }
 
 Diagnostic not_a_probability(Span span, double value) {
-  return error(
-      "E6503", span, fmt::format("a prior probability must be above 0 and at most 1, but this is {:.10g}", value),
-      value == 0 ? "remove the candidate" : "correct the number or remove it: models without one share the remaining probability");
+  return error("E6503", span, fmt::format("a prior probability must be above 0 and at most 1, but this is {:.10g}", value),
+               value == 0
+                   ? "remove the candidate"
+                   : "give a number above 0 and at most 1, or remove it: models without one share the remaining probability");
 }
 
 Diagnostic shared_by_none(ast::Name const& name, std::string const& set, Names const& known) {

@@ -27,7 +27,7 @@ Diagnostic no_time(ast::Name const& block) {
 
 Diagnostic time_and_rate(Span second, Span first) {
   return conflict("E4103", second, "and here", first, "here", "the time is given twice, by a column and by a rate",
-                  "keep one of them");
+                  "remove the column or the rate");
 }
 
 Diagnostic stated_twice(Span second, Span first, std::string const& what) {

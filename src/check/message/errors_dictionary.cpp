@@ -22,7 +22,7 @@ Diagnostic no_target(ast::Name const& dictionary) {
 
 Diagnostic target_twice(Span second, Span first, std::string const& text) {
   return about({text}, conflict("E6613", second, "again here", first, "first here", fmt::format("`{}` is a target twice", text),
-                                "each target gives an equation of its own: keep one"));
+                                "remove one of the two: each target has an equation of its own"));
 }
 
 Diagnostic no_terms(ast::Name const& dictionary) {

@@ -96,7 +96,7 @@ Diagnostic prior_cycle(Span span, Names const& loop) {
 
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason) {
   return about({distribution}, error("E2112", span, fmt::format("the arguments of `{}` are invalid: {}", distribution, reason),
-                                     "correct the numbers"));
+                                     "choose arguments that satisfy this condition"));
 }
 
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,

@@ -48,13 +48,14 @@ Diagnostic option_range(Span span, std::string const& option, double given, doub
                             : least == 0               ? std::string("not be negative")
                             : least > 0                ? std::string("be positive")
                                                        : std::string("be finite");
-  return about({option}, error("E6005", span, fmt::format("`{}` must {}, but is {}", option, range, given), "correct the number"));
+  return about({option}, error("E6005", span, fmt::format("`{}` must {}, but is {}", option, range, given),
+                               "choose a number that satisfies this"));
 }
 
 Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most) {
   return about({option},
                error("E6005", span, fmt::format("`{}` must be 0 or lie between {} and {}, but is {}", option, least, most, given),
-                     "correct the number"));
+                     "choose a number that satisfies this"));
 }
 
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {

@@ -30,7 +30,7 @@ void add_deaths(SelectionResult const& result, Findings& findings) {
                         {model.name},
                         fmt::format("`{}` was lost in population {}, possibly by chance: none of {} proposals was accepted{}",
                                     model.name, model.died_in, result.populations[t].models[m].proposed, before),
-                        "take more `particles`, or repeat with other seeds: its probability may be larger than 0"});
+                        "use more `particles`, or repeat with other seeds: its probability may be larger than 0"});
   }
 }
 
@@ -47,7 +47,7 @@ void add_failures(SelectionResult const& result, Findings& findings) {
                         fmt::format("{} of the {} draws of the priors of `{}` did not stay finite, so its priors are cut off there",
                                     record.failed == record.proposed ? "all" : fmt::format("{}", record.failed), record.proposed,
                                     result.models[m].name),
-                        "narrow the priors, or take a finer solver where the integration is what fails"});
+                        "narrow the priors, or use a finer solver if the integration fails"});
   }
 }
 
@@ -92,13 +92,15 @@ Finding no_population(PopulationRecord const& record, double threshold, int part
                                                               places.empty() ? "" : fmt::format(" ({})", places));
   std::string const what =
       bounded ? fmt::format("came within the first threshold {}", threshold) : std::string("could be simulated");
-  std::string help = "allow more, or take fewer `particles`";
+  std::string help = "allow more, or use fewer `particles`";
   if (record.simulated == 0 && record.proposed > 0)
-    help = "the densities of the priors are not finite at their own draws: give them widths that numbers can hold";
+    help =
+        "the densities of the priors are not finite at their own draws: give them widths within the range of floating-point "
+        "numbers";
   else if (beyond > record.failed && bounded)
-    help = "raise the first threshold, or look at priors, units and the input rule with `sysid check`";
+    help = "raise the first threshold, or check priors, units and the input rule with `sysid check`";
   else if (record.failed > 0)
-    help = "the priors lie where the models do not stay finite: narrow them, or take a finer solver";
+    help = "the priors lie where the models do not stay finite: narrow them, or use a finer solver";
   return {FindingCode::no_population,
           Severity::error,
           {},
@@ -117,7 +119,7 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
          Severity::warning,
          {},
          fmt::format("the effective number of particles in the last population is {:.0f} of {}", last.ess, last.accepted),
-         "take more `particles`"});
+         "use more `particles`"});
   bool const equal = result.populations.size() > 1 && result.threshold == result.next_threshold &&
                      result.threshold != plan.target && plan.schedule.empty();
   // Whatever is proposed is as near as can be: the distance tells nothing.
@@ -136,7 +138,7 @@ Findings judge_populations(SelectionResult const& result, Plan const& plan) {
                         {},
                         fmt::format("the run stopped before its end: {}{}", result.stopped_by,
                                     std::isfinite(result.threshold) ? "" : "; its only population is a sample of the priors"),
-                        "allow more, take fewer `particles`, or stop at a larger `target` or `relative_change`"});
+                        "allow more, use fewer `particles`, or stop at a larger `target` or `relative_change`"});
   return findings;
 }
 

@@ -247,7 +247,7 @@ std::string refuse(Settings const& settings) {
                        samples - burn_in);
   // All of them are held in memory and written out.
   if (std::int64_t const kept = (samples - burn_in) / thin * settings.integer("chains"); kept > most_kept)
-    return fmt::format("{} draws would be kept, more than {}: raise `thin`, or take fewer samples", kept, most_kept);
+    return fmt::format("{} draws would be kept, more than {}: increase `thin`, or use fewer samples", kept, most_kept);
   return {};
 }
 

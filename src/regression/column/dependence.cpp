@@ -102,8 +102,8 @@ Concerns near_dependence(Equation const& equation, Columns const& columns, std::
     for (std::size_t k = 0; k < terms.size(); ++k)
       if (share(static_cast<Eigen::Index>(k), m) > 0.5) concern.terms.push_back(terms[k]);
     if (concern.terms.size() < 2) continue;
-    concern.clause =
-        fmt::format("{} are barely told apart by these data (condition index {:.0f})", names_of(equation, concern.terms), index);
+    concern.clause = fmt::format("{} can hardly be distinguished by these data (condition index {:.0f})",
+                                 names_of(equation, concern.terms), index);
     concerns.push_back(std::move(concern));
   }
   return concerns;

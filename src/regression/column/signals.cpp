@@ -186,7 +186,7 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
     } else if (low == high) {
       Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
       concern.clause =
-          fmt::format("`{}` is {:.4g} on the whole record: a system at rest says nothing about its equation", name, low);
+          fmt::format("`{}` is {:.4g} on the whole record: a system at rest gives no information about its equation", name, low);
       concerns.push_back(std::move(concern));
     } else if (dictionary.channels[c].order == 0 && !dictionary.channels[c].noise_sd && nothing_but_noise(experiments, c)) {
       Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};

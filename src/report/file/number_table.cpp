@@ -55,7 +55,7 @@ NumberTable read_number_table(std::filesystem::path const& path) {
   NumberTable table;
   for (int number = 1; !rest.empty(); ++number) {
     std::size_t const end = rest.find('\n');
-    if (end == rest.npos) throw damaged(path, fmt::format("line {} is cut short", number));
+    if (end == rest.npos) throw damaged(path, fmt::format("line {} is truncated", number));
     std::string_view line = rest.substr(0, end);
     rest.remove_prefix(end + 1);
     if (line.starts_with("# "))

@@ -133,7 +133,7 @@ std::string information_text(InformationPage const& page) {
   std::string out = table("information", rows, 1);
   std::vector<std::string> lines;
   lines.push_back(fmt::format("at the {} prior draws whose response is closest in size to the data{}", page.draws,
-                              page.noise.empty() ? std::string() : "; noise as with " + page.noise));
+                              page.noise.empty() ? std::string() : "; assumed noise: " + page.noise));
   lines.push_back("prior width: half the width of the central 68 % interval of the prior (the sd of a normal prior)");
   if (page.rows > 0)
     lines.push_back(fmt::format("over the first {} scored rows only; the whole record contains more information", page.rows));
@@ -203,7 +203,7 @@ std::string task_text(TaskPage const& task) {
     if (outlook.prior) out += prior_text(*outlook.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
     if (outlook.information) out += information_text(*outlook.information);
     for (ProcessPage const& process : outlook.processes) out += process_text(process);
-    if (!outlook.left_out.empty()) out += entry("left out", {outlook.left_out});
+    if (!outlook.left_out.empty()) out += entry("skipped", {outlook.left_out});
     out += findings_text(outlook.findings);
   }
   return out;

@@ -103,7 +103,7 @@ std::string verdict_meaning(Report const& report) {
   switch (grade(report)) {
     case Severity::error:
       return fmt::format(
-          "Until this is fixed, {} below may change by more than their stated uncertainty. Each point below says what to do.",
+          "Until this is fixed, {} below may change by more than their stated uncertainty. Each point below states what to do.",
           numbers);
     case Severity::warning:
       return fmt::format("Check the points below before you use {}: each of them may or may not matter for your purpose.", numbers);

@@ -134,7 +134,7 @@ TEST_CASE("a section is shown with its examples and the file they complete") {
       "let a = b\n"
       "```\n"
       "\n"
-      "Mended:\n"
+      "Corrected:\n"
       "\n"
       "```sysid\n"
       "let a = y\n"
@@ -169,7 +169,7 @@ TEST_CASE("explain finds a code however it is written") {
   auto const text = explain("E2001");
   REQUIRE(text.has_value());
   CHECK(text->starts_with("E2001: a name that is not declared\n"));
-  CHECK(text->find("\nMended:\n\n    derive fn [Hz] = sqrt(k/m) / (2*pi)\n") != std::string::npos);
+  CHECK(text->find("\nCorrected:\n\n    derive fn [Hz] = sqrt(k/m) / (2*pi)\n") != std::string::npos);
   CHECK(text->find("are part of the model of this file:\n\n    model oscillator {\n") != std::string::npos);
   CHECK(text->find("```") == std::string::npos);
   CHECK(explain("e2001") == text);

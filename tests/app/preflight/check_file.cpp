@@ -125,7 +125,7 @@ TEST_CASE("steps too long for a prior's fast end are not a failing model; stated
       checked(models / "sir/sir.sysid", with(shipped("sir/sir.sysid"), "chains = 4), seed", "chains = 4), substeps = 1, seed"));
   CHECK(messages(stated, "prior_fails").empty());
   REQUIRE(messages(stated, "integration_step").size() == 2);  // of the prior's draws, and of the result
-  CHECK(messages(stated, "integration_step")[0].find("% of the prior draws leave the range of numbers") != std::string::npos);
+  CHECK(messages(stated, "integration_step")[0].find("% of the prior draws overflow") != std::string::npos);
 }
 
 TEST_CASE("a vague prior that the data do not narrow is named, a narrow one is knowledge") {
@@ -135,8 +135,9 @@ TEST_CASE("a vague prior that the data do not narrow is named, a narrow one is k
            "log_normal(median = 0.1, sd = 0.5)", "half_cauchy(scale = 1)");
   auto const said = messages(checked(models / "one_compartment/published.sysid", text), "barely_narrowed");
   REQUIRE(said.size() == 1);
-  CHECK(said[0] ==
-        "the data are expected to tell little about K_m: expected sd 96 to 100 % of the prior's (at 8 of 8 prior draws)");
+  CHECK(
+      said[0] ==
+      "the data are expected to contain little information on K_m: expected sd 96 to 100 % of the prior's (at 8 of 8 prior draws)");
 }
 
 TEST_CASE("a ridge along which both parameters are narrowed is told, not warned of") {
@@ -241,7 +242,7 @@ TEST_CASE("a parameter that nothing reads is told by the checker alone, one that
   std::string instead;
   for (InformationPage::Line const& line : outlook(unread, "posterior").information->lines)
     if (line.name == "idle") instead = line.instead;
-  CHECK(instead == "used nowhere");
+  CHECK(instead == "not used");
   CheckResult const derived =
       checked(models / "duffing/idle.sysid", with(text, "  parameter c ", "  derive twice = 2*idle\n  parameter c "));
   CHECK(messages(derived, "not_identifiable") ==
@@ -424,7 +425,7 @@ TEST_CASE("of a large model less is looked at, and what is left out is said") {
   CHECK(page.prior->draws < 64);
   CHECK(page.prior->draws >= 16);
   CHECK_FALSE(page.information);
-  CHECK(page.left_out.find("slopes towards 202 parameters of a model of this size would take longer than a check may") !=
+  CHECK(page.left_out.find("derivatives with respect to 202 parameters would take too long for a model of this size") !=
         std::string::npos);
   CHECK(check_text(result.page).find("nothing found in the parts that were checked") != std::string::npos);
 }

@@ -105,7 +105,7 @@ made = simulate echo with samples = 300, seed = 3, noise = 0
     FAIL("it settled");
   } catch (UserError const& error) {
     CHECK(error.diagnostic().code == "E5001");
-    CHECK(error.diagnostic().message.find("does not settle") != std::string::npos);
+    CHECK(error.diagnostic().message.find("does not converge") != std::string::npos);
   }
   CHECK(!std::filesystem::exists(options.output / "made/made.csv"));
 }

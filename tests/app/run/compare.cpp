@@ -184,11 +184,10 @@ long = fit longer to points.head with map, seed = 1
     }
     return std::string("not refused");
   };
-  CHECK(
-      refusal("head", "long") ==
-      "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79) and points.head, rows 4..80 (77); "
-      "evidences are densities of the samples: let the part begin behind the longest lag of all models, and each is fitted to the "
-      "same rows");
+  CHECK(refusal("head", "long") ==
+        "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79) and points.head, rows 4..80 (77); "
+        "evidences are densities of the samples: start the rows after the longest lag of all models, and each is fitted to the "
+        "same rows");
   CHECK(refusal("train", "long").starts_with("`train` and `long` are fitted to different samples"));
   CHECK_THROWS_AS(compare({run.folder.path()}), UserError);  // holds no results itself
   CHECK_THROWS_AS(compare({run.folder.path() / "nowhere"}), IoError);

@@ -292,7 +292,7 @@ TEST_CASE("what is missing or damaged is named, and the page of before stays") {
 
   std::string const summary = read_file(task / "summary.json");
   remove_file(task / "summary.json");
-  CHECK(refused(task).starts_with("`results/posterior` holds no whole result: it has no `summary.json`\n"));
+  CHECK(refused(task).starts_with("`results/posterior` holds no complete result: it has no `summary.json`\n"));
   write_file(task / "summary.json", summary);
   CHECK(read_file(task / "report.html") == page);
   CHECK(refused(task) == "");

@@ -207,7 +207,7 @@ TEST_CASE("a shared parameter that only the noise reads is listed with its prior
   json const& shared = answer.summary.at("populations").at("shared");
   CHECK(shared.at("k").contains("sd"));
   CHECK(shared.at("sigma").at("prior") == "log_uniform(0.01, 0.5)");
-  CHECK(shared.at("sigma").at("because").get<std::string>().find("only the noise reads it") != std::string::npos);
+  CHECK(shared.at("sigma").at("because").get<std::string>().find("only the noise uses it") != std::string::npos);
   CHECK(answer.out.find("log_uniform(0.01, 0.5)") != std::string::npos);
 }
 

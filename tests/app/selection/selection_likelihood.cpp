@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/selection/line.hpp"
 #include "app/selection/likelihood_check.hpp"
+#include "app/selection/line.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -40,7 +40,7 @@ class Watch : public Progress {
   void begin(std::string_view what, std::uint64_t total) override {
     open = true;
     total_ = total;
-    beside_ = what == "the likelihood's side";
+    beside_ = what == "computing likelihoods";
     if (beside_ && at_its_beginning_) ask();
   }
   void advance(std::uint64_t done, std::string_view) override {
@@ -112,7 +112,7 @@ TEST_CASE("a climb that was given up is not followed: no finer solver, no chains
   CHECK(answer.model("wave").at("laplace").at("solver") == "rk4(substeps = 1)");
   CHECK(answer.model("straight").contains("polished"));
   CHECK_FALSE(answer.model("wave").contains("polished"));
-  CHECK(answer.said("not_polished").find("`wave` was not polished: the climb to its mode was given up") == 0);
+  CHECK(answer.said("not_polished").find("`polish` has no draws of `wave`: the search for its mode was stopped") == 0);
   CHECK(std::filesystem::exists(line.results() / "answer/polished_straight_1.csv"));
   CHECK_FALSE(std::filesystem::exists(line.results() / "answer/polished_wave_1.csv"));
 }
