@@ -1,4 +1,4 @@
-// Apart from the report, so that what reads it from a text includes nothing else of results.
+// A fixed parameter of a result. It has a header of its own so that src/typeset includes nothing else of results.
 #pragma once
 #include <string>
 
