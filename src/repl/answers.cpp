@@ -76,7 +76,8 @@ std::string along_time(Quantity const& quantity, PlotSize size) {
 std::string along_draws(Quantity const& quantity, PlotSize size) {
   std::vector<Curve> curves;
   curves.push_back({numbers_up_to(quantity.values.size()), quantity.all_shown(), true});
-  return plot_curves(curves, {quantity.chains.size() > 1 ? "draw, one chain after the other" : "draw", ""}, axis_of(quantity), size);
+  return plot_curves(curves, {quantity.chains.size() > 1 ? "draw, one chain after the other" : "draw", ""}, axis_of(quantity),
+                     size);
 }
 
 std::string plot_result(Result const& result, PlotSize plot_size) {
@@ -116,7 +117,8 @@ std::optional<std::string> plot(ast::Call const& call, PlotSize plot_size, Evalu
         auto const [message, help] = without_draws(*each);
         return refuse(arguments[each == &*x ? 0 : 1].value.span, message, help);
       }
-    if (auto const why = unpaired(*x, *y)) return refuse(call.span, *why, "both must be draws of one fit, or samples of one record");
+    if (auto const why = unpaired(*x, *y))
+      return refuse(call.span, *why, "both must be draws of one fit, or samples of one record");
     drawn = plot_curves({{x->all_shown(), y->all_shown(), false}}, axis_of(*x), axis_of(*y), plot_size);
   } else {
     ast::Expression const& what = arguments[0].value;

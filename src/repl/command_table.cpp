@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "core/text/words.hpp"
 #include "repl/words.hpp"
 #include "syntax/words.hpp"
-#include "core/text/words.hpp"
 
 namespace sysid::repl {
 
@@ -17,7 +17,8 @@ std::span<CommandRow const> commands() {
       {"columns", "columns FILE.csv", "shows the columns of a data file", &command::columns},
       {"list", "list, list TOPIC", "lists the work; or functions, distributions, kernels, backends, discovery, solvers or modules",
        &command::list},
-      {"show", "show, show NAME", "shows the text of the work or of one of its statements, or the result of a task", &command::show},
+      {"show", "show, show NAME", "shows the text of the work or of one of its statements, or the result of a task",
+       &command::show},
       {"check", "check", "checks what the data can determine, before any sampling", &command::check},
       {"run", "run, run TASK ...", "runs the tasks of the work that have not been run, or those given", &command::run},
       {"refit", "refit [FIT] [as NAME] [with ...]", "fits the current model again, starting where the last fit ended",

@@ -3,13 +3,13 @@
 
 #include <set>
 
+#include "core/text/words.hpp"
 #include "repl/commands.hpp"
 #include "repl/statements.hpp"
 #include "repl/tasks.hpp"
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/parse.hpp"
-#include "core/text/words.hpp"
 
 namespace sysid::repl {
 namespace {

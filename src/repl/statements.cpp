@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/session/preconditions.hpp"
+#include "core/text/words.hpp"
 #include "data/table.hpp"
 #include "experiment/experiments.hpp"
 #include "load/load.hpp"
@@ -17,7 +18,6 @@
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/parse.hpp"
-#include "core/text/words.hpp"
 
 namespace sysid::repl {
 namespace {
@@ -58,13 +58,13 @@ bool draft(Context& context, EntryPart const& part, std::string const& entry, Wo
   std::size_t const place = work.find(of_model ? ItemKind::model : ItemKind::data, name);
   if (name.empty() || place == work.items.size()) {
     Diagnostics diagnostics;
-    diagnostics.add(
-        {Severity::error,
-         "",
-         of_model ? "this statement belongs to a model, but there is none yet" : "this statement belongs to a data block, but there is none yet",
-         Label{part.span, {}},
-         {},
-         of_model ? "begin with `model NAME {`, or `load FILE`" : "begin with `data NAME {`, or `load FILE`"});
+    diagnostics.add({Severity::error,
+                     "",
+                     of_model ? "this statement belongs to a model, but there is none yet"
+                              : "this statement belongs to a data block, but there is none yet",
+                     Label{part.span, {}},
+                     {},
+                     of_model ? "begin with `model NAME {`, or `load FILE`" : "begin with `data NAME {`, or `load FILE`"});
     context.output.show(diagnostics, entry);
     return false;
   }
@@ -127,7 +127,7 @@ bool enter_statements(Context& context, std::string const& entry) {
   Diagnostics diagnostics;
   auto const parts = parts_of(entry, diagnostics);
   if (!diagnostics.all().empty()) {
-    suggest_command(diagnostics, trimmed(entry));
+    suggest_command(diagnostics, std::string(trimmed(entry)));
     context.output.show(diagnostics, entry);
     return false;
   }

@@ -10,6 +10,7 @@
 #include "app/run/pipeline.hpp"
 #include "app/session/results.hpp"
 #include "app/session/stored_draws.hpp"
+#include "check/checked/task_kinds.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
 #include "report/file/result_folder.hpp"

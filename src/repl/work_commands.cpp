@@ -114,7 +114,8 @@ bool drop(Context& context, std::string const& name) {
   std::size_t const place = draft.find(name);
   std::size_t const model = draft.find(ItemKind::model, context.work.model);
   if (name.empty())
-    return context.output.refuse("drop what?", "`drop NAME` removes a statement of the work, or a declaration of the current model");
+    return context.output.refuse("drop what?",
+                                 "`drop NAME` removes a statement of the work, or a declaration of the current model");
   if (place < draft.items.size()) {
     draft.items.erase(draft.items.begin() + static_cast<std::ptrdiff_t>(place));
   } else if (model < draft.items.size()) {

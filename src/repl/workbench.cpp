@@ -1,11 +1,11 @@
 // An entry is a command, or statements.
 #include "repl/workbench.hpp"
 
+#include "core/text/words.hpp"
 #include "repl/commands.hpp"
 #include "repl/statements.hpp"
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"
-#include "core/text/words.hpp"
 
 namespace sysid::repl {
 
@@ -21,7 +21,7 @@ bool Workbench::complete(std::string const& entry) const {
 
 bool Workbench::enter(std::string const& entry) {
   std::string arguments;
-  if (CommandRow const* row = command_of(trimmed(entry), arguments))
+  if (CommandRow const* row = command_of(std::string(trimmed(entry)), arguments))
     return context_.output.guarded(Source("prompt", arguments), [&] { return row->run(context_, arguments); });
   return context_.output.guarded(Source("prompt", entry), [&] { return enter_statements(context_, entry); });
 }

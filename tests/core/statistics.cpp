@@ -14,7 +14,7 @@ using namespace sysid;
 namespace {
 
 using Values = std::vector<double>;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double beyond_all = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -57,7 +57,7 @@ TEST_CASE("quantiles of types 6 and 7") {
   CHECK(predictive_quantile(sorted, 0.99) == 4);
   CHECK(std::isnan(quantile({}, 0.5)));
   CHECK(std::isnan(quantile({1, std::nan("")}, 0.5)));
-  CHECK(quantile({infinity, infinity}, 0.5) == infinity);  // not infinity - infinity
+  CHECK(quantile({beyond_all, beyond_all}, 0.5) == beyond_all);  // not beyond_all - beyond_all
 }
 
 TEST_CASE("the median lies between the middle two, the upper median is one of them") {
@@ -65,12 +65,12 @@ TEST_CASE("the median lies between the middle two, the upper median is one of th
   CHECK(median({9, 1, 3}) == 3);
   CHECK(upper_median({4, 1, 3, 2}) == 3);
   CHECK(upper_median({9, 1, 3}) == 3);
-  CHECK(upper_median({infinity, 1, infinity, 2}) == infinity);
+  CHECK(upper_median({beyond_all, 1, beyond_all, 2}) == beyond_all);
 }
 
 TEST_CASE("the range is that of the finite values") {
   CHECK(finite_range({}) == std::pair(0.0, 1.0));
-  CHECK(finite_range({std::nan(""), 2, -infinity, -1}) == std::pair(-1.0, 2.0));
+  CHECK(finite_range({std::nan(""), 2, -beyond_all, -1}) == std::pair(-1.0, 2.0));
 }
 
 TEST_CASE("quantiles of the standard normal invert its cumulative probability") {

@@ -16,11 +16,11 @@ using namespace sysid::testing;
 
 namespace {
 
-/// y_i ~ N(mean, 1/precision), both free: optimum at the sample's mean and 1/variance (divisor n).
+/// y_i ~ N(sample_mean, 1/precision), both free: optimum at the sample's sample_mean and 1/variance (divisor n).
 TestTarget normal_sample(std::vector<double> const& y, Prior precision) {
   std::size_t const n = y.size();
   double const half = 0.5 * static_cast<double>(n), ceiling = half * std::log(1e6);
-  return TestTarget({"mean", "precision"}, {{Prior::normal, 0, 10}, precision}, static_cast<int>(n) + 1,
+  return TestTarget({"sample_mean", "precision"}, {{Prior::normal, 0, 10}, precision}, static_cast<int>(n) + 1,
                     ceiling - half * std::log(2 * std::numbers::pi), [=](std::vector<double> const& w, std::vector<double>& rows) {
                       for (std::size_t i = 0; i < n; ++i) rows[i] = std::sqrt(w[1]) * (y[i] - w[0]);
                       rows[n] = as_residual(half * std::log(w[1]), ceiling);
@@ -28,11 +28,11 @@ TestTarget normal_sample(std::vector<double> const& y, Prior precision) {
 }
 
 std::vector<double> const sample = {2.1, 1.7, 2.9, 2.4, 1.2, 2.0, 2.6, 1.9};
-constexpr double n = 8, mean = 2.1;
+constexpr double n = 8, sample_mean = 2.1;
 
 double variance() {
   double sum = 0;
-  for (double const v : sample) sum += (v - mean) * (v - mean) / n;
+  for (double const v : sample) sum += (v - sample_mean) * (v - sample_mean) / n;
   return sum;
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("ml finds the sample mean and variance, with the sds of the Fisher inf
   FitResult const result = optimum::run_ml(target, Settings{}, bench.context);
   REQUIRE(result.draws.total() == 1);
   double const precision = 1 / variance();
-  CHECK(result.draws.chains[0].values[0][0] == doctest::Approx(mean).epsilon(1e-5));
+  CHECK(result.draws.chains[0].values[0][0] == doctest::Approx(sample_mean).epsilon(1e-5));
   CHECK(result.draws.chains[0].values[0][1] == doctest::Approx(precision).epsilon(1e-4));
   // Differences of 0.3 sd bend the curvature of a gamma shape by h^2/12 of its fourth derivative: below one per cent.
   CHECK(result.modes[0].sd[0] == doctest::Approx(std::sqrt(variance() / n)).epsilon(0.01));
@@ -83,7 +83,7 @@ TEST_CASE("a point estimate has the standard deviations of its Laplace approxima
   Bench bench;
   FitResult const result = optimum::run_ml(normal_sample(sample, {Prior::uniform, 1e-4, 1e3}), Settings{}, bench.context);
   REQUIRE(result.summaries.size() == 2);
-  // Fisher information of a normal sample of n: n precision for the mean, n / (2 precision^2) for the precision.
+  // Fisher information of a normal sample of n: n precision for the sample_mean, n / (2 precision^2) for the precision.
   CHECK(result.summaries[0].sd == doctest::Approx(std::sqrt(variance() / n)).epsilon(1e-2));
   CHECK(result.summaries[1].sd == doctest::Approx(std::sqrt(2.0 / n) / variance()).epsilon(1e-2));
   // One point has no quantiles.

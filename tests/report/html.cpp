@@ -36,7 +36,7 @@ std::string colour(std::string_view name, std::size_t end) {
 }
 
 /// (L1 + 0.05)/(L2 + 0.05) of the relative luminances                                    WCAG 2.2, contrast ratio
-double contrast(std::string const& a, std::string const& b) {
+double contrast_ratio(std::string const& a, std::string const& b) {
   auto const luminance = [](std::string const& hex) {
     auto const channel = [&](std::size_t at) {
       double const c = std::stoi(hex.substr(at, 2), nullptr, 16) / 255.0;
@@ -117,13 +117,13 @@ TEST_CASE("text stands out from what is behind it, light and dark") {
         CAPTURE(text);
         CAPTURE(paper);
         CAPTURE(end == dark);
-        CHECK(contrast(colour(text, end), colour(paper, end)) >= 4.5);
+        CHECK(contrast_ratio(colour(text, end), colour(paper, end)) >= 4.5);
       }
-      CHECK(contrast(colour("fig-ink", end), colour(paper, end)) >= 4.5);
-      CHECK(contrast(colour("fig-muted", end), colour(paper, end)) >= 4.5);
+      CHECK(contrast_ratio(colour("fig-ink", end), colour(paper, end)) >= 4.5);
+      CHECK(contrast_ratio(colour("fig-muted", end), colour(paper, end)) >= 4.5);
     }
-  CHECK(contrast("ffffff", "000000") == doctest::Approx(21));
-  CHECK(contrast("777777", "ffffff") == doctest::Approx(4.48).epsilon(1e-3));
+  CHECK(contrast_ratio("ffffff", "000000") == doctest::Approx(21));
+  CHECK(contrast_ratio("777777", "ffffff") == doctest::Approx(4.48).epsilon(1e-3));
 }
 
 TEST_CASE("a picture has the title of its figure, not gnuplot's, and identifiers of its own") {
