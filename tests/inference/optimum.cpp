@@ -16,11 +16,11 @@ using namespace sysid::testing;
 
 namespace {
 
-/// y_i ~ N(sample_mean, 1/precision), both free: optimum at the sample's sample_mean and 1/variance (divisor n).
+/// y_i ~ N(mean, 1/precision), both free: optimum at the sample's mean and 1/variance (divisor n).
 TestTarget normal_sample(std::vector<double> const& y, Prior precision) {
   std::size_t const n = y.size();
   double const half = 0.5 * static_cast<double>(n), ceiling = half * std::log(1e6);
-  return TestTarget({"sample_mean", "precision"}, {{Prior::normal, 0, 10}, precision}, static_cast<int>(n) + 1,
+  return TestTarget({"mean", "precision"}, {{Prior::normal, 0, 10}, precision}, static_cast<int>(n) + 1,
                     ceiling - half * std::log(2 * std::numbers::pi), [=](std::vector<double> const& w, std::vector<double>& rows) {
                       for (std::size_t i = 0; i < n; ++i) rows[i] = std::sqrt(w[1]) * (y[i] - w[0]);
                       rows[n] = as_residual(half * std::log(w[1]), ceiling);
@@ -83,7 +83,7 @@ TEST_CASE("a point estimate has the standard deviations of its Laplace approxima
   Bench bench;
   FitResult const result = optimum::run_ml(normal_sample(sample, {Prior::uniform, 1e-4, 1e3}), Settings{}, bench.context);
   REQUIRE(result.summaries.size() == 2);
-  // Fisher information of a normal sample of n: n precision for the sample_mean, n / (2 precision^2) for the precision.
+  // Fisher information of a normal sample of n: n precision for the mean, n / (2 precision^2) for the precision.
   CHECK(result.summaries[0].sd == doctest::Approx(std::sqrt(variance() / n)).epsilon(1e-2));
   CHECK(result.summaries[1].sd == doctest::Approx(std::sqrt(2.0 / n) / variance()).epsilon(1e-2));
   // One point has no quantiles.
