@@ -22,7 +22,7 @@ constexpr Command commands[] = {
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
     {"fmt", files, "rewrite files in canonical layout", &declare_format,
      "sysid fmt duffing.sysid\nsysid fmt --check models/*.sysid"},
-    {"repl", files, "start an interactive prompt: statements of the language, tasks, expressions over results", &declare_repl,
+    {"repl", files, "interactive prompt: statements of the language, tasks, expressions over results", &declare_repl,
      "sysid repl\nsysid repl duffing.sysid --seed 1"},
     {"lsp", files, "serve an editor on standard input and output: the language server protocol", &declare_lsp, ""},
     {"compare", results, "compare fits and predictions: evidence and errors", &declare_compare,

@@ -82,7 +82,7 @@ TEST_CASE("shared parameters have one unit and one prior") {
   CHECK(set("power_law(n = 1); power_law(n = 1, p = 2); shared c, k, c").shared == std::vector<std::string>{"c", "k"});
   CHECK(refused("candidates laws { linear; power_law(n = 1); shared k }").find("error[E6505]") !=
         std::string::npos);  // 1..10 N/mm, N/m
-  CHECK(refused("candidates laws { linear; power_law(n = 2); shared k }").find("not the same unit") != std::string::npos);
+  CHECK(refused("candidates laws { linear; power_law(n = 2); shared k }").find("does not have the same unit") != std::string::npos);
 }
 
 TEST_CASE("each candidate of a selection is what a fit of it alone would be") {

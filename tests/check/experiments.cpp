@@ -122,7 +122,7 @@ TEST_CASE("what a data block fixes must be a parameter that experiments have for
 
 TEST_CASE("rows are used once") {
   CHECK(refused_tasks("f = fit m to bench, hall, bench with mh").find("error[E6304]: `bench` is used twice") != std::string::npos);
-  CHECK(refused_tasks("f = fit m to bench.late, bench with mh").find("error[E6304]: `bench` and `bench.late` share rows") !=
+  CHECK(refused_tasks("f = fit m to bench.late, bench with mh").find("error[E6304]: `bench` and `bench.late` overlap") !=
         std::string::npos);
   CHECK(errors_in(refused_tasks("f = fit m to bench.early, bench.late with mh")) == 0);
 }

@@ -42,7 +42,7 @@ TEST_CASE("rows of a table go on below their own sentence") {
   Desk const desk;
   Said const shown = desk.ask_on_terminal("list backends", 60);
   CHECK(shown.text.find(
-            "  burn_in    5000       first iterations, dropped; the\n                        proposal adapts in them\n") !=
+            "  burn_in    5000       first iterations, discarded; the\n                        proposal adapts during them\n") !=
         std::string::npos);
   CHECK(desk.ask("list backends").text.find("discarded; the proposal adapts during them\n") != std::string::npos);
 }

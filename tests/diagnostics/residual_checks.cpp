@@ -67,7 +67,7 @@ TEST_CASE("a posterior where its prior has next to nothing is named, one in its 
     json const findings = findings_of_late_rows(statements, record);
     json const* const found = find(findings, "prior_contradicted");
     CHECK((found != nullptr) == named);
-    if (found != nullptr) CHECK(found->at("message").get<std::string>().starts_with("k is at 0.0"));
+    if (found != nullptr) CHECK(found->at("message").get<std::string>().starts_with("k is estimated as 0.0"));
   }
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("an estimated noise that does not reach the residuals is not advised t
   json const findings = findings_of_late_rows(
       narrow, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + 0.3 * stream.normal(); });
   REQUIRE(find(findings, "noise_size") != nullptr);
-  CHECK(find(findings, "noise_size")->at("help").get<std::string>().starts_with("the model misses something, a prior holds it"));
+  CHECK(find(findings, "noise_size")->at("help").get<std::string>().starts_with("the model is incomplete, a prior excludes the values that fit"));
 }
 
 TEST_CASE("a fit says when its prior predicts another size than was measured") {

@@ -210,7 +210,7 @@ TEST_CASE("an input that does not vary has no correlation and no panel") {
   for (double& each : report.predictions[0].inputs[0].values) each = 3;
   plot::Figure const figure = residual_figure(report.predictions[0], report.predictions[0].quantities[0]);
   CHECK(block(figure.script, "input0").empty());
-  CHECK(figure.caption.find("does not vary") != std::string::npos);
+  CHECK(figure.caption.find("A constant input has no correlation") != std::string::npos);
 }
 
 TEST_CASE("the value that data were made with is a line at its place, where all records agree on it") {
@@ -451,7 +451,7 @@ TEST_CASE("a function that was found shows where the record reads it") {
   double const low = strip[0][1];
   CHECK(strip[2][0] == doctest::Approx(0.25));
   CHECK(strip[2][1] - low == doctest::Approx(2 * (strip[6][1] - low)));
-  CHECK(figure.caption.find("how often") != std::string::npos);
+  CHECK(figure.caption.find("how many of the fitted rows") != std::string::npos);
   function.visits[0].assign(4, 0);
   CHECK(block(function_figure(function).script, "visits0").empty());
 }

@@ -171,10 +171,10 @@ TEST_CASE("sentences follow the values and never contradict the checks") {
   CHECK(says({{"coverage_95", 0.94}}, "consistent with the data"));
   CHECK(says({{"coverage_95", 0.7}}, "too narrow"));
   CHECK(says({{"coverage_95", 1}}, "too wide for these data"));
-  CHECK(says({{"whiteness_p", 2e-4}}, "residuals follow one another"));
-  CHECK(says({{"whiteness_p", 0.02}}, "no residual follows"));
+  CHECK(says({{"whiteness_p", 2e-4}}, "the residuals are autocorrelated"));
+  CHECK(says({{"whiteness_p", 0.02}}, "no autocorrelation of the residuals"));
   CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals uncorrelated with heat, p"));
-  CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals follow the input"));
+  CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "the residuals are correlated with the input"));
   CHECK(says({{"chi_squared_per_sample", 0.6}}, "the noise explains them"));
   report.noise = {"sigma"};
   CHECK(says({{"chi_squared_per_sample", 0.6}}, "was fitted to the residuals, so this does not test the model"));
