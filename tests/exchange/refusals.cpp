@@ -29,8 +29,8 @@ TEST_CASE("an export refuses folders without draws, files that are there and res
   auto const require = [&](std::filesystem::path const& folder) {
     return refusal<UserError>([&] { require_exportable(find_results(folder), false); });
   };
-  CHECK(require(results).ends_with("posterior/posterior.nc` is there already"));
-  CHECK(require(results / "forecast").ends_with("forecast` is a prediction, which goes into the file of its fit"));
+  CHECK(require(results).ends_with("posterior/posterior.nc` exists already"));
+  CHECK(require(results / "forecast").ends_with("forecast` is a prediction and is exported with its fit"));
   CHECK(require(results / "posterior/figures").ends_with("figures` holds no results"));
   CHECK(refusal<IoError>([&] { find_results(results / "nowhere"); }).starts_with("there is no folder"));
 

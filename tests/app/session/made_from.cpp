@@ -37,7 +37,7 @@ TEST_CASE("a prediction of draws that have been replaced is told, and one made a
     CHECK((content(report_results(results / "forecast", std::nullopt, false)).find("made_from_earlier") != std::string::npos) ==
           finding);
     std::string const compared = comparison_text(compare({results}));
-    CHECK((compared.find("from an earlier `posterior`") != std::string::npos) == finding);
+    CHECK((compared.find("an earlier run of `posterior`") != std::string::npos) == finding);
     auto const written = nlohmann::json::parse(read_file(results / "forecast/summary.json")).at("findings");
     auto const warnings =
         std::count_if(written.begin(), written.end(), [](auto const& each) { return each["severity"] == "warning"; });

@@ -102,5 +102,5 @@ TEST_CASE("a parameter that nothing uses is said once, and the direction it leav
   CHECK_FALSE(found(told.fit, "flat_direction"));
   std::string const likeliest = with(used, "with map", "with ml");
   Told const flat = run_optimum(likeliest);
-  CHECK(times_in(flat.run.out, "the data leave idle undetermined") == 1);
+  CHECK(times_in(flat.run.out, "the data do not determine idle") == 1);
 }
