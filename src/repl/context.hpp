@@ -13,7 +13,7 @@
 #include "repl/canvas.hpp"
 #include "repl/output.hpp"
 #include "repl/result.hpp"
-#include "repl/work.hpp"
+#include "repl/work/work.hpp"
 
 namespace sysid::repl {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/text/diagnostic.hpp"
-#include "repl/work.hpp"
+#include "repl/work/work.hpp"
 
 namespace sysid::repl {
 

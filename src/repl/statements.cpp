@@ -11,11 +11,11 @@
 #include "experiment/experiments.hpp"
 #include "load/load.hpp"
 #include "repl/answers.hpp"
-#include "repl/change.hpp"
 #include "repl/commands.hpp"
-#include "repl/entry.hpp"
 #include "repl/tasks.hpp"
 #include "repl/words.hpp"
+#include "repl/work/change.hpp"
+#include "repl/work/entry.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/parse.hpp"
 

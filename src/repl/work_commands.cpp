@@ -6,10 +6,10 @@
 #include "app/catalogue/lists.hpp"
 #include "core/text/number.hpp"
 #include "core/text/wrapped.hpp"
-#include "repl/change.hpp"
 #include "repl/commands.hpp"
 #include "repl/help.hpp"
 #include "repl/statements.hpp"
+#include "repl/work/change.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/format.hpp"
 

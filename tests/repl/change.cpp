@@ -1,5 +1,5 @@
 // Statements put into a block that is there.
-#include "repl/change.hpp"
+#include "repl/work/change.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // What an entry is, and where its statements end.
-#include "repl/entry.hpp"
+#include "repl/work/entry.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The statements of a session and the names between them.
-#include "repl/work.hpp"
+#include "repl/work/work.hpp"
 
 #include <doctest/doctest.h>
 

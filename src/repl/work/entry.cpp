@@ -1,5 +1,5 @@
 // A statement is tried as what may stand in a file, in a model, in a data block, and as an expression.
-#include "repl/entry.hpp"
+#include "repl/work/entry.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Statements of a file and the names that tie them together.
-#include "repl/work.hpp"
+#include "repl/work/work.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "repl/work.hpp"
+#include "repl/work/work.hpp"
 
 namespace sysid::repl {
 

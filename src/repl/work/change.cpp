@@ -1,12 +1,12 @@
 // Places of named things in a block, and text put in for them.
-#include "repl/change.hpp"
+#include "repl/work/change.hpp"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
 
-#include "repl/entry.hpp"
+#include "repl/work/entry.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
