@@ -1,4 +1,4 @@
-// What the models, dictionaries and data blocks of all files declare, before any use is looked at.
+// What the models, dictionaries and data blocks of all files declare, read before their uses.
 #pragma once
 #include <map>
 #include <string>

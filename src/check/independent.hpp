@@ -1,4 +1,4 @@
-// A text with mistakes in its syntax is checked as far as it can be read; this tells what of the answer to believe.
+// A text with syntax errors is checked as far as it can be read; this determines which messages are reliable.
 #pragma once
 #include <span>
 

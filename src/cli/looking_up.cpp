@@ -1,4 +1,4 @@
-// list, explain, document, version: what the program knows of itself.
+// list, explain, document, version: information about the language and the program.
 #include <fmt/format.h>
 #include <unistd.h>
 

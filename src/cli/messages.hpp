@@ -1,4 +1,4 @@
-// What went wrong, as the command line says it: text or JSON, and the exit code of it.
+// Errors as the command line prints them: text or JSON, and their exit code.
 #pragma once
 #include <functional>
 #include <iostream>

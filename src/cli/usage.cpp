@@ -1,4 +1,4 @@
-// CLI11 knows what it could not read; the names that are near are ours to find.
+// CLI11 reports what it could not read; we add similar names.
 #include "cli/usage.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The wording of data errors. Messages are lower case without a full stop; `help` says what to do.
+// The wording of data errors. Messages are lower case without a full stop; `help` states what to do.
 #include "data/errors.hpp"
 
 #include <fmt/format.h>

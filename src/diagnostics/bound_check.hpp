@@ -1,4 +1,4 @@
-// Whether a posterior leans on a bound of its prior, so that the bound, not the data, decides the answer.
+// Whether a posterior is concentrated at a bound of its prior, so that the bound determines the result.
 #pragma once
 #include <span>
 

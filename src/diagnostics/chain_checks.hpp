@@ -1,4 +1,4 @@
-// What chains say about themselves: did they move, do they agree, are there enough independent draws.
+// Checks of chains: whether they moved, whether they agree, whether there are enough independent draws.
 #pragma once
 #include <cstdint>
 #include <span>

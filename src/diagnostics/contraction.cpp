@@ -1,4 +1,4 @@
-// By intervals of 90 %, which heavy tails leave alone.
+// Compares 90 % intervals, which heavy tails do not affect.
 #include "diagnostics/contraction.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What the data have taught of a parameter: its posterior against its prior.
+// How much the data narrowed a parameter: its posterior against its prior.
 #pragma once
 #include <optional>
 #include <utility>

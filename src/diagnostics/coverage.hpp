@@ -1,4 +1,4 @@
-// Whether data lie where a prediction says, and what its bands are good for.
+// Whether data lie within the bands of a prediction, and the verdict of the prediction.
 #pragma once
 #include "result/report.hpp"
 

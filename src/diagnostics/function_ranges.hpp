@@ -1,4 +1,4 @@
-// Where the unknown functions of an equation are read, and whether their finite sums stand for something there.
+// The arguments at which the unknown functions of an equation are used, and whether their finite sums are valid there.
 #pragma once
 #include "likelihood/trajectory.hpp"
 #include "result/finding.hpp"

@@ -1,4 +1,4 @@
-// Residuals that do not belong to the others.
+// Residuals that are far from all others.
 #pragma once
 #include <cstddef>
 #include <span>

@@ -1,4 +1,4 @@
-// Priors that expect something of another size than what was measured.
+// Priors that predict responses of another size than the measured ones.
 #pragma once
 #include <string>
 

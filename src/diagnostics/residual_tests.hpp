@@ -1,4 +1,4 @@
-// What residuals say about a model: are they noise of the stated size, and has the input anything left to explain in them.
+// Tests of residuals: whether they are noise of the stated size, and whether they are correlated with the input.
 // Pure functions on plain vectors; NaN is a missing sample and breaks the record there.
 #pragma once
 #include <span>

@@ -1,4 +1,4 @@
-// One batch of sixteen lanes per parameter; columns are kept only until their triangular factor is known.
+// One batch of sixteen lanes per parameter; columns are kept only until their triangular factor is computed.
 #include "diagnostics/sensitivity.hpp"
 
 #include <cmath>

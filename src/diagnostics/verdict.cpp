@@ -1,4 +1,4 @@
-// Wording of the verdict: each finding with the word that `sysid explain` knows it by.
+// Wording of the verdict: each finding with its word for `sysid explain`.
 #include "diagnostics/verdict.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// All findings of a run in one answer: can these numbers be used, why not, what to do; and the exit code's class.
+// All findings of a run in one verdict: whether the numbers can be used, why not, what to do; and the class of the exit code.
 #pragma once
 #include <cstddef>
 #include <string>

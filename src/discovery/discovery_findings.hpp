@@ -1,4 +1,4 @@
-// What stands between data and equation, in findings: which code, how grave, what to do.
+// The concerns of a discovery as findings: which code, which severity, what to do.
 #pragma once
 #include "regression/column/concern.hpp"
 #include "result/finding.hpp"

@@ -1,4 +1,4 @@
-// What a dictionary could hold and does not, in words: for `check` and for what a discovery reports.
+// Terms that a dictionary could contain and does not, in words: for `check` and for the report of a discovery.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// How well a model with given coefficients foretells rows: one row ahead, k rows ahead, and in a free run.
+// How well a model with given coefficients predicts rows: one row ahead, k rows ahead, and in a free run.
 #pragma once
 #include <memory>
 #include <optional>

@@ -1,4 +1,4 @@
-// Fits, ranks, scores, describes.
+// Fits, ranks, scores and describes structures.
 #include "discovery/simulation_validation.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Climbs from short segments to long ones with the structure that leads, takes the others along.
+// Extends the leading structure from short segments to long ones, and fits the others over the same segments.
 #include "discovery/structure_fits.hpp"
 
 #include <algorithm>

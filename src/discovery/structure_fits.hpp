@@ -1,4 +1,4 @@
-// Structures fitted to the motion over the same segments of the records, as long as the best of them follows.
+// Structures fitted to the motion over common segments of the records, as long as the best of them can follow.
 #pragma once
 #include <functional>
 #include <memory>

@@ -1,4 +1,4 @@
-// Thresholds and words.
+// The limits of these findings, and their wording.
 #include "discovery/validation_findings.hpp"
 
 #include <fmt/format.h>

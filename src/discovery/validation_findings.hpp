@@ -1,4 +1,4 @@
-// What a judgement by simulation has to say of itself.
+// Findings about the validation by simulation.
 #pragma once
 #include "result/finding.hpp"
 #include "result/simulation_validation.hpp"

@@ -1,4 +1,4 @@
-// Which rows a judgement by simulation fits and which it scores on, over which lengths.
+// Which rows a validation by simulation fits and scores, and over which lengths.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// How large deviance residuals are under the noise itself: what chi-squared holds those of a fit against.
+// The size of deviance residuals under the noise itself, which chi-squared compares with those of a fit.
 #pragma once
 #include <span>
 

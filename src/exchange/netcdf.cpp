@@ -1,4 +1,4 @@
-// NetCDF's C interface, in memory: the file is written whole by whoever asked for its bytes.
+// NetCDF's C interface, in memory: the caller writes the file as a whole.
 #include "exchange/netcdf.hpp"
 
 #include <fmt/format.h>

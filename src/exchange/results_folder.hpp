@@ -1,4 +1,4 @@
-// Which results a folder holds, and of which tasks of a file they are.
+// Which results a folder contains, and of which tasks of a file.
 #pragma once
 #include <filesystem>
 #include <vector>

@@ -1,4 +1,4 @@
-// Columns in the order in which the equations ask for them.
+// Columns in the order in which the equations use them.
 #include "exchange/stan_columns.hpp"
 
 #include <fmt/format.h>

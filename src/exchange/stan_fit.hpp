@@ -1,4 +1,4 @@
-// A fit that Stan can be told of: what all blocks of its program are written from.
+// A fit that can be written as a Stan program: the data from which all blocks of the program are written.
 #pragma once
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-// Words by where they mean something, in the order of the manual.
+// Reserved words of Stan by the place where they have a meaning, in the order of the manual.
 #include "exchange/stan_names.hpp"
 
 #include <algorithm>

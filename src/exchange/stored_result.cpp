@@ -1,4 +1,4 @@
-// summary.json knows the user's names and units, the CSV beside it the numbers.
+// summary.json has the user's names and units, the CSV beside it the numbers.
 #include "exchange/stored_result.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// How much a measured channel moves, and its derivatives: where starts and noise are looked for before anything was fitted.
+// How much a measured channel and its derivatives vary: the scale for starts and noise before the first fit.
 #pragma once
 #include <cstddef>
 #include <vector>

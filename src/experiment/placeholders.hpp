@@ -1,4 +1,4 @@
-// Numbers in a record that stand for no measurement.
+// Numbers in a record that mark missing measurements.
 #pragma once
 #include "experiment/experiments.hpp"
 #include "result/finding.hpp"

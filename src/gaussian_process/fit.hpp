@@ -1,4 +1,4 @@
-// Hyper-parameters that fit: the maximum of their posterior density from several starts, and what is doubtful about it.
+// Hyper-parameters by maximising their posterior density from several starts, with concerns about the result.
 #pragma once
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-// Laplace's approximation, mode by mode, and how far from it the density is.
+// Laplace's approximation, mode by mode, and an estimate of its error.
 #include "inference/evidence.hpp"
 
 #include <fmt/format.h>

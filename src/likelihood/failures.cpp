@@ -1,4 +1,4 @@
-// Failures are re-run one by one, which is slow, so few of them are.
+// Only few failures are run again one by one, because that is slow.
 #include "likelihood/failures.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The log likelihood sample by sample: what leave-one-out estimates and other programs ask of a posterior draw.
+// The log likelihood sample by sample: for leave-one-out estimates and other programs.
 #pragma once
 #include <memory>
 #include <vector>

@@ -1,4 +1,4 @@
-// What a target need not have.
+// Defaults for the optional parts of a target.
 #include "likelihood/target.hpp"
 
 #include "core/text/diagnostic.hpp"

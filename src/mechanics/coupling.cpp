@@ -1,4 +1,4 @@
-// A graph of masses and the ground: its edges by what moves accelerations, its scales by walking along them.
+// A graph of masses and the ground: its edges from the terms of the accelerations, its scales by walking along them.
 #include "mechanics/coupling.hpp"
 
 #include <algorithm>

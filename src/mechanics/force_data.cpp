@@ -1,4 +1,4 @@
-// Newton's law for what hangs on a link: its force is what inertia and inputs leave.
+// Newton's law for the masses of a link: its force is the input minus the inertia force.
 #include "mechanics/force_data.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What measured samples say of the force of a link, and what the model says of it.
+// The force of a link from measured samples, and from the model.
 #pragma once
 #include <optional>
 #include <vector>

@@ -1,4 +1,4 @@
-// Channels told apart by the location of their noise.
+// Channels are distinguished by the location of their noise.
 #include "mechanics/measured_motion.hpp"
 
 #include <cmath>

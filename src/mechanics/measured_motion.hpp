@@ -1,4 +1,4 @@
-// What the channels of an experiment show of a mass.
+// What the channels of an experiment measure of a mass.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,4 @@
-// Discrete time: what a model remembers of past samples, and what stands for them when it predicts.
+// Discrete time: which past samples a model uses, and what replaces them in a prediction.
 #pragma once
 #include <optional>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Expressions held on one side of each of their switching surfaces: smooth, so a high-order step may cross nothing.
+// Expressions held on one side of each of their switching surfaces: they are smooth, so that a high-order step meets no kink.
 #pragma once
 #include <span>
 #include <vector>

@@ -1,4 +1,4 @@
-// Equations from records: projection, whitening, what the columns can tell, choice of terms; the one entry for tasks.
+// Equations from records: projection, whitening, checks of the columns, choice of terms; the one entry for tasks.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

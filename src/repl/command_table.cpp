@@ -1,4 +1,4 @@
-// The commands of the prompt, one row each, and how one is told from a statement of the language.
+// The commands of the prompt, one row each, and how they are distinguished from statements of the language.
 #include "repl/commands.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What may stand in a file is the language server's to know; the prompt adds its commands and the names of results.
+// The language server completes what a file may contain; the prompt adds its commands and the names of results.
 #include "repl/completion.hpp"
 
 #include <fmt/format.h>

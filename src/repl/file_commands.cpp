@@ -1,4 +1,4 @@
-// Commands about files: taken in, written, looked at.
+// Commands about files: load, save, show columns.
 #include <fmt/format.h>
 
 #include <cmath>

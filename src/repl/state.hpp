@@ -1,4 +1,4 @@
-// What outlives a session: the history of entries, and work that was not saved.
+// What is kept between sessions: the history of entries, and work that was not saved.
 #pragma once
 #include <filesystem>
 

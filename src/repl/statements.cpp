@@ -1,4 +1,4 @@
-// Entries to a checked work: nothing means anything else at the prompt than in a file, since it is a file that is checked.
+// Entries to a checked work. Statements mean the same as in a file, since the work is checked as a file.
 #include "repl/statements.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What becomes of the statements of an entry.
+// How the statements of an entry are handled.
 #pragma once
 #include <string>
 

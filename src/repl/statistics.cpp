@@ -1,4 +1,4 @@
-// One function per statistic, which refuses what it cannot be asked of.
+// One function per statistic, which rejects arguments that it cannot handle.
 #include "repl/statistics.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// A session at the prompt: takes entries, and shows what has become of the work. Knows no terminal.
+// A session at the prompt: takes entries and shows their results. Does not know the terminal.
 #pragma once
 #include <cstdint>
 #include <deque>

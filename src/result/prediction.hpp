@@ -1,4 +1,4 @@
-// What a model says along a record: bands of posterior draws beside what was measured.
+// The prediction of a model along a record: bands of posterior draws beside the measurements.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// What an oscillator pulls back with along a record, and over its displacement and velocity.
+// The restoring force of an oscillator along a record, and over its displacement and velocity.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// What simulation says of discovered structures: coefficients fitted to the motion, evidence, stability, errors on held-out rows.
+// Discovered structures in simulation: coefficients fitted to the motion, evidence, stability, errors on held-out rows.
 #pragma once
 #include <optional>
 #include <string>

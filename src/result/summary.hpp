@@ -1,4 +1,4 @@
-// What draws say of one quantity, as plain numbers.
+// The summary of the draws of one quantity, as plain numbers.
 #pragma once
 #include <string>
 #include <vector>

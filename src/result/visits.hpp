@@ -1,4 +1,4 @@
-// How often a record reads an unknown function, counted in equal parts of a range.
+// How often a record uses an unknown function, counted in equal parts of a range.
 #pragma once
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Which density an optimum is one of.
+// The density whose optimum is searched for.
 #pragma once
 
 namespace sysid {

@@ -1,4 +1,4 @@
-// Local searches by gradient, for likelihoods that are dear and no sums of squares.
+// Local searches by gradient, for expensive likelihoods that are not sums of squares.
 #pragma once
 #include <functional>
 #include <vector>

@@ -1,4 +1,4 @@
-// Searches that meet, and what they have found.
+// Merges local searches that end at the same place.
 #include "search/local_searches.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Where many local searches end: each place once, with its Laplace approximation.
+// The results of many local searches: each mode once, with its Laplace approximation.
 #pragma once
 #include <functional>
 #include <vector>

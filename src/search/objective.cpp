@@ -1,4 +1,4 @@
-// Densities a search climbs.
+// The densities that a search maximises.
 #include "search/objective.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a search climbs: a posterior or a likelihood over the sampler's coordinates, with the prior's widths as its yardstick.
+// What a search maximises: a posterior or a likelihood over the sampler's coordinates, scaled by the widths of the prior.
 #pragma once
 #include <Eigen/Core>
 #include <functional>

@@ -1,4 +1,4 @@
-// Where an evaluation of expressions stops being finite.
+// Where the value of an expression is not finite.
 #pragma once
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-// How large the states of a solve are, before it has shown it: what error control measures the error of a state near zero by.
+// The size of the states before a solve, from which error control takes its scale for a state near zero.
 #pragma once
 #include <span>
 

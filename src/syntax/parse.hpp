@@ -1,4 +1,4 @@
-// Text to syntax tree. Implemented in grammar/, the only folder that knows Boost.Spirit.
+// Text to syntax tree. Implemented in grammar/, the only folder that includes Boost.Spirit.
 #pragma once
 #include <cstddef>
 #include <optional>

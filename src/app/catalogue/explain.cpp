@@ -1,4 +1,4 @@
-// Sections of Markdown pages: enough of it for pages we write ourselves, which a test reads line by line.
+// Reads the sections of the Markdown pages of errors; it handles only the Markdown that these pages use, which a test checks.
 #include "app/catalogue/explain.hpp"
 
 #include <fmt/format.h>

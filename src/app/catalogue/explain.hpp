@@ -1,4 +1,4 @@
-// What `sysid explain CODE` knows: the sections of docs/errors, embedded when the program is built.
+// The pages of `sysid explain CODE`: the sections of docs/errors, embedded when the program is built.
 #pragma once
 #include <optional>
 #include <span>

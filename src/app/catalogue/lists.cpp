@@ -1,4 +1,4 @@
-// Tables as text.
+// Writes the tables of `sysid list` as text.
 #include "app/catalogue/lists.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Markdown from a module's text and tree.
+// Writes the page of a module from its text and syntax tree.
 #include "app/catalogue/module_page.hpp"
 
 #include <fmt/format.h>

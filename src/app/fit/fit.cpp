@@ -1,4 +1,4 @@
-// Data to target, search, step size, sampling with checkpoints, checks, results.
+// The steps of a fit: data to target, search, step size, sampling with checkpoints, checks, results.
 #include "app/fit/fit.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Rows of the table and why they do not apply.
+// The rows of the table of checks, and the reasons why a check does not apply.
 #include "app/fit/fit_checks.hpp"
 
 #include <fmt/format.h>

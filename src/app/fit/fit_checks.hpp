@@ -1,4 +1,4 @@
-// The checks of a finished fit, of whatever likelihood: a row for each. One that does not apply says why.
+// The checks of a finished fit, for every likelihood: one row each. A row that does not apply gives the reason.
 #pragma once
 #include <span>
 #include <string>

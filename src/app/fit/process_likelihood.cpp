@@ -1,4 +1,4 @@
-// Fits with Gaussian processes: linear coefficients are integrated out and drawn afterwards, scores are of samples left out.
+// Fits with Gaussian processes: linear coefficients are integrated out and drawn afterwards; scores are leave-one-out.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A dictionary as it was written out: terms with the units of their coefficients, and what is not among them.
+// The page of a dictionary: its terms with the units of their coefficients, and the terms that were left out.
 #include <fmt/format.h>
 
 #include "app/preflight/check_file.hpp"

@@ -1,4 +1,4 @@
-// `sysid check`: what can be known of a file before any sampling.
+// `sysid check`: the checks of a file that need no sampling.
 #pragma once
 #include "app/session/session.hpp"
 #include "experiment/experiments.hpp"

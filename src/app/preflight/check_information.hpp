@@ -1,4 +1,4 @@
-// What slopes at prior draws say about the parameters of a fit, in words: null directions, expected sds, confounded pairs.
+// Identifiability from derivatives at prior draws, in words: null directions, expected sds, confounded pairs.
 #pragma once
 #include <vector>
 

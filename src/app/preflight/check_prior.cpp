@@ -1,4 +1,4 @@
-// What draws of the prior predict with the actual input: do they simulate, and are they of the size measured?
+// Predictions of prior draws with the actual input: whether they can be simulated, and whether their size is that of the data.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hyper-parameters of draws beside the regressions that they would be used in.
+// Compares prior draws of the hyper-parameters with the data of the regressions that use them.
 #include "app/preflight/check_process.hpp"
 
 #include <fmt/format.h>

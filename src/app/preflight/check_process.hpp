@@ -1,4 +1,4 @@
-// What `check` says of Gaussian processes at samples before a fit: their priors against the data that are to tell of them.
+// The checks of Gaussian processes at samples before a fit: their priors against the data.
 #pragma once
 #include "app/session/session.hpp"
 #include "experiment/experiments.hpp"

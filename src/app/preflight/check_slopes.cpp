@@ -1,4 +1,4 @@
-// Slopes of the response at draws of the prior that ever finer solvers leave where they are.
+// Derivatives of the response at prior draws, on solvers made finer until the derivatives no longer change.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Which solver the result needs: by moves of parameters, and in a selection by what it does to distances.
+// Chooses the solver that the result needs: by how far parameters move or, in a selection, by how far distances move.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Data cut to what is looked at, solvers from coarse to fine, and the work that all of it would be.
+// Cuts the data to the examined rows, lists solvers from coarse to fine, and estimates the work.
 #include "app/preflight/preflight.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Models with Gaussian processes taken apart, and their targets.
+// Separates the parts of models with Gaussian processes, and builds their targets.
 #include "app/process/process_fit.hpp"
 
 #include "app/session/fit_target.hpp"

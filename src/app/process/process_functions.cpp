@@ -1,4 +1,4 @@
-// Cuts through conditional processes, one draw of the hyper-parameters after the other.
+// Evaluates conditional processes along each input, for one draw of the hyper-parameters after the other.
 #include "app/process/process_functions.hpp"
 
 #include <fmt/format.h>

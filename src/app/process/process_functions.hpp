@@ -1,4 +1,4 @@
-// What a fit found of Gaussian processes at samples, as functions of their inputs.
+// The estimated Gaussian processes at samples, as functions of their inputs.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,4 @@
-// Leave-one-out predictions in closed form, and what they say of the model.
+// Leave-one-out predictions in closed form, and the findings based on them.
 #include "app/process/process_scores.hpp"
 
 #include <fmt/format.h>

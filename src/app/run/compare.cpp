@@ -1,4 +1,4 @@
-// StoredSummary folders to tables; what cannot be compared is refused.
+// Reads stored summaries into tables, and rejects results that cannot be compared.
 #include "app/run/compare.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The example is that of the first verb.
+// The example in the message is that of the verb's first task.
 #include "app/run/nothing_to_do.hpp"
 
 #include <fmt/format.h>

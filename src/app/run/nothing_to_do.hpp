@@ -1,4 +1,4 @@
-// The answer to a run of a file that has no task of the kind that was asked for.
+// The message for a run of a file that has no task of the requested kind.
 #pragma once
 #include <string>
 #include <vector>

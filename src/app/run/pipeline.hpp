@@ -1,4 +1,4 @@
-// The stages from text to results, one line each; and what the command line can ask of them.
+// The stages from text to results, one line each; and the requests that the command line can make.
 #pragma once
 #include <functional>
 #include <ostream>

@@ -1,4 +1,4 @@
-// Folders to reports to one page.
+// Reads the folders of results into reports and writes one page.
 #include "app/run/report_results.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The wanted tasks of a file in their order: what is complete is kept, and nothing is replaced before all can begin.
+// Runs the requested tasks of a file in order: complete results are kept, and none is replaced before all tasks can begin.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Candidates compiled for their data, and the two targets that are made of them: distances, and each one's likelihood.
+// Compiles candidates for their data, and builds their two targets: distances, and the likelihood of each.
 #include "app/selection/candidate.hpp"
 
 #include <fmt/format.h>

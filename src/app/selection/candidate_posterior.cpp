@@ -1,4 +1,4 @@
-// From particles to modes, from modes to evidences.
+// Modes near the particles of each candidate, and evidences from these modes.
 #include "app/selection/candidate_posterior.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What the likelihood says of the candidates of a selection: modes near their particles, solvers that do not shape them, evidences.
+// The likelihood of the candidates of a selection: modes near their particles, sufficiently fine solvers, evidences.
 #pragma once
 #include <optional>
 #include <vector>

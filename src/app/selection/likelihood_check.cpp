@@ -1,4 +1,4 @@
-// Local searches from particles.
+// Local searches that start from particles.
 #include "app/selection/likelihood_check.hpp"
 
 #include <fmt/format.h>

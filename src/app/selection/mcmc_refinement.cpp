@@ -1,4 +1,4 @@
-// One run of `mh` per model that is worth it.
+// One run of `mh` for each model with enough probability.
 #include "app/selection/mcmc_refinement.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Chains on the exact likelihood, from the modes that particles lead to.
+// Chains on the exact likelihood, started at the modes that were found from particles.
 #pragma once
 #include <vector>
 

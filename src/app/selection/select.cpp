@@ -1,4 +1,4 @@
-// `select`: candidates to one target of distances, populations, what the likelihood says of the same, results.
+// The steps of `select`: candidates to one target of distances, populations, comparison with the likelihood, results.
 #include "app/selection/select.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Evidences, noise, residuals and integration against what the particles say.
+// Compares the particles with evidences, noise, residuals and integration errors.
 #include "app/selection/selection_checks.hpp"
 
 #include <fmt/format.h>

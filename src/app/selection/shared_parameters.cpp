@@ -1,4 +1,4 @@
-// Averages over models, and what there is none of.
+// Averages over models, and the parameters for which there is no average.
 #include "app/selection/shared_parameters.hpp"
 
 #include <algorithm>

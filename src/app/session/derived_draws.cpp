@@ -1,4 +1,4 @@
-// The kernel of derived quantities over draws, once per experiment.
+// Evaluates the kernel of derived quantities for all draws, once per experiment.
 #include "app/session/derived_draws.hpp"
 
 namespace sysid {

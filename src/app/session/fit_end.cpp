@@ -1,4 +1,4 @@
-// Verdict, files, terminal, exit code.
+// Verdict, files, terminal output and exit code of a finished fit.
 #include "app/session/fit_end.hpp"
 
 #include <fmt/format.h>

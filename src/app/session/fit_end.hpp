@@ -1,4 +1,4 @@
-// How every fit ends, whatever its likelihood: with nothing, early, or with a report on disk and draws for the tasks behind it.
+// The end of every fit, for all likelihoods: no result, an interrupted one, or a report on disk and draws for later tasks.
 #pragma once
 #include <chrono>
 #include <vector>

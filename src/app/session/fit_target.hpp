@@ -1,4 +1,4 @@
-// The target of a fit task: made alike by whoever samples it and whoever looks ahead.
+// The target of a fit task, built in the same way for sampling and for `check`.
 #pragma once
 #include <memory>
 

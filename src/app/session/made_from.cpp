@@ -1,4 +1,4 @@
-// A fit that is run again leaves the predictions of its former draws where they are.
+// Detects predictions whose fit has been run again since; they are not deleted.
 #include "app/session/made_from.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Reads and cuts the data of every task ahead of the work.
+// Reads and cuts the data of every task before the first one runs.
 #include "app/session/preconditions.hpp"
 
 #include <fmt/format.h>
@@ -70,7 +70,7 @@ std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std:
                                   std::vector<std::vector<ExperimentData>> const& data) {
   SelectorRow const& selector = *find_selector(what.backend);
   if (std::string const why = selector.refuse(what.settings); !why.empty()) return refused_settings(task, selector.name, why);
-  // The noise has particles in no population, but computing likelihoods starts from draws of it.
+  // The noise has particles in no population, but the searches by likelihood start from draws of it.
   bool const with_noise = what.settings.flag("cross_check") || what.settings.flag("polish");
   for (std::size_t c = 0; c < what.fits.size(); ++c) {
     Model const& model = models[static_cast<std::size_t>(what.fits[c].model)];

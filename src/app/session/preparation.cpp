@@ -1,4 +1,4 @@
-// Preparations as JSON that comes back bit for bit.
+// Stores preparations as JSON that is restored bit for bit.
 #include "app/session/preparation.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// What a fit knows before its first sample, and how it is kept: enough to go on from a checkpoint without searching again.
+// The state of a fit before its first sample, stored so that a resumed run does not search again.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <vector>

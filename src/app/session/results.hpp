@@ -1,4 +1,4 @@
-// Result folders before the work begins: claimed and proved writable, kept when they are complete.
+// Folders of results before the work begins: reserved, checked to be writable, and kept if they are complete.
 #pragma once
 #include <filesystem>
 

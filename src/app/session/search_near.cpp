@@ -1,4 +1,4 @@
-// Values of an earlier fit laid over draws of the prior.
+// Replaces values in draws of the prior by those of an earlier fit.
 #include "app/session/search_near.hpp"
 
 #include <fmt/format.h>

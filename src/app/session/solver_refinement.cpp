@@ -1,4 +1,4 @@
-// Modes back on the stated solver, then finer ones; what several modes have become, and what could not be settled.
+// Follows the modes on the stated solver and on finer ones; reports how far they moved and what did not converge.
 #include "app/session/solver_refinement.hpp"
 
 #include <fmt/format.h>

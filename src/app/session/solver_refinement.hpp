@@ -1,4 +1,4 @@
-// The solver of a fit whose task states none: chosen by what finer ones do to the modes, and said.
+// The solver of a fit whose task states none: chosen by how far finer ones move the modes, and reported.
 #pragma once
 #include "app/session/preparation.hpp"
 #include "app/session/session.hpp"

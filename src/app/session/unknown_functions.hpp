@@ -1,4 +1,4 @@
-// What a fit found of the unknown functions in its equations, and whether their finite sums can be believed.
+// The estimated unknown functions of the equations, and whether their finite sums are accurate.
 #pragma once
 #include <Eigen/Core>
 #include <vector>

@@ -1,4 +1,4 @@
-// `predict`: trajectories of posterior draws along records, condensed to bands with and without noise, and scored on their rows.
+// `predict`: simulates trajectories of posterior draws, computes bands with and without noise, and scores them.
 #include "app/task/tasks.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What was declared and serves nothing: units of coefficients, parameters, inputs.
+// Declarations of a dictionary that have no effect: units of coefficients, parameters, inputs.
 #include <algorithm>
 
 #include "check/dictionary/dictionary_checker.hpp"

@@ -1,4 +1,4 @@
-// Functions of modules that a dictionary calls, brought into it: behind this stage nobody knows of modules.
+// Functions of modules that a dictionary calls, copied into it: later stages have no modules.
 #pragma once
 #include "check/elaborate/environment.hpp"
 #include "syntax/ast.hpp"

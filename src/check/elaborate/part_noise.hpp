@@ -1,4 +1,4 @@
-// The noise of a model that became a part of another: a model's own noise is no part of a whole.
+// The noise of a model that is used as a part of another: parameters that only this noise uses are removed.
 #pragma once
 #include <set>
 #include <string>

@@ -1,4 +1,4 @@
-// What expressions of one model may say of its samples: `lag`, `measured`, `predicted`, `residual`, `since_last`.
+// How expressions of one model use its samples: `lag`, `measured`, `predicted`, `residual`, `since_last`.
 #pragma once
 #include <map>
 #include <optional>

@@ -1,4 +1,4 @@
-// One pass from the leaves up.
+// Determines signs in one pass from the leaves up.
 #include "check/expression/non_negative.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-// What can be seen of an expression's sign from its structure.
+// What the structure of an expression shows about its sign.
 #pragma once
 #include "expression/graph.hpp"
 

@@ -1,4 +1,4 @@
-// Expressions to nodes: operators, calls and choices, each with the units that it asks for.
+// Expressions to nodes: operators, calls and choices, each with the units that it requires.
 #include <algorithm>
 #include <utility>
 

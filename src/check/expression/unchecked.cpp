@@ -1,4 +1,4 @@
-// What the checker could not compare, told by its cause: names without a unit, each with the terms that it leaves open.
+// What the checker could not compare, by cause: names without a unit, each with the terms that could not be checked because of it.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Interval arithmetic from the leaves up, without care for rounding: what is asked for is a sign.
+// Interval arithmetic from the leaves up. Rounding is ignored, since only signs are needed.
 #include "check/expression/value_range.hpp"
 
 #include "core/numeric/not_finite.hpp"

@@ -1,4 +1,4 @@
-// Turns of phrase that the checker's messages share; the messages themselves are in errors_*.cpp.
+// Phrases that the checker's messages share; the messages themselves are in errors_*.cpp.
 #pragma once
 #include <span>
 #include <string>

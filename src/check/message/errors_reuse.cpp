@@ -1,4 +1,4 @@
-// The wording of messages about reuse. Lower case without a full stop; `help` says what to do.
+// The wording of messages about reuse. Lower case without a full stop; `help` states what to do.
 #include "check/message/errors_reuse.hpp"
 
 #include <fmt/format.h>

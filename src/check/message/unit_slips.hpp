@@ -1,4 +1,4 @@
-// What people write for a unit that is none: [N/m3], [Kg], [Nm], [kmh].
+// Common mistakes in units: [N/m3], [Kg], [Nm], [kmh].
 #pragma once
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-// Units and kinds of quantities as people call them, for messages: [N], not [kg m/s^2]; "a length".
+// Names of units and of kinds of quantities for messages: [N], not [kg m/s^2]; "a length".
 #pragma once
 #include <functional>
 #include <set>

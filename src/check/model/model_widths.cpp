@@ -1,4 +1,4 @@
-// Widths that no value of a prior makes possible: said here, not after hours of draws of which none has a likelihood.
+// Widths that are invalid for all values of a prior: reported by the checker, because every draw would have zero likelihood.
 #include <algorithm>
 
 #include "check/expression/value_range.hpp"

@@ -1,4 +1,4 @@
-// By trial: the model is checked again with another unit in a declaration, and the messages are compared.
+// Tries other units in a declaration: the model is checked again with each, and the messages are compared.
 #include "check/model/unit_blame.hpp"
 
 #include <algorithm>

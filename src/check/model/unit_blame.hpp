@@ -1,4 +1,4 @@
-// One wrong unit in a declaration makes a conflict wherever the name is used: told once, with the declaration.
+// A wrong unit in a declaration causes a conflict at each use of the name: it is reported once, at the declaration.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -1,4 +1,4 @@
-// Leaves that no root of the model reaches.
+// Leaves that cannot be reached from any root of the model.
 #include "check/model/unused.hpp"
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What a model declares and never reads.
+// What a model declares and never uses.
 #pragma once
 #include "core/text/diagnostic.hpp"
 #include "model/model.hpp"

@@ -1,4 +1,4 @@
-// Units of a Gaussian process: of its values and inputs, as far as arguments and hyper-parameters tell them.
+// Units of a Gaussian process: of its values and inputs, as far as arguments and hyper-parameters determine them.
 #pragma once
 #include <optional>
 #include <vector>

@@ -1,4 +1,4 @@
-// What may stand behind `with`, verb by verb, but for back ends: names for messages, meanings for whoever asks.
+// The options behind `with`, verb by verb, without those of back ends: names and meanings.
 #pragma once
 #include <string>
 #include <string_view>

@@ -1,4 +1,4 @@
-// What a file declares with which unit, and what can be said of units in its own words.
+// The units that a file declares, and units written with the file's own names.
 #pragma once
 #include <string>
 #include <vector>

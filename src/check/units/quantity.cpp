@@ -1,4 +1,4 @@
-// The algebra of expressions with units: one rule per operation, literals adapting as design asks.
+// The algebra of expressions with units: one rule per operation. Literals take the unit that they need.
 #include "check/units/quantity.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Unit expressions of the syntax tree to units; and what the checker knows of the unit of an expression.
+// Unit expressions of the syntax tree to units; and the unit of an expression as far as the checker can determine it.
 #pragma once
 #include <optional>
 

@@ -1,4 +1,4 @@
-// Asked of the environment, since no terminal says so itself.
+// Reads the environment, since a terminal does not report whether it has colours.
 #include "core/system/colour.hpp"
 
 #include <unistd.h>

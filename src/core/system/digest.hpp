@@ -1,4 +1,4 @@
-// The SHA-256 digest of a data file: results say which bytes they were computed from.
+// The SHA-256 digest of a data file: results record from which bytes they were computed.
 #pragma once
 #include <string>
 #include <string_view>

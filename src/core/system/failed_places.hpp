@@ -1,4 +1,4 @@
-// Where simulations failed, in the words that a message has room for.
+// Where simulations failed, in words that are short enough for a message.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// How far a long job is, told to whoever shows it; jobs know this interface, never the terminal.
+// How far a long job is, reported to an interface; jobs do not know the terminal.
 #pragma once
 #include <cstdint>
 #include <string_view>

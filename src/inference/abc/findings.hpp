@@ -1,4 +1,4 @@
-// What an ABC-SMC run says about itself.
+// The findings of an ABC-SMC run about itself.
 #pragma once
 #include "inference/abc/plan.hpp"
 #include "inference/backend/selector.hpp"

@@ -1,4 +1,4 @@
-// What an ABC-SMC run is told to do, read once from its settings.
+// The plan of an ABC-SMC run, read once from its settings.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// What can be set of `abc_smc`.
+// The settings of `abc_smc`.
 #pragma once
 #include <span>
 #include <string>

@@ -1,4 +1,4 @@
-// When a run ends, and why.
+// The rules that end a run, and the reason that is reported.
 #pragma once
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-// Which priors span decades is seen from draws of them.
+// Draws of a prior show whether it spans decades.
 #include "inference/abc/walk.hpp"
 
 #include <algorithm>

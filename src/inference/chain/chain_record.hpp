@@ -1,4 +1,4 @@
-// What W chains leave behind, iteration by iteration, in the sampler's coordinates; and how it becomes draws.
+// The record of W chains, iteration by iteration, in the sampler's coordinates; and its conversion to draws.
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>

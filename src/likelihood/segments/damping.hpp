@@ -1,4 +1,4 @@
-// How much of a Gauss-Newton step is dared (Marquardt 1963).
+// The damping of Gauss-Newton steps (Marquardt 1963).
 #pragma once
 #include <algorithm>
 

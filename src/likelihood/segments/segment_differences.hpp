@@ -1,4 +1,4 @@
-// Slopes of segments by differences whose perturbations are as large as show.
+// Derivatives of segments by differences, with perturbations large enough to exceed rounding.
 #pragma once
 #include <Eigen/Core>
 #include <vector>

@@ -1,4 +1,4 @@
-// Noise of the channels as the residuals of segments tell it, the likelihood with it, and rows in its units.
+// Noise of the channels estimated from the residuals of segments, the likelihood with it, and rows in its units.
 #pragma once
 #include <span>
 #include <vector>

@@ -1,4 +1,4 @@
-// Start states of segments while the coefficients stay.
+// Start states of segments, fitted with the coefficients held fixed.
 #pragma once
 #include <functional>
 #include <span>

@@ -1,4 +1,4 @@
-// Damped steps, and what is known where they end.
+// Damped steps, and the covariance at their end.
 #include "likelihood/segments/shooting.hpp"
 
 #include <algorithm>

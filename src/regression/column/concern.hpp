@@ -1,4 +1,4 @@
-// What stands between the data and an equation, as values: kind, terms, number. Whoever reports it finds the user's words.
+// Problems between the data and an equation, as values: kind, terms, number. The caller adds the user's words.
 #pragma once
 #include <string>
 #include <vector>

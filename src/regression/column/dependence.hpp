@@ -1,4 +1,4 @@
-// What columns can tell at all: terms that are zero, that say the same, that are sums of others; and those barely told apart.
+// Dependent columns: terms that are zero, multiples of others or sums of others; and those that are nearly dependent.
 #pragma once
 #include <string>
 #include <vector>

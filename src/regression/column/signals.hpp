@@ -1,4 +1,4 @@
-// What every form needs to know of the records: which channel measures what, their steps, noise and fastest period.
+// Properties of the records that every form needs: which channel measures what, steps, noise and the fastest period.
 #pragma once
 #include <optional>
 #include <span>

@@ -1,4 +1,4 @@
-// Where the power of a record lies: how fast it moves, and with which period above all.
+// The spectrum of a record: its bandwidth and its dominant period.
 #pragma once
 #include <span>
 #include <vector>

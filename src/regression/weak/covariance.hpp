@@ -1,4 +1,4 @@
-// The covariance of overlapping windows: from the noise of the channels, and from an error that is the equation's own.
+// The covariance of overlapping windows: from the noise of the channels, and from the error of the equation.
 #pragma once
 #include <Eigen/Core>
 #include <span>

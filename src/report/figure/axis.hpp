@@ -1,4 +1,4 @@
-// An axis of little room.
+// An axis for a small panel.
 #pragma once
 #include "report/figure/plot.hpp"
 

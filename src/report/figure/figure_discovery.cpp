@@ -1,4 +1,4 @@
-// What a discovery says of the terms of an equation: how sure each is, and the posterior of the coefficients that were chosen.
+// The terms of a discovered equation: their probabilities, and the posterior of the chosen coefficients.
 #include <fmt/format.h>
 
 #include <algorithm>

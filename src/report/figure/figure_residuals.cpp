@@ -1,4 +1,4 @@
-// What is left in the residuals of a channel: their autocorrelation, and their correlation with each input before them.
+// The residuals of a channel: their autocorrelation, and their correlation with earlier values of each input.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Tables, JSON and files of what simulation says of discovered structures.
+// Tables, JSON and files of the validation of discovered structures by simulation.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>

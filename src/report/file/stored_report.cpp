@@ -1,4 +1,4 @@
-// The record says which columns there are; each CSV file fills its own, in the order in which they were written.
+// The record lists the columns; each CSV file fills its own, in the order in which they were written.
 #include "report/file/stored_report.hpp"
 
 #include <fmt/format.h>

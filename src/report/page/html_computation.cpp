@@ -1,4 +1,4 @@
-// Whether the computation can be believed: diagnostics of the chains, simulations that failed.
+// Whether the computation is reliable: diagnostics of the chains, simulations that failed.
 #include "report/page/html_parts.hpp"
 
 #include <fmt/format.h>

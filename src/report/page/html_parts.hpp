@@ -1,4 +1,4 @@
-// The bodies of a page's sections, by subject; report/html_sections puts them in order. Empty where there is nothing to say.
+// The bodies of a page's sections, by subject; report/html_sections puts them in order. Empty where there is no content.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// How well the model says what was measured: each score with what its value says.
+// How well the model describes the measurements: each score with its meaning.
 #include "report/page/html_parts.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The sections of a task's page, in the order in which an engineer asks.
+// The sections of a task's page, in reading order.
 #pragma once
 #include <vector>
 

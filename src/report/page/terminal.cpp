@@ -1,4 +1,4 @@
-// Aligned columns under the user's names and units; digits end where chance begins.
+// Aligned columns under the user's names and units; numbers are rounded to their Monte Carlo error.
 #include "report/page/terminal.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// A summary of draws as text: rounded to what its draws know.
+// A summary of draws as text, rounded to its Monte Carlo error.
 #pragma once
 #include <string>
 #include <utility>
