@@ -15,7 +15,7 @@ bool shows(std::string const& text, std::string const& part) { return text.find(
 TEST_CASE("a prompt, a statement over several lines, an answer, the end") {
   TemporaryFolder folder;
   PseudoTerminal terminal(folder.path());
-  CHECK(shows(terminal.until(terminal.prompt), "`help` says what there is"));
+  CHECK(shows(terminal.until(terminal.prompt), "`help` lists the commands"));
   terminal.type("function twice(a) =\r");
   CHECK(shows(terminal.until("...> "), "...> "));
   CHECK_FALSE(shows(terminal.enter("2*a"), "error"));
@@ -77,7 +77,7 @@ TEST_CASE("arrows recall entries, of this session and of the last, a block in on
     terminal.until("...> ");
     terminal.enter("3*a");
     terminal.type("\x1b[A\x1b[A\r");
-    CHECK(shows(terminal.until("rows to fit"), "rows to fit"));
+    CHECK(shows(terminal.until("ranges of rows"), "ranges of rows"));
     terminal.until(terminal.prompt);
     terminal.type("\x04");
     CHECK(terminal.ended() == 0);

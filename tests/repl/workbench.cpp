@@ -36,7 +36,7 @@ TEST_CASE("a model, its data, a fit, a term more, a refit: entered one by one, a
   CHECK(sd > 0);
   // Both at once, since neither stands alone.
   CHECK_MESSAGE(d.enter("parameter k3 [N/m^3] ~ log_uniform(1e7, 1e11); 1 [kg]*y'' + c*y' + k*y + k3*y^3 = x"), d.messages());
-  CHECK(has(d.messages(), "the earlier `oscillator` stays as `oscillator_1`"));
+  CHECK(has(d.messages(), "the earlier `oscillator` is kept as `oscillator_1`"));
   CHECK_MESSAGE(d.enter("refit"), d.messages());
   CHECK(has(d.messages(), "first2 = fit oscillator to bench.train with map, seed = 1, search = near(first)"));
   CHECK(number(d, "rms(residual(displacement))") < 0.5 * linear);
