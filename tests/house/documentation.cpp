@@ -211,7 +211,8 @@ TEST_CASE("quoted output is what the program prints") {
     for (auto block = page.blocks.rbegin(); block != page.blocks.rend(); ++block) {
       if (!block->info.starts_with("text from ")) continue;
       std::string const& printed = printed_by(block->info.substr(10));
-      if (std::getenv("SYSID_BLESS") != nullptr && is_whole(*block)) {
+      // An excerpt stays what it is, and is mended by hand.
+      if (std::getenv("SYSID_BLESS") != nullptr && block->text.size() == lines_of(printed).size()) {
         bless(page, *block, printed);
         continue;
       }
