@@ -1,3 +1,4 @@
+// Names of coefficients that collide with no name of the dictionary.
 #include "discovery/coefficient_names.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Root mean squares of a channel and of its divided differences.
 #include "experiment/motion.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Products of sines over the inputs by the recurrence for multiple angles, weighted by the spectral density of the kernel.
 #include "gaussian_process/basis.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Which concerns are fatal, and those that inputs and hyper-parameters alone can raise.
 #include "gaussian_process/concern.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Cholesky's factor over the conditions that the earlier ones do not imply, and covariances of rows with it.
 #include "gaussian_process/conditions.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Sums, products and conditions of kernels: matrices and their derivatives, in strips over the processors.
 #include "gaussian_process/covariance.hpp"
 
 #include <algorithm>

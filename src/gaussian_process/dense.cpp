@@ -1,3 +1,4 @@
+// Cholesky factors with jitter, the marginal likelihood, and prediction by them.
 #include "gaussian_process/dense.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Starts, the climb from each, and what the best optimum gives reason to doubt.
 #include "gaussian_process/fit.hpp"
 
 #include <fmt/format.h>

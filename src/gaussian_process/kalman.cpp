@@ -1,3 +1,4 @@
+// The filter for each number of states, forwards, backwards, and its reverse for derivatives.
 #include "gaussian_process/kalman.hpp"
 
 #include <array>

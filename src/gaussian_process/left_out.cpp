@@ -1,3 +1,4 @@
+// The closed form by the inverse of the covariance.
 #include "gaussian_process/left_out.hpp"
 
 #include "linear_algebra/lapack.hpp"

@@ -1,3 +1,4 @@
+// The normal equations of the coefficients, with their priors.
 #include "gaussian_process/linear_mean.hpp"
 
 #include <cmath>

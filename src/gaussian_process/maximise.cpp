@@ -1,3 +1,4 @@
+// NLopt's interface, and when a climb counts as arrived.
 #include "gaussian_process/maximise.hpp"
 
 #include <nlopt.h>

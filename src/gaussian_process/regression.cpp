@@ -1,3 +1,4 @@
+// Chooses the route and calls it.
 #include "gaussian_process/regression.hpp"
 
 #include "gaussian_process/dense.hpp"

@@ -1,3 +1,4 @@
+// Observations sorted by the input, filtered, and returned to their order.
 #include "gaussian_process/state_space.hpp"
 
 #include <algorithm>

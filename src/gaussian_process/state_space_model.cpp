@@ -1,3 +1,4 @@
+// Transitions, stationary covariances and their derivatives, block by block.
 #include "gaussian_process/state_space_model.hpp"
 
 namespace sysid::gaussian_process {

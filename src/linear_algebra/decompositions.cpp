@@ -1,3 +1,4 @@
+// Each function calls one of Eigen's decompositions.
 #include "linear_algebra/decompositions.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// The library is loaded when a routine is first called, on one thread and with one set of kernels, so that results do not vary.
 #include "linear_algebra/lapack.hpp"
 
 #include <dlfcn.h>

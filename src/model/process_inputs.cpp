@@ -1,3 +1,4 @@
+// Moves processes to the inputs and their arguments to the derived quantities.
 #include "model/process_inputs.hpp"
 
 #include <optional>

@@ -1,3 +1,4 @@
+// Banks become consecutive registers, and those that each step touches are counted.
 #include "program/registers.hpp"
 
 #include <set>

@@ -11,11 +11,8 @@ namespace sysid {
 
 /// error: a diagnostic fails, the numbers are not to be used; warning: usable, but look; note: for the record.
 struct Finding {
-  /// severity: one of those in the table's row.
-  Finding(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help);
-
   FindingCode code;
-  Severity severity;
+  Severity severity;               // one of those in the row of the code
   std::vector<std::string> names;  // what it concerns: parameters, channels, experiments, models, tasks, terms; may be empty
   std::string message;             // one sentence in plain words, lower case, no full stop, naming parameters and numbers
   std::string help;                // what to do; may be empty

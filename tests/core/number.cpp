@@ -1,3 +1,4 @@
+// Numbers as text: decades, rounding, and the digits that are shown.
 #include "core/text/number.hpp"
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// Characters of UTF-8 against bytes.
 #include "core/text/utf8.hpp"
 
 #include <doctest/doctest.h>

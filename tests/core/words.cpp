@@ -1,3 +1,4 @@
+// Lists, plurals and quotes in sentences.
 #include "core/text/words.hpp"
 
 #include <doctest/doctest.h>

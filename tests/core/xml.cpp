@@ -1,3 +1,4 @@
+// Escapes of XML.
 #include "core/text/xml.hpp"
 
 #include <doctest/doctest.h>

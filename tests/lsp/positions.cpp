@@ -1,3 +1,4 @@
+// Offsets in bytes against positions in lines and UTF-16 units.
 #include "lsp/positions.hpp"
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// Messages with their headers, whole and broken.
 #include "lsp/transport.hpp"
 
 #include <doctest/doctest.h>

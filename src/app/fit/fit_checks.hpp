@@ -34,6 +34,7 @@ struct FitCheckRow {
   bool of_interrupted;
   /// Why it does not apply to this fit, one sentence; empty: it runs.
   std::string (*inapplicable)(FinishedFit const& fit);
+  /// Null: it ran before the search, and its findings are among those of the search.
   Findings (*run)(FinishedFit& fit);
 };
 

@@ -93,11 +93,8 @@ class ProcessLikelihood : public FitLikelihood {
     Trajectory::Result const result = forecast_draws(forecast, *space_, columns, own, 100, prediction_noise(seed_, e));
     // Constraints beside processes are refused by the checker (E3217), so that nothing can drift.
     FittedRows rows{bands_along(forecast.quantities(), result, experiment, model()), {}, {}};
-    // One sample without a value makes a trajectory fail, and no other finding reports it. It is reported once, with the channel,
-    // not again with its white part. The likelihood reads measured samples alone: what the fit found stays usable.
+    // No other finding reports a trajectory that failed. It is reported once, with the channel, not again with its white part.
     rows.bands = band_findings(rows.prediction, 0, result.failed(), data_.size() > 1);
-    for (Finding& each : rows.bands)
-      if (each.severity == Severity::error) each.severity = Severity::warning;
     return rows;
   }
 

@@ -1,3 +1,4 @@
+// Functions on a grid of their inputs from the draws' coefficients; a finite sum's covariance against that of its process.
 #include "app/session/unknown_functions.hpp"
 
 #include <fmt/format.h>

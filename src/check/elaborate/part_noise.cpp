@@ -1,3 +1,4 @@
+// Finds the statements that only the noise of parts needs, by following definitions to their uses.
 #include "check/elaborate/part_noise.hpp"
 
 #include <map>

@@ -1,3 +1,4 @@
+// Reads the points of `zero_at` and `flat_at`, with their units.
 #include "check/process/process_conditions.hpp"
 
 #include <algorithm>

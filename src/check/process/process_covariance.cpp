@@ -1,3 +1,4 @@
+// From `gp(...)` to kernels: names, settings, inputs and hyper-parameters of each.
 #include "check/process/process_covariance.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads `within` and `terms`, and builds the finite sum with a coefficient for every term.
 #include "check/process/process_expansion.hpp"
 
 #include <algorithm>

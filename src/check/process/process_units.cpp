@@ -1,3 +1,4 @@
+// Solves for the units that hyper-parameters and uses of the process leave open.
 #include "check/process/process_units.hpp"
 
 #include <algorithm>

@@ -119,21 +119,27 @@ bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitt
   std::vector<int> const rows = all_of(record_.samples());
   for (std::size_t c = 0; c < fitted.size(); ++c) {
     ProcessRows const here = record_.rows(records, static_cast<int>(c), 0, rows);
-    if (!here.inputs.allFinite() || !here.white.allFinite()) return false;
+    // A sample whose inputs or white part have no value is predicted by nothing; the others are as they are without it.
+    std::vector<Eigen::Index> predicted;
+    for (Eigen::Index i = 0; i < here.white.size(); ++i)
+      if (here.inputs.row(i).allFinite() && std::isfinite(here.white[i])) predicted.push_back(i);
+    if (predicted.empty()) return false;
     auto const& covariance = model_->channels()[c].covariance;
-    Places const places{here.inputs, Eigen::MatrixXd(here.inputs.rows(), 0)};
+    auto const count_of_places = static_cast<Eigen::Index>(predicted.size());
+    Places const places{here.inputs(predicted, Eigen::all), Eigen::MatrixXd(count_of_places, 0)};
     auto const conditional = gaussian_process::conditional(covariance, fitted[c].observations, fitted[c].parameters, places);
     if (conditional.outcome != gaussian_process::Outcome::fine) return false;
     Prediction const& prediction = conditional.prediction;
     double const sd = fitted[c].parameters.back();
     for (int d = 0; d < count; ++d) {
       Stream stream(key.at(key.index + first + static_cast<std::uint64_t>(d), c));
-      for (Eigen::Index i = 0; i < here.white.size(); ++i) {
-        auto const k = static_cast<std::size_t>(i);
-        double const value = here.white[i] + prediction.mean[i] + std::sqrt(prediction.variance[i]) * stream.normal();
+      for (Eigen::Index i = 0; i < count_of_places; ++i) {
+        Eigen::Index const sample = predicted[static_cast<std::size_t>(i)];
+        auto const k = static_cast<std::size_t>(sample);
+        double const value = here.white[sample] + prediction.mean[i] + std::sqrt(prediction.variance[i]) * stream.normal();
         values[c][static_cast<std::size_t>(d)][k] = value;
         noisy[c][static_cast<std::size_t>(d)][k] = value + sd * stream.normal();
-        white[c][static_cast<std::size_t>(d)][k] = here.white[i];
+        white[c][static_cast<std::size_t>(d)][k] = here.white[sample];
       }
     }
   }

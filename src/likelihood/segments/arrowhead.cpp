@@ -1,3 +1,4 @@
+// Elimination of the start states, the reduced equations, and the move back to all unknowns.
 #include "likelihood/segments/arrowhead.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Perturbations are adjusted until their effect lies between rounding and curvature.
 #include "likelihood/segments/segment_differences.hpp"
 
 #include <algorithm>

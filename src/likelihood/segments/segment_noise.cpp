@@ -1,3 +1,4 @@
+// Sums of squared residuals, the noise that they give, and rows divided by it.
 #include "likelihood/segments/segment_noise.hpp"
 
 #include <algorithm>

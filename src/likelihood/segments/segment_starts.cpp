@@ -1,3 +1,4 @@
+// Damped least squares per segment, all segments simulated side by side.
 #include "likelihood/segments/segment_starts.hpp"
 
 #include <cmath>
