@@ -39,8 +39,8 @@ class State {
   }
 
   /// What the rules pass over behind a failure.
-  void leave_out(Iterator first, Iterator behind) { left_out_.push_back({offset(first), offset(behind)}); }
-  std::vector<Span> take_left_out() { return std::move(left_out_); }
+  void leave_out(Iterator first, Iterator behind) { excluded_.push_back({offset(first), offset(behind)}); }
+  std::vector<Span> take_unread() { return std::move(excluded_); }
 
   int depth = 0;
 
@@ -51,7 +51,7 @@ class State {
   Layout const& layout_;
   Diagnostics& diagnostics_;
   std::size_t limit_;
-  std::vector<Span> left_out_;
+  std::vector<Span> excluded_;
 };
 
 struct state_tag {};

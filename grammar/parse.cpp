@@ -45,9 +45,9 @@ namespace {
 template <class Tree>
 struct Reading {
   Tree tree;
-  bool complete = false;       // nothing was reported
-  std::vector<Span> left_out;  // what holds a mistake; its nodes are in the tree, half filled
-  bool open_end = false;       // a block or a text does not end
+  bool complete = false;     // nothing was reported
+  std::vector<Span> unread;  // what holds a mistake; its nodes are in the tree, half filled
+  bool open_end = false;     // a block or a text does not end
 };
 
 /// The whole source by `rule`.
@@ -68,20 +68,20 @@ Reading<typename Rule::attribute_type> read_all(Rule const& rule, Source const& 
   reading.complete = diagnostics.all().size() == before;
   if (reading.complete && (!parsed || first != state.end()))
     throw InternalError("the parser stopped inside a text without a message");
-  reading.left_out = state.take_left_out();
+  reading.unread = state.take_unread();
   for (Token const& token : layout.tokens)
-    if (layout.reported.contains(token.statement)) reading.left_out.push_back(token.span);
+    if (layout.reported.contains(token.statement)) reading.unread.push_back(token.span);
   reading.open_end = layout.reported_at_end;
   return reading;
 }
 
 /// A rule behind whose failure the parse went on leaves a node without a place, or one that begins in what was left out.
 template <class Node>
-void erase_unread(std::vector<Node>& nodes, std::vector<Span> const& left_out) {
+void erase_unread(std::vector<Node>& nodes, std::vector<Span> const& unread) {
   std::erase_if(nodes, [&](Node const& node) {
     Span const span = std::visit([](auto const& each) { return each.span; }, node);
-    return span.begin == span.end || std::any_of(left_out.begin(), left_out.end(),
-                                                 [&](Span each) { return each.begin <= span.begin && span.begin < each.end; });
+    return span.begin == span.end ||
+           std::any_of(unread.begin(), unread.end(), [&](Span each) { return each.begin <= span.begin && span.begin < each.end; });
   });
 }
 
@@ -97,15 +97,15 @@ std::optional<ast::File> parse(Source const& source, Diagnostics& diagnostics) {
 ReadableFile parse_readable(Source const& source, Diagnostics& diagnostics) {
   auto reading = grammar::read_all(grammar::file, source, diagnostics);
   if (reading.complete) return {std::move(reading.tree), {}};
-  if (reading.open_end) return {std::nullopt, std::move(reading.left_out)};
-  grammar::erase_unread(reading.tree.items, reading.left_out);
+  if (reading.open_end) return {std::nullopt, std::move(reading.unread)};
+  grammar::erase_unread(reading.tree.items, reading.unread);
   for (ast::Item& item : reading.tree.items) {
-    if (auto* model = std::get_if<ast::Model>(&item)) grammar::erase_unread(model->statements, reading.left_out);
-    if (auto* set = std::get_if<ast::Candidates>(&item)) grammar::erase_unread(set->statements, reading.left_out);
-    if (auto* dictionary = std::get_if<ast::Dictionary>(&item)) grammar::erase_unread(dictionary->statements, reading.left_out);
-    if (auto* data = std::get_if<ast::Data>(&item)) grammar::erase_unread(data->statements, reading.left_out);
+    if (auto* model = std::get_if<ast::Model>(&item)) grammar::erase_unread(model->statements, reading.unread);
+    if (auto* set = std::get_if<ast::Candidates>(&item)) grammar::erase_unread(set->statements, reading.unread);
+    if (auto* dictionary = std::get_if<ast::Dictionary>(&item)) grammar::erase_unread(dictionary->statements, reading.unread);
+    if (auto* data = std::get_if<ast::Data>(&item)) grammar::erase_unread(data->statements, reading.unread);
   }
-  return {std::move(reading.tree), std::move(reading.left_out)};
+  return {std::move(reading.tree), std::move(reading.unread)};
 }
 
 std::optional<ast::Expression> parse_expression(Source const& source, Diagnostics& diagnostics) {

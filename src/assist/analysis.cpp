@@ -47,8 +47,8 @@ std::shared_ptr<Reading const> read(std::string const& path, std::string const& 
   return nullptr;
 }
 
-Judgement judge(std::string const& path, std::string const& text, UnsavedText const& unsaved) {
-  Judgement result{Source(path, text), {}};
+Analysis analyse(std::string const& path, std::string const& text, UnsavedText const& unsaved) {
+  Analysis result{Source(path, text), {}};
   try {
     auto const file = load(result.source, result.diagnostics, unsaved);
     if (!file) return result;
@@ -56,7 +56,7 @@ Judgement judge(std::string const& path, std::string const& text, UnsavedText co
     SilentProgress silent;
     std::ostream nowhere(nullptr);
     Session session(result.source, *file, options, silent, nowhere, nowhere);
-    add(result.diagnostics, check_readiness(session).diagnostics);
+    add(result.diagnostics, check_preconditions(session).diagnostics);
   } catch (UnusableData const& error) {
     add(result.diagnostics, error.diagnostics());
   } catch (UnreadableData const& error) {

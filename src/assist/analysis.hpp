@@ -25,10 +25,10 @@ struct Reading {
 std::shared_ptr<Reading const> read(std::string const& path, std::string const& text, UnsavedText const& unsaved = {});
 
 /// The messages of `sysid check` about the text and its data, with the texts that their spans mean.
-struct Judgement {
+struct Analysis {
   Source source;
   Diagnostics diagnostics;
 };
-Judgement judge(std::string const& path, std::string const& text, UnsavedText const& unsaved = {});
+Analysis analyse(std::string const& path, std::string const& text, UnsavedText const& unsaved = {});
 
 }  // namespace sysid::assist

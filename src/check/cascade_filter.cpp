@@ -41,7 +41,7 @@ int model_of(ast::File const& file, Diagnostic const& diagnostic) {
 
 }  // namespace
 
-void remove_consequences(ast::File const& file, Diagnostics& diagnostics) {
+void remove_cascades(ast::File const& file, Diagnostics& diagnostics) {
   std::vector<Diagnostic> all = diagnostics.all();
   std::stable_sort(all.begin(), all.end(), [](Diagnostic const& a, Diagnostic const& b) {
     return (a.primary ? a.primary->span.begin : ~0U) < (b.primary ? b.primary->span.begin : ~0U);

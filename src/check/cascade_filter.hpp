@@ -7,6 +7,6 @@ namespace sysid {
 
 /// Removes errors that another error of the same file explains: the same unknown name again in its model; what an equation or an
 /// initial value with an unknown name leaves open; a missing argument beside one with an unknown name. At least one error stays.
-void remove_consequences(ast::File const& file, Diagnostics& diagnostics);
+void remove_cascades(ast::File const& file, Diagnostics& diagnostics);
 
 }  // namespace sysid

@@ -70,7 +70,7 @@ class FileChecker {
       if (auto checked = check_task(*task, names_, file_, backends_, tasks_, diagnostics_))
         file_.tasks.push_back(std::move(*checked));
     check_unused_data();
-    remove_consequences(tree_, diagnostics_);
+    remove_cascades(tree_, diagnostics_);
     if (diagnostics_.has_errors()) return std::nullopt;
     for (Model const& model : file_.models) warn_of_unused(model, diagnostics_);
     return std::move(file_);

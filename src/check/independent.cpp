@@ -35,8 +35,8 @@ Span span_of(ast::Item const& item) {
 
 class Damage {
  public:
-  Damage(ast::File const& tree, std::span<Span const> left_out, Source const& source) : tree_(tree), items_(tree.items.size()) {
-    for (Span const span : left_out) {
+  Damage(ast::File const& tree, std::span<Span const> unread, Source const& source) : tree_(tree), items_(tree.items.size()) {
+    for (Span const span : unread) {
       words_.merge(words_in(source.text(span)));
       bool inside = false;
       for (std::size_t i = 0; i < items_.size(); ++i) {
@@ -129,8 +129,8 @@ class Damage {
 
 }  // namespace
 
-void keep_independent(ast::File const& tree, std::span<Span const> left_out, Source const& source, Diagnostics& found) {
-  Damage const damage(tree, left_out, source);
+void keep_independent(ast::File const& tree, std::span<Span const> unread, Source const& source, Diagnostics& found) {
+  Damage const damage(tree, unread, source);
   std::vector<Diagnostic> all = found.all();
   std::erase_if(all, [&](Diagnostic const& each) { return each.severity != Severity::error || damage.bears_on(each); });
   found.replace(std::move(all));

@@ -8,7 +8,7 @@
 namespace sysid {
 
 /// Of what was found in `tree`, keeps the errors on which the parts of the text that could not be read have no bearing: whatever
-/// may be declared, determined or bound there is not missed. tree, left_out: of `parse_readable`.
-void keep_independent(ast::File const& tree, std::span<Span const> left_out, Source const& source, Diagnostics& found);
+/// may be declared, determined or bound there is not missed. tree, unread: of `parse_readable`.
+void keep_independent(ast::File const& tree, std::span<Span const> unread, Source const& source, Diagnostics& found);
 
 }  // namespace sysid

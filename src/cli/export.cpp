@@ -46,10 +46,10 @@ ExitCode latex(Messages const& messages, std::string const& path) {
 /// Fits that cannot be written leave doubt where others were, and are the user's error where none was.
 ExitCode stan(Messages const& messages, Session& session, ResultsFolder const* results, bool force) {
   std::ostringstream written;
-  Diagnostics const left_out = export_stan(session, results, force, written);
+  Diagnostics const omitted = export_stan(session, results, force, written);
   std::cout << written.str();
-  messages.show(left_out, session.source);
-  if (left_out.all().empty()) return ExitCode::success;
+  messages.show(omitted, session.source);
+  if (omitted.all().empty()) return ExitCode::success;
   return written.str().empty() ? ExitCode::user_error : ExitCode::doubtful;
 }
 

@@ -82,7 +82,7 @@ struct Experiment {
   std::vector<std::vector<double>> history;
   /// Per channel [N]: 0 where a past measured sample that its density reads is missing, so that it cannot be scored. Empty:
   /// nowhere.
-  std::vector<std::vector<std::uint8_t>> has_past;
+  std::vector<std::vector<std::uint8_t>> has_lags;
 };
 
 /// The sample of a channel at `row`, which may lie before the first; NaN where it is missing or was not recorded.

@@ -69,17 +69,17 @@ Findings band_findings(Prediction const& prediction, int failed, int failed_else
   Findings findings;
   for (PredictedQuantity const& quantity : prediction.quantities) {
     bool const measured = !quantity.measured.empty();
-    Band const& widest = quantity.noisy.left_out > quantity.response.left_out ? quantity.noisy : quantity.response;
-    int const left_out = widest.left_out - (measured ? failed : failed_elsewhere);
-    if (left_out <= 0) continue;
-    Severity severity = failure_severity(static_cast<std::uint64_t>(left_out), static_cast<std::uint64_t>(widest.draws));
+    Band const& widest = quantity.noisy.excluded > quantity.response.excluded ? quantity.noisy : quantity.response;
+    int const excluded = widest.excluded - (measured ? failed : failed_elsewhere);
+    if (excluded <= 0) continue;
+    Severity severity = failure_severity(static_cast<std::uint64_t>(excluded), static_cast<std::uint64_t>(widest.draws));
     if (severity == Severity::error && !measured) severity = Severity::warning;  // the others are what they are
     findings.push_back(
         {FindingCode::undefined_in_band,
          severity,
          {quantity.name},
          fmt::format("{}{} is undefined somewhere along {} of {} trajectories; its band is that of the others", quantity.name,
-                     several ? " on " + prediction.experiment : std::string(), left_out, widest.draws),
+                     several ? " on " + prediction.experiment : std::string(), excluded, widest.draws),
          "check for a root or a logarithm of a negative number, or a division by zero"});
   }
   return findings;

@@ -82,20 +82,21 @@ void check_motion(ChainReport const& report, Findings& findings) {
 void check_agreement(ChainReport const& report, Findings& findings) {
   auto const rhat_of = [](Summary const& s) { return s.rhat; };
   auto const show = [](Summary const& s) { return fmt::format("{:.3f}", s.rhat); };
-  Worst const bad = worst(report.summaries, rhat_of, show, rhat_bar);
+  Worst const bad = worst(report.summaries, rhat_of, show, rhat_threshold);
   if (bad.empty()) return;
-  bool const loud = !worst(report.summaries, rhat_of, show, rhat_loud).empty();
-  findings.push_back({loud ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
-                      loud ? fmt::format("the chains disagree: R-hat of {} is far above {}", bad.text, rhat_bar)
-                           : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_bar),
-                      loud ? "do not use the means and sds; run longer chains, and check for a second mode or for parameters that "
-                             "the data cannot separate"
-                           : "run longer chains (samples)"});
+  bool const far_above = !worst(report.summaries, rhat_of, show, rhat_far_above).empty();
+  findings.push_back(
+      {far_above ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
+       far_above ? fmt::format("the chains disagree: R-hat of {} is far above {}", bad.text, rhat_threshold)
+                 : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_threshold),
+       far_above ? "do not use the means and sds; run longer chains, and check for a second mode or for parameters that "
+                   "the data cannot separate"
+                 : "run longer chains (samples)"});
 }
 
 void check_size(ChainReport const& report, Findings& findings) {
   auto const check = [&](FindingCode code, std::string const& what, std::function<double(Summary const&)> const& ess) {
-    auto const shortfall = [&](Summary const& s) { return ess_bar / ess(s); };
+    auto const shortfall = [&](Summary const& s) { return ess_threshold / ess(s); };
     Worst const bad = worst(
         report.summaries, shortfall, [&](Summary const& s) { return fmt::format("{:.0f}", ess(s)); }, 1);
     if (bad.empty()) return;
@@ -104,7 +105,7 @@ void check_size(ChainReport const& report, Findings& findings) {
       if (shortfall(s) > most) most = shortfall(s);
     findings.push_back(
         {code, Severity::error, bad.names,
-         fmt::format("too few independent draws for the {}: effective sample size of {}, below {}", what, bad.text, ess_bar),
+         fmt::format("too few independent draws for the {}: effective sample size of {}, below {}", what, bad.text, ess_threshold),
          fmt::format("run chains about {:.2g} times as long (samples), or more of them (chains)", std::ceil(10 * most) / 10)});
   };
   check(FindingCode::ess_bulk_low, "means", [](Summary const& s) { return s.ess_bulk; });

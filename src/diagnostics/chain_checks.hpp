@@ -12,8 +12,8 @@ namespace sysid {
 // What chains are held to; Vehtari et al. 2021, sec. 4, for R-hat and the effective sample sizes, bulk and tail.
 inline constexpr double least_acceptance = 0.01;
 inline constexpr std::uint64_t least_distinct = 100;  // states a chain
-inline constexpr double rhat_bar = 1.01, rhat_loud = 1.05;
-inline constexpr double ess_bar = 400;
+inline constexpr double rhat_threshold = 1.01, rhat_far_above = 1.05;
+inline constexpr double ess_threshold = 400;
 
 struct ChainReport {
   std::vector<Summary> summaries;              // one per parameter

@@ -12,7 +12,7 @@ std::pair<double, double> interval_90(Summary const& summary) {
   return {summary.mean - normal_quantile_95 * summary.sd, summary.mean + normal_quantile_95 * summary.sd};
 }
 
-std::optional<double> narrowing(PriorInfo const& prior, Summary const& summary) {
+std::optional<double> contraction(PriorInfo const& prior, Summary const& summary) {
   if (!prior.q5 || !prior.q95) return std::nullopt;
   auto const [low, high] = interval_90(summary);
   double const ratio = (*prior.q95 - *prior.q5) / (high - low);

@@ -11,7 +11,7 @@ namespace sysid {
 inline constexpr double hardly_narrower = 1.5;
 
 /// By how much narrower the posterior's 90 % interval is than the prior's; nothing where either is not known.
-std::optional<double> narrowing(PriorInfo const& prior, Summary const& summary);
+std::optional<double> contraction(PriorInfo const& prior, Summary const& summary);
 
 /// The posterior's 90 % interval; of an optimum that of its normal approximation.
 std::pair<double, double> interval_90(Summary const& summary);

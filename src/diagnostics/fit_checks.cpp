@@ -23,8 +23,8 @@ int scored_samples(Experiment const& experiment) {
   int count = 0;
   for (std::size_t c = 0; c < experiment.measured.size(); ++c)
     for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
-      bool const has_past = experiment.has_past.empty() || experiment.has_past[c].empty() || experiment.has_past[c][i] != 0;
-      count += experiment.scored[i] != 0 && has_past && !std::isnan(experiment.measured[c][i]) ? 1 : 0;
+      bool const has_lags = experiment.has_lags.empty() || experiment.has_lags[c].empty() || experiment.has_lags[c][i] != 0;
+      count += experiment.scored[i] != 0 && has_lags && !std::isnan(experiment.measured[c][i]) ? 1 : 0;
     }
   return count;
 }
@@ -96,8 +96,8 @@ Findings check_use(Model const& model, StartRule const& start) {
   return findings;
 }
 
-Findings check_input_timing(TargetOf const& target_of, Model const& model, std::vector<Experiment> const& experiments, Aim aim,
-                            Mode const& mode, std::uint64_t seed, Ledger& ledger) {
+Findings check_input_timing(TargetOf const& target_of, Model const& model, std::vector<Experiment> const& experiments,
+                            ObjectiveKind objective_kind, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
   Findings findings;
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     int const scored = scored_samples(experiments[e]);
@@ -107,7 +107,7 @@ Findings check_input_timing(TargetOf const& target_of, Model const& model, std::
         std::vector<Experiment> moved = experiments;
         moved[e].inputs[i] = moved[e].inputs[i].shifted(shift);
         std::unique_ptr<Target> const other = target_of(std::move(moved));
-        std::vector<Mode> const refitted = refit(*other, aim, {mode}, seed, ledger);
+        std::vector<Mode> const refitted = refit(*other, objective_kind, {mode}, seed, ledger);
         double const gain = refitted.front().log_density - mode.log_density;
         if (gain > best_gain) best_gain = gain, best_shift = shift;
       }

@@ -14,7 +14,7 @@
 namespace sysid {
 namespace {
 
-constexpr int most_looked_at = 100;
+constexpr int most_examined = 100;
 
 /// One argument of one application.
 struct Argument {
@@ -87,7 +87,7 @@ Along arguments_along(Model const& model, Experiment const& experiment, SolverSe
         along.arguments.push_back({expansion, expansion.inputs[d]});
       }
   Trajectory const trajectory(compile(std::move(shown), start_rows > 0, solver.method), experiment, solver, start_rows, options);
-  Trajectory::Result result = trajectory.run(some(parameters, std::min(parameters.width(), most_looked_at)), {});
+  Trajectory::Result result = trajectory.run(some(parameters, std::min(parameters.width(), most_examined)), {});
   for (std::size_t q = result.values.size() - along.arguments.size(); q < result.values.size(); ++q)
     along.values.push_back(std::move(result.values[q]));
   return along;

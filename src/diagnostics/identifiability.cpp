@@ -25,10 +25,10 @@ struct LocalNull {
   std::vector<bool> silent;  // [P] no influence here
   double floor = 0;
   Matrix basis;  // [P x nullity], not orthogonal; silent parameters have zero rows
-  int loud = 0;
+  int above_noise = 0;
 };
 
-LocalNull local_null(LocalSlopes const& draw, std::vector<bool> const& left_out) {
+LocalNull local_null(LocalSlopes const& draw, std::vector<bool> const& excluded) {
   Sensitivity const& s = draw.sensitivity;
   Eigen::Index const n = s.slopes.cols();
   LocalNull result{&draw, std::vector<bool>(static_cast<std::size_t>(n)), 0, {}, 0};
@@ -40,7 +40,7 @@ LocalNull local_null(LocalSlopes const& draw, std::vector<bool> const& left_out)
     bool const silent = !(length(p) > 3 * s.error(p)) || !(length(p) > 1e-10 * s.size);
     result.silent[static_cast<std::size_t>(p)] = silent;
     if (silent) length(p) = std::max(length(p), std::numeric_limits<double>::min());
-    if (left_out[static_cast<std::size_t>(p)]) continue;
+    if (excluded[static_cast<std::size_t>(p)]) continue;
     kept.push_back(p);
     if (!silent) square += (s.error(p) / length(p)) * (s.error(p) / length(p));
   }
@@ -51,7 +51,7 @@ LocalNull local_null(LocalSlopes const& draw, std::vector<bool> const& left_out)
     Eigen::Index const p = kept[static_cast<std::size_t>(k)];
     scaled.col(k) = result.silent[static_cast<std::size_t>(p)] ? Vector::Zero(n).eval() : (s.slopes.col(p) / length(p)).eval();
   }
-  result.loud = static_cast<int>(m);
+  result.above_noise = static_cast<int>(m);
   if (m == 0) return result;
   SingularValues const svd = singular_values(scaled);
   Vector const& values = svd.values;
@@ -148,19 +148,19 @@ NullSpace find_null_space(std::span<LocalSlopes const> draws) {
   if (draws.empty()) return result;
   Eigen::Index const n = draws.front().value.size();
   // Without influence at every draw: said apart, and left out of what follows.
-  std::vector<bool> left_out(static_cast<std::size_t>(n));
+  std::vector<bool> excluded(static_cast<std::size_t>(n));
   std::vector<LocalNull> all;
   for (LocalSlopes const& draw : draws)
-    if (draw.sensitivity.finite) all.push_back(local_null(draw, left_out));
+    if (draw.sensitivity.finite) all.push_back(local_null(draw, excluded));
   std::erase_if(all, [](LocalNull const& each) { return each.floor > worst_floor; });
   result.draws = static_cast<int>(all.size());
   if (all.empty()) return result;
   for (Eigen::Index p = 0; p < n; ++p) {
     auto const i = static_cast<std::size_t>(p);
-    left_out[i] = std::all_of(all.begin(), all.end(), [&](LocalNull const& each) { return each.silent[i]; });
-    if (left_out[i]) result.directions.push_back({NullDirection::Kind::no_influence, {{static_cast<int>(p), 1, 0}}});
+    excluded[i] = std::all_of(all.begin(), all.end(), [&](LocalNull const& each) { return each.silent[i]; });
+    if (excluded[i]) result.directions.push_back({NullDirection::Kind::no_influence, {{static_cast<int>(p), 1, 0}}});
   }
-  for (LocalNull& each : all) each = local_null(*each.at, left_out);
+  for (LocalNull& each : all) each = local_null(*each.at, excluded);
   int const silent = static_cast<int>(result.directions.size());
   int dimension = std::numeric_limits<int>::max();
   for (LocalNull const& each : all) {

@@ -48,10 +48,10 @@ SizedResiduals pearson(DistributionRow const& noise, std::vector<double> const& 
 // not on place and width, and a shape that changes along the record is met at a few of its samples.
 SizedResiduals scaled(DistributionRow const& noise, std::vector<std::vector<double>> const& arguments,
                       std::vector<double> deviance) {
-  constexpr std::size_t looked_at = 4;
+  constexpr std::size_t examined = 4;
   DevianceMoments moments{0, 0};
   double count = 0;
-  std::size_t const step = std::max<std::size_t>(1, deviance.size() / looked_at);
+  std::size_t const step = std::max<std::size_t>(1, deviance.size() / examined);
   for (std::size_t i = 0; i < deviance.size(); ++i) {
     if (std::isnan(deviance[i]) || (count > 0 && i % step != 0) || !noise.refuse(arguments[i]).empty()) continue;
     DevianceMoments const here = deviance_moments(noise, arguments[i]);
@@ -135,12 +135,12 @@ std::vector<std::size_t> spikes(ScoredChannel const& of) {
   return alone(of, outliers(errors));
 }
 
-// nmse [%] without `left_out`, places that rise, on the scale on which the noise has one size: by logarithms where it multiplies.
-double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& left_out) {
+// nmse [%] without `excluded`, places that rise, on the scale on which the noise has one size: by logarithms where it multiplies.
+double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& excluded) {
   DistributionRow const& noise = *of.described().noise.row;
   std::vector<double> observed, predicted;
   for (std::size_t i = 0; i < of.observed.size(); ++i) {
-    if (std::binary_search(left_out.begin(), left_out.end(), of.places[i])) continue;
+    if (std::binary_search(excluded.begin(), excluded.end(), of.places[i])) continue;
     observed.push_back(of.observed[i]);
     predicted.push_back(of.predicted[i]);
   }
@@ -153,7 +153,7 @@ double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& left
 }
 
 // coloured: what the fit leaves is more than noise.
-void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
+void check_share(ScoredChannel const& of, bool coloured, Findings& findings) {
   constexpr char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
   double const left = unexplained(of, spikes(of));
   if (left > as_bad_as_the_mean(of.observed.size()))
@@ -167,7 +167,7 @@ void judge_share(ScoredChannel const& of, bool coloured, Findings& findings) {
 }
 
 // Rows as the file counts them, with how far they lie off.
-void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& places, Findings& findings) {
+void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& places, Findings& findings) {
   if (places.empty()) return;
   constexpr std::size_t most_named = 5;
   std::vector<std::string> named;
@@ -183,7 +183,7 @@ void judge_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
                       "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
-void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Findings& findings) {
+void check_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Findings& findings) {
   ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (!size.fires()) return;
@@ -201,7 +201,7 @@ void judge_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Find
 }
 
 // Of a model that has a past: correlation in time, and with the input's past. residuals: without samples far off.
-void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals, CorrelationTest const& white, FitLine& line,
+void check_memory(ScoredChannel const& of, std::vector<double> const& residuals, CorrelationTest const& white, FitLine& line,
                   Findings& findings) {
   line.scores.push_back({"whiteness_p", white.p_value});
   if (white.fires())
@@ -227,7 +227,7 @@ void judge_memory(ScoredChannel const& of, std::vector<double> const& residuals,
   }
 }
 
-FitLine judge(ScoredChannel const& of, Findings& findings) {
+FitLine check_channel(ScoredChannel const& of, Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
   line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
   std::vector<std::size_t> const far = far_off(of);
@@ -235,11 +235,11 @@ FitLine judge(ScoredChannel const& of, Findings& findings) {
   std::optional<CorrelationTest> white;  // rows of any order have no past
   if (of.model().dynamics != Dynamics::none) white = whiteness(residuals);
   Findings shape;
-  judge_size(of, !far.empty(), line, shape);
-  judge_outliers(of, far, shape);
-  if (white) judge_memory(of, residuals, *white, line, shape);
+  check_size(of, !far.empty(), line, shape);
+  check_outliers(of, far, shape);
+  if (white) check_memory(of, residuals, *white, line, shape);
   // Deviances of small counts are neither centred nor alike.
-  judge_share(of, white && white->fires() && !of.described().noise.row->discrete, findings);
+  check_share(of, white && white->fires() && !of.described().noise.row->discrete, findings);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;
 }
@@ -271,7 +271,7 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
     std::vector<std::vector<double>> const arguments = trajectory.noise_arguments(parameters, c);
     of.sized = noise.discrete ? pearson(noise, experiment.measured[channel], arguments, of.residuals)
                               : scaled(noise, arguments, of.residuals);
-    check.lines.push_back(judge(of, check.findings));
+    check.lines.push_back(check_channel(of, check.findings));
   }
 }
 
@@ -282,7 +282,7 @@ void name_held(Report const& report, Findings& findings) {
   for (PriorInfo const& prior : report.priors)
     for (Summary const& summary : report.summary)
       if (summary.name == prior.name && !summary.coefficient)
-        if (auto const ratio = narrowing(prior, summary); ratio && *ratio < hardly_narrower) held.push_back(summary.name);
+        if (auto const ratio = contraction(prior, summary); ratio && *ratio < hardly_narrower) held.push_back(summary.name);
   constexpr std::size_t most_named = 6;
   if (held.empty() || held.size() > most_named) return;
   for (Finding& each : findings)

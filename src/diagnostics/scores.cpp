@@ -23,7 +23,7 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
   }
   Band out;
   out.draws = static_cast<int>(trajectories.size());
-  out.left_out = static_cast<int>(trajectories.size() - usable.size());
+  out.excluded = static_cast<int>(trajectories.size() - usable.size());
   if (usable.empty()) return out;
   std::size_t const samples = usable[0]->size();
   std::vector<double> values(usable.size());

@@ -170,9 +170,9 @@ double largest_move(std::vector<Mode> const& modes, std::vector<Mode> const& fin
 
 }  // namespace
 
-SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
-                            RunContext& context) {
-  SettledSolver result;
+RefinedSolver refined_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
+                             std::vector<Mode> modes, RunContext& context) {
+  RefinedSolver result;
   result.solver = from;
   result.modes = std::move(modes);
   double steps = 0;
@@ -182,7 +182,7 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
     std::uint64_t const before = context.ledger.solves();
     std::vector<Mode> const finer = [&] {
       Shown const shown(context, *target, result.modes.size(), fmt::format("trying {}", accuracy(next)));
-      return refit(*target, aim, result.modes, context.seed, context.ledger, shown.stop());
+      return refit(*target, objective_kind, result.modes, context.seed, context.ledger, shown.stop());
     }();
     steps += static_cast<double>(context.ledger.solves() - before) * target->residual_count() * next.substeps;
     result.moves.push_back(largest_move(result.modes, finer));
@@ -191,7 +191,7 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
     result.lost = left.empty();
     result.given_up = !result.lost && !too_fine(next) && steps > patience && hopeless(result.moves, next);
     if (result.lost || result.given_up || too_fine(next)) {
-      result.settled = false;
+      result.converged = false;
       break;
     }
     result.solver = next;
@@ -200,16 +200,17 @@ SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings cons
   return result;
 }
 
-double move_to_finer(Target const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
-  return largest_move(modes, refit(fine, aim, modes, seed, ledger));
+double move_to_finer(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
+                     Ledger& ledger) {
+  return largest_move(modes, refit(fine, objective_kind, modes, seed, ledger));
 }
 
-Findings check_modes(Target const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver, std::uint64_t seed,
-                     Ledger& ledger) {
+Findings check_modes(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, SolverSettings const& solver,
+                     std::uint64_t seed, Ledger& ledger) {
   std::vector<Mode> weighty;
   for (Mode const& mode : modes)
     if (weighty.empty() || mode.share > of_weight) weighty.push_back(mode);
-  std::vector<Mode> const refined = refit(fine, aim, weighty, seed, ledger);
+  std::vector<Mode> const refined = refit(fine, objective_kind, weighty, seed, ledger);
   Findings findings;
   for (std::size_t m = 0; m < refined.size() && findings.empty(); ++m) {
     Move const move = largest_move(refined[m], weighty[m]);

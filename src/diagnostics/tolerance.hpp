@@ -7,7 +7,7 @@
 
 #include "likelihood/target.hpp"
 #include "result/draws.hpp"
-#include "search/aim.hpp"
+#include "search/objective_kind.hpp"
 #include "search/run_context.hpp"
 #include "solver/solver.hpp"
 
@@ -37,24 +37,25 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
 /// next one; the modes there, those that came together counted once, those that only a coarser solver could reach left out. Every
 /// solver costs twice the one before it: when that has come to many steps, and moves that fall as they do would not be small at the
 /// finest either, it is given up.
-struct SettledSolver {
+struct RefinedSolver {
   SolverSettings solver;
   std::vector<Mode> modes;
   std::vector<double> moves;  // of each that was tried: largest move to the next one [sd]
-  bool settled = true;        // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative), or lost
+  bool converged = true;      // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative), or lost
   bool lost = false;          // with the next one no mode is finite any more: these are the last that were
   bool given_up = false;      // before the finest, as one that would not settle it either
 };
-SettledSolver settle_solver(MakeTarget const& make, Aim aim, SolverSettings const& from, std::vector<Mode> modes,
-                            RunContext& context);
+RefinedSolver refined_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
+                             std::vector<Mode> modes, RunContext& context);
 
 /// How far the weightiest of `modes` moves on `fine` [sd], infinite where it is not finite there.
-double move_to_finer(Target const& fine, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger);
+double move_to_finer(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
+                     Ledger& ledger);
 
 /// The same question of a solver that the task states: do the modes keep place and width with the finer one, of which `fine` is
 /// made, and do they stay apart? Rough steps make false modes and false curvature.
-Findings check_modes(Target const& fine, Aim aim, std::vector<Mode> const& modes, SolverSettings const& solver, std::uint64_t seed,
-                     Ledger& ledger);
+Findings check_modes(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, SolverSettings const& solver,
+                     std::uint64_t seed, Ledger& ledger);
 
 /// After sampling: by how many sds each posterior mean moves with the finer solver, from the change of log likelihood over up to
 /// 200 draws (to first order the move of a mean is the covariance of the parameter with that change). Names the worst.

@@ -34,7 +34,7 @@ std::string with_care(std::ptrdiff_t warnings) {
   return fmt::format("use with care: {}", warnings == 1 ? "1 warning" : fmt::format("{} warnings", warnings));
 }
 
-Verdict judge(Findings const& findings) {
+Verdict verdict_of(Findings const& findings) {
   auto const count = [&](Severity s) {
     return std::count_if(findings.begin(), findings.end(), [&](Finding const& f) { return f.severity == s; });
   };
@@ -80,7 +80,7 @@ Severity failure_severity(std::uint64_t failed, std::uint64_t solves) {
 bool has_verdict(Report const& report) { return report.draws.total() > 0 || !report.verdict.empty() || !report.findings.empty(); }
 
 std::string verdict_headline(Report const& report) {
-  std::string const text = report.verdict.empty() ? judge(report.findings).text : report.verdict;
+  std::string const text = report.verdict.empty() ? verdict_of(report.findings).text : report.verdict;
   return text.substr(0, text.find('\n'));
 }
 

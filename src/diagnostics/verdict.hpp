@@ -24,7 +24,7 @@ Finding interrupted_finding(std::string const& what);
 Findings by_weight(Findings findings);
 
 /// Fails when any finding is an error; all are listed by weight.
-Verdict judge(Findings const& findings);
+Verdict verdict_of(Findings const& findings);
 
 /// The worst of the findings; note when there are none.
 Severity grade(Report const& report);

@@ -6,15 +6,15 @@
 namespace sysid {
 namespace {
 
-std::string reason(LeftOutTerm const& term) {
+std::string reason(ExcludedTerm const& term) {
   switch (term.why) {
-    case LeftOutTerm::Why::same:
+    case ExcludedTerm::Why::same:
       return fmt::format("the same as {}", term.detail);
-    case LeftOutTerm::Why::zero:
+    case ExcludedTerm::Why::zero:
       return "always zero";
-    case LeftOutTerm::Why::excluded:
+    case ExcludedTerm::Why::excluded:
       return "excluded";
-    case LeftOutTerm::Why::unit:
+    case ExcludedTerm::Why::unit:
       return fmt::format("its coefficient would be in [{}]", term.detail);
   }
   return {};
@@ -22,9 +22,9 @@ std::string reason(LeftOutTerm const& term) {
 
 }  // namespace
 
-std::vector<LeftOutText> left_out_texts(CheckedDictionary const& dictionary) {
-  std::vector<LeftOutText> texts;
-  for (LeftOutTerm const& term : dictionary.left_out) {
+std::vector<ExcludedText> excluded_texts(CheckedDictionary const& dictionary) {
+  std::vector<ExcludedText> texts;
+  for (ExcludedTerm const& term : dictionary.excluded) {
     bool const of_one = term.equation >= 0 && dictionary.equations.size() > 1;
     texts.push_back({of_one
                          ? fmt::format("{} for {}", term.text, dictionary.equations[static_cast<std::size_t>(term.equation)].text)

@@ -7,12 +7,12 @@
 
 namespace sysid {
 
-struct LeftOutText {
+struct ExcludedText {
   std::string term;    // "y*y'"; where it is left out of one equation of several, "y*y' for x'"
   std::string reason;  // "excluded", "the same as y'*y", "its coefficient would be in [N/m^2]"
 };
 
 /// In the order in which they were left out.
-std::vector<LeftOutText> left_out_texts(CheckedDictionary const& dictionary);
+std::vector<ExcludedText> excluded_texts(CheckedDictionary const& dictionary);
 
 }  // namespace sysid

@@ -28,7 +28,7 @@ struct Mean {
 /// Simulations of segments from starts that fit their first `window` rows.
 class Forecasts {
  public:
-  Forecasts(JudgedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
+  Forecasts(ValidatedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
             std::span<Experiment const> experiments, StartGuess& guess, ForecastSettings const& settings,
             std::vector<Segment> const& segments)
       : simulation_(model.compiled, experiments, segments, simulated(model, coefficients, settings)) {
@@ -48,7 +48,7 @@ class Forecasts {
   }
 
  private:
-  static SegmentSimulation::Settings simulated(JudgedModel const& model, Eigen::VectorXd const& coefficients,
+  static SegmentSimulation::Settings simulated(ValidatedModel const& model, Eigen::VectorXd const& coefficients,
                                                ForecastSettings const& settings) {
     SegmentSimulation::Settings out{{}, model.others, 0, settings.solver, settings.execution, settings.pool, model.centres};
     for (std::size_t j = 0; j < model.coefficients.size(); ++j)
@@ -91,7 +91,7 @@ std::vector<double> sds_of(std::span<Experiment const> experiments, std::size_t 
 
 }  // namespace
 
-ForecastErrors forecast_errors(JudgedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
+ForecastErrors forecast_errors(ValidatedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
                                std::span<Experiment const> experiments, StartGuess& guess, ForecastSettings const& settings) {
   std::size_t const channels = model.channels.size();
   int const window = settings.window, horizon = settings.horizon;
@@ -145,7 +145,7 @@ ForecastErrors forecast_errors(JudgedModel const& model, Eigen::VectorXd const& 
   return out;
 }
 
-int bounded_runs(JudgedModel const& model, std::span<Experiment const> experiments, std::span<LaneArray const> points,
+int bounded_runs(ValidatedModel const& model, std::span<Experiment const> experiments, std::span<LaneArray const> points,
                  ForecastSettings const& settings) {
   if (points.empty()) return 0;
   std::vector<bool> bounded(static_cast<std::size_t>(points.front().width()), true);

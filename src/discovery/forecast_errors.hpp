@@ -30,12 +30,12 @@ struct ForecastErrors {
 /// From `origins` rows of each experiment, evenly spread, whose start is estimated from the window that ends there; the free run
 /// from the end of the first window to the last row. Windows that hold less than half their share of samples show no start and are
 /// left out. experiments: as the model reads them, each with more rows than window + horizon; guess: of the same ones.
-ForecastErrors forecast_errors(JudgedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
+ForecastErrors forecast_errors(ValidatedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
                                std::span<Experiment const> experiments, StartGuess& guess, ForecastSettings const& settings);
 
 /// How many of some simulations over whole experiments stay finite and within ten times the half range of every channel about its
 /// middle, in every experiment. points: [parameters of the model and start states x W] for each experiment.
-int bounded_runs(JudgedModel const& model, std::span<Experiment const> experiments, std::span<LaneArray const> points,
+int bounded_runs(ValidatedModel const& model, std::span<Experiment const> experiments, std::span<LaneArray const> points,
                  ForecastSettings const& settings);
 
 }  // namespace sysid

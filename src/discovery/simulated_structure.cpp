@@ -36,29 +36,29 @@ std::pair<int, int> state_of(CheckedDictionary const& dictionary, std::string co
 
 }  // namespace
 
-std::vector<int> JudgedModel::fitted() const {
+std::vector<int> ValidatedModel::fitted() const {
   std::vector<int> all;
   for (Coefficient const& each : coefficients) all.push_back(each.parameter);
   return all;
 }
 
-Eigen::VectorXd JudgedModel::of_regression() const {
+Eigen::VectorXd ValidatedModel::of_regression() const {
   Eigen::VectorXd values(static_cast<Eigen::Index>(coefficients.size()));
   for (std::size_t j = 0; j < coefficients.size(); ++j) values(static_cast<Eigen::Index>(j)) = coefficients[j].value;
   return values;
 }
 
-Experiment JudgedModel::view(Experiment const& of_dictionary) const {
+Experiment ValidatedModel::view(Experiment const& of_dictionary) const {
   Experiment own = of_dictionary;
   own.inputs.clear();
   own.measured.clear();
-  own.has_past.clear();
+  own.has_lags.clear();
   for (std::size_t const i : inputs) own.inputs.push_back(of_dictionary.inputs[i]);
   for (std::size_t const c : channels) own.measured.push_back(of_dictionary.measured[c]);
   return own;
 }
 
-Eigen::MatrixXd JudgedModel::starts(std::vector<Segment> const& segments, StartGuess& guess) const {
+Eigen::MatrixXd ValidatedModel::starts(std::vector<Segment> const& segments, StartGuess& guess) const {
   Eigen::MatrixXd all(static_cast<Eigen::Index>(states.size()), static_cast<Eigen::Index>(segments.size()));
   for (std::size_t s = 0; s < segments.size(); ++s)
     for (std::size_t x = 0; x < states.size(); ++x)
@@ -67,8 +67,8 @@ Eigen::MatrixXd JudgedModel::starts(std::vector<Segment> const& segments, StartG
   return all;
 }
 
-JudgedModel judged_model(FoundSource const& source, FoundStructure const& structure) {
-  JudgedModel out;
+ValidatedModel validated_model(FoundSource const& source, FoundStructure const& structure) {
+  ValidatedModel out;
   Source text((source.results / "found.sysid").string(), source.text({structure}));
   Diagnostics diagnostics;
   auto const file = load(text, diagnostics);

@@ -12,7 +12,7 @@
 
 namespace sysid {
 
-struct JudgedModel {
+struct ValidatedModel {
   std::string failure;  // why it cannot be simulated; empty: all below is set
   std::shared_ptr<CompiledModel const> compiled;
   std::shared_ptr<SimulationProgram const> centres;  // of its channels alone
@@ -35,6 +35,6 @@ struct JudgedModel {
   Eigen::MatrixXd starts(std::vector<Segment> const& segments, StartGuess& guess) const;
 };
 
-JudgedModel judged_model(FoundSource const& source, FoundStructure const& structure);
+ValidatedModel validated_model(FoundSource const& source, FoundStructure const& structure);
 
 }  // namespace sysid

@@ -30,10 +30,10 @@ Eigen::MatrixXd root_of(Eigen::MatrixXd const& covariance) {
   return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-class Judge {
+class Validator {
  public:
-  Judge(FoundSource const& source, std::vector<FoundStructure> structures, std::vector<ExperimentData> const& unused,
-        std::function<bool()> const& interrupted)
+  Validator(FoundSource const& source, std::vector<FoundStructure> structures, std::vector<ExperimentData> const& unused,
+            std::function<bool()> const& interrupted)
       : source_(source),
         structures_(std::move(structures)),
         interrupted_(interrupted),
@@ -42,16 +42,16 @@ class Judge {
         pool_(make_pool(execution_)) {
     int states = 1;
     for (FoundStructure const& each : structures_) {
-      models_.push_back(judged_model(source_, each));
+      models_.push_back(validated_model(source_, each));
       states = std::max(states, static_cast<int>(models_.back().states.size()));
     }
-    rows_ = judged_rows(source.data, unused, states, source.discovery.half_width);
+    rows_ = validation_rows(source.data, unused, states, source.discovery.half_width);
     scored_.resize(models_.size());
     for (std::size_t m = 0; m < models_.size(); ++m) order_.push_back(m);
   }
 
-  Judgement run() {
-    bool const any = std::any_of(models_.begin(), models_.end(), [](JudgedModel const& each) { return each.failure.empty(); });
+  Validation run() {
+    bool const any = std::any_of(models_.begin(), models_.end(), [](ValidatedModel const& each) { return each.failure.empty(); });
     if (any) {
       std::vector<double> const& noise = source_.discovery.noise_sd;
       StartGuess guess(dictionary_.numbers, rows_.records, noise);
@@ -64,11 +64,11 @@ class Judge {
       score();
       check_stability();
     }
-    Judgement out;
+    Validation out;
     out.interrupted = interrupted_();
     if (out.interrupted) return out;
     report(out);
-    if (any) out.findings = judged_findings(out.report);
+    if (any) out.findings = validation_findings(out.report);
     return out;
   }
 
@@ -79,7 +79,7 @@ class Judge {
     int bounded = 0;
   };
 
-  bool judged(std::size_t m) const { return fits_ && fits_->failure(m).empty(); }
+  bool validation(std::size_t m) const { return fits_ && fits_->failure(m).empty(); }
 
   // Every number of terms of an equation is as probable before, and among as many terms every choice (Scott, Berger 2010).
   double log_prior(std::size_t m) const {
@@ -89,7 +89,7 @@ class Judge {
       std::vector<regression::FoundTerm> const& found = source_.discovery.equations[e].terms;
       int offered = 0, taken = 0;
       for (std::size_t j = 0; j < terms.size(); ++j)
-        if (!terms[j].in_target && !found[j].left_out) ++offered;
+        if (!terms[j].in_target && !found[j].excluded) ++offered;
       for (int const j : structures_[m].equations[e]->terms)
         if (!terms[static_cast<std::size_t>(j)].in_target) ++taken;
       for (int i = 1; i <= taken; ++i) sum -= elementary::log(static_cast<double>(offered - taken + i) / i);
@@ -102,7 +102,7 @@ class Judge {
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
     double sum = 0;
     for (std::size_t const m : order_)
-      if (judged(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
+      if (validation(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
     for (std::size_t const m : order_) scored_[m].probability /= sum > 0 ? sum : 1;
   }
 
@@ -119,21 +119,21 @@ class Judge {
 
   // With coefficients of rows that are not scored.
   void score() {
-    if (rows_.aside.empty()) return;
-    StartGuess guess(dictionary_.numbers, rows_.aside, source_.discovery.noise_sd);
+    if (rows_.held_out.empty()) return;
+    StartGuess guess(dictionary_.numbers, rows_.held_out, source_.discovery.noise_sd);
     for (std::size_t m = 0; m < models_.size(); ++m) {
-      if (!judged(m) || interrupted_()) continue;
+      if (!validation(m) || interrupted_()) continue;
       ShootingFit const fit = rows_.cut ? fits_->fit_before(m, rows_.ends) : fits_->fit(m);
       if (fit.finite)
         scored_[m].errors =
-            forecast_errors(models_[m], fit.point.coefficients, fit.noise_sd, views(m, rows_.aside), guess, forecast(m));
+            forecast_errors(models_[m], fit.point.coefficients, fit.noise_sd, views(m, rows_.held_out), guess, forecast(m));
     }
   }
 
   // Draws of the coefficients from the normal law about their fit, the start of one experiment moved along.
   LaneArray drawn(std::size_t m, std::size_t segment) const {
     ShootingFit const& fit = fits_->fit(m);
-    JudgedModel const& model = models_[m];
+    ValidatedModel const& model = models_[m];
     Eigen::Index const k = fit.point.coefficients.size();
     auto const parameters = static_cast<int>(model.others.size());
     Eigen::MatrixXd const root = root_of(fit.covariance);
@@ -155,7 +155,7 @@ class Judge {
   void check_stability() {
     std::vector<Segment> const parts = fits_->segments();
     for (std::size_t m = 0; m < models_.size(); ++m) {
-      if (!judged(m) || interrupted_()) continue;
+      if (!validation(m) || interrupted_()) continue;
       std::vector<LaneArray> points;
       for (std::size_t s = 0; s < parts.size(); ++s)
         if (parts[s].first == 0) points.push_back(drawn(m, s));
@@ -169,8 +169,8 @@ class Judge {
     return unit ? unit->scale : 1;
   }
 
-  JudgedStructure described(std::size_t m) const {
-    JudgedStructure out;
+  ValidatedStructure described(std::size_t m) const {
+    ValidatedStructure out;
     out.terms = structure_text(dictionary_, structures_[m]);
     out.of_regression = static_cast<int>(m) + 1;
     out.failure = fits_ ? fits_->failure(m) : models_[m].failure;
@@ -186,7 +186,7 @@ class Judge {
     out.follows = scored.errors.follows;
     std::vector<std::vector<PrintedTerm>> printed(dictionary_.equations.size());
     for (std::size_t j = 0; j < models_[m].coefficients.size(); ++j) {
-      JudgedModel::Coefficient const& of = models_[m].coefficients[j];
+      ValidatedModel::Coefficient const& of = models_[m].coefficients[j];
       auto const row = static_cast<Eigen::Index>(j);
       DictionaryEquation const& equation = dictionary_.equations[of.equation];
       DictionaryTerm const& term = equation.terms[of.term];
@@ -200,7 +200,8 @@ class Judge {
     for (std::size_t c = 0; c < models_[m].channels.size(); ++c) {
       Channel const& channel = dictionary_.measured.channels[models_[m].channels[c]];
       double const noise = source_.discovery.noise_sd[models_[m].channels[c]];
-      JudgedChannel of{channel.name, channel.unit_text(), 0, channel.from_si(fit.noise_sd[c]), channel.from_si(noise), {}, {}, {}};
+      ValidatedChannel of{
+          channel.name, channel.unit_text(), 0, channel.from_si(fit.noise_sd[c]), channel.from_si(noise), {}, {}, {}};
       if (noise > 0) out.residual_over_noise = std::max(out.residual_over_noise, fit.noise_sd[c] / noise);
       if (c < scored.errors.sd.size()) {
         auto const declared = [&](std::optional<double> value) { return value ? std::optional(channel.from_si(*value)) : value; };
@@ -214,31 +215,31 @@ class Judge {
     return out;
   }
 
-  void report(Judgement& out) const {
+  void report(Validation& out) const {
     for (std::size_t const m : order_) {
       out.order.push_back(structures_[m]);
       out.report.structures.push_back(described(m));
     }
     if (!fits_) return;
-    JudgedReport& judged = out.report;
+    ValidationReport& validation = out.report;
     std::vector<Segment> const parts = fits_->segments();
-    judged.segments = static_cast<int>(parts.size());
-    judged.shortest = std::numeric_limits<double>::infinity();
+    validation.segments = static_cast<int>(parts.size());
+    validation.shortest = std::numeric_limits<double>::infinity();
     for (Segment const& each : parts) {
       std::vector<double> const& time = rows_.records[static_cast<std::size_t>(each.experiment)].time;
       double const length =
           time[static_cast<std::size_t>(each.first + each.count - 1)] - time[static_cast<std::size_t>(each.first)];
-      judged.shortest = std::min(judged.shortest, length);
-      judged.longest = std::max(judged.longest, length);
+      validation.shortest = std::min(validation.shortest, length);
+      validation.longest = std::max(validation.longest, length);
     }
-    judged.whole = fits_->whole();
-    judged.step = rows_.step;
-    judged.horizon_rows = rows_.horizon;
-    judged.horizon = rows_.horizon * rows_.step;
-    judged.window_rows = rows_.window;
-    judged.aside = rows_.aside_name;
-    judged.aside_seen = rows_.cut;
-    if (models_[order_.front()].failure.empty()) judged.solver = fits_->solver(order_.front()).text();
+    validation.whole = fits_->whole();
+    validation.step = rows_.step;
+    validation.horizon_rows = rows_.horizon;
+    validation.horizon = rows_.horizon * rows_.step;
+    validation.window_rows = rows_.window;
+    validation.held_out = rows_.held_out_name;
+    validation.held_out_seen = rows_.cut;
+    if (models_[order_.front()].failure.empty()) validation.solver = fits_->solver(order_.front()).text();
   }
 
   FoundSource const& source_;
@@ -247,8 +248,8 @@ class Judge {
   CheckedDictionary const& dictionary_;
   ExecutionOptions execution_;
   std::shared_ptr<ThreadPool> pool_;
-  std::vector<JudgedModel> models_;
-  JudgedRows rows_;
+  std::vector<ValidatedModel> models_;
+  ValidationRows rows_;
   std::optional<StructureFits> fits_;  // none where there is no model
   std::vector<Scored> scored_;
   std::vector<std::size_t> order_;
@@ -256,9 +257,9 @@ class Judge {
 
 }  // namespace
 
-Judgement judge_structures(FoundSource const& source, std::vector<FoundStructure> structures,
-                           std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted) {
-  return Judge(source, std::move(structures), unused, interrupted).run();
+Validation validate_structures(FoundSource const& source, std::vector<FoundStructure> structures,
+                               std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted) {
+  return Validator(source, std::move(structures), unused, interrupted).run();
 }
 
 }  // namespace sysid

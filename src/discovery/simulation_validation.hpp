@@ -11,8 +11,8 @@
 
 namespace sysid {
 
-struct Judgement {
-  JudgedReport report;
+struct Validation {
+  ValidationReport report;
   std::vector<FoundStructure> order;  // best first, parallel to report.structures
   Findings findings;
   bool interrupted = false;  // nothing else is set
@@ -22,7 +22,7 @@ struct Judgement {
 /// not use, with the dictionary's columns; where there are none the last fifth of each of the task's is kept aside for the scores.
 /// Every structure is fitted over the same segments: as long as the best one follows the record. The same bytes for any number of
 /// threads and lanes.
-Judgement judge_structures(FoundSource const& source, std::vector<FoundStructure> structures,
-                           std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted);
+Validation validate_structures(FoundSource const& source, std::vector<FoundStructure> structures,
+                               std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted);
 
 }  // namespace sysid

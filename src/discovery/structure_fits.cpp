@@ -34,7 +34,7 @@ bool follows(ShootingFit const& before, ShootingFit const& after) {
 
 }  // namespace
 
-StructureFits::StructureFits(std::vector<JudgedModel> const& models, StartGuess& guess, StructureFitSettings settings)
+StructureFits::StructureFits(std::vector<ValidatedModel> const& models, StartGuess& guess, StructureFitSettings settings)
     : models_(models), guess_(guess), settings_(std::move(settings)), fits_(models.size()) {
   for (Experiment const& each : settings_.records)
     most_halvings_ = std::max(most_halvings_, halvings(static_cast<int>(each.time.size()), settings_.least));
@@ -57,7 +57,7 @@ std::string const& StructureFits::failure(std::size_t m) const {
 }
 
 double StructureFits::log_posterior(std::size_t m) const {
-  return judged(m) ? fits_[m].fit.log_evidence + settings_.log_prior[m] : -std::numeric_limits<double>::infinity();
+  return validated(m) ? fits_[m].fit.log_evidence + settings_.log_prior[m] : -std::numeric_limits<double>::infinity();
 }
 
 SolverSettings StructureFits::solver(std::size_t m) const {
@@ -69,12 +69,12 @@ SolverSettings StructureFits::solver(std::size_t m) const {
 
 // starts_alone: coefficients are held at the regression's.
 SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> const& segments, bool starts_alone) const {
-  JudgedModel const& model = models_[m];
+  ValidatedModel const& model = models_[m];
   std::vector<Experiment> own;
   for (Experiment const& each : settings_.records) own.push_back(model.view(each));
   SegmentSimulation::Settings settings{{}, model.others, 0, solver(m), settings_.execution, settings_.pool, model.centres};
   if (starts_alone)
-    for (JudgedModel::Coefficient const& each : model.coefficients)
+    for (ValidatedModel::Coefficient const& each : model.coefficients)
       settings.others[static_cast<std::size_t>(each.parameter)] = each.value;
   else
     settings.fitted = model.fitted();
@@ -169,7 +169,7 @@ void StructureFits::climb_alone(std::size_t m) {
 
 /// To segments of that length, whether it follows or not.
 void StructureFits::climb_to(std::size_t m, int halved) {
-  while (judged(m) && fits_[m].halved > halved && !settings_.interrupted()) {
+  while (validated(m) && fits_[m].halved > halved && !settings_.interrupted()) {
     Fitted next = at(m, fits_[m], fits_[m].halved - 1, false);
     if (!next.fit.finite)
       fits_[m].failure = "does not stay finite over segments of this length";
@@ -186,20 +186,20 @@ void StructureFits::climb() {
   halved_ = most_halvings_;
   std::optional<std::size_t> lead;  // the regression's choice before anything is compared
   for (std::size_t m = models_.size(); m-- > 0;)
-    if (judged(m)) lead = m;
+    if (validated(m)) lead = m;
   for (; lead && !has_led[*lead] && !settings_.interrupted(); lead = best()) {
     has_led[*lead] = true;
     climb_alone(*lead);
     halved_ = std::min(halved_, fits_[*lead].halved);
     for (std::size_t m = 0; m < models_.size(); ++m)
-      if (judged(m)) climb_to(m, halved_);
+      if (validated(m)) climb_to(m, halved_);
   }
 }
 
 std::optional<std::size_t> StructureFits::best() const {
   std::optional<std::size_t> best;
   for (std::size_t m = 0; m < models_.size(); ++m)
-    if (judged(m) && (!best || log_posterior(m) > log_posterior(*best))) best = m;
+    if (validated(m) && (!best || log_posterior(m) > log_posterior(*best))) best = m;
   return best;
 }
 
@@ -224,9 +224,9 @@ void StructureFits::refine() {
     fits_[*first] = finer;
   }
   for (std::size_t m = 0; m < models_.size(); ++m)
-    if (judged(m) && m != *first && !settings_.interrupted()) fits_[m] = at(m, fits_[m], halved_, true);
+    if (validated(m) && m != *first && !settings_.interrupted()) fits_[m] = at(m, fits_[m], halved_, true);
   for (std::size_t m = 0; m < models_.size(); ++m) {
-    if (!judged(m)) continue;
+    if (!validated(m)) continue;
     if (!fits_[m].fit.finite)
       fits_[m].failure = "does not stay finite";
     else if (!fits_[m].fit.determined)

@@ -27,7 +27,7 @@ struct StructureFitSettings {
 class StructureFits {
  public:
   /// models: those with a failure are left alone; must outlive this.
-  StructureFits(std::vector<JudgedModel> const& models, StartGuess& guess, StructureFitSettings settings);
+  StructureFits(std::vector<ValidatedModel> const& models, StartGuess& guess, StructureFitSettings settings);
 
   void run();
 
@@ -59,7 +59,7 @@ class StructureFits {
   double rows_of_round(std::size_t m) const;
   std::function<bool()> stop(std::size_t m);
   ShootingOptions options(std::size_t m, bool last);
-  bool judged(std::size_t m) const { return failure(m).empty(); }
+  bool validated(std::size_t m) const { return failure(m).empty(); }
   void begin(std::size_t m);
   ShootingPoint longer(Fitted const& from, std::vector<Segment> const& parts) const;
   Fitted at(std::size_t m, Fitted const& from, int halved, bool last);
@@ -69,7 +69,7 @@ class StructureFits {
   std::optional<std::size_t> best() const;
   void refine();
 
-  std::vector<JudgedModel> const& models_;
+  std::vector<ValidatedModel> const& models_;
   StartGuess& guess_;
   StructureFitSettings settings_;
   std::vector<Fitted> fits_;

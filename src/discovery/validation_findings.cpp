@@ -23,14 +23,14 @@ constexpr double foretold_percent = 50;     // of the sd, one dominant period ah
 constexpr double telling_percent = 10;      // noise that has a part in that
 constexpr double small_residual = 0.7;      // of the noise that the regression took
 
-bool explains_motion(JudgedReport const& judged) {
-  JudgedStructure const& best = judged.structures.front();
-  return best.failure.empty() && judged.whole && best.residual_over_noise > 0 && best.residual_over_noise <= tolerable_residual;
+bool explains_motion(ValidationReport const& validation) {
+  ValidatedStructure const& best = validation.structures.front();
+  return best.failure.empty() && validation.whole && best.residual_over_noise > 0 && best.residual_over_noise <= tolerable_residual;
 }
 
-std::optional<Finding> given_up(JudgedReport const& judged) {
+std::optional<Finding> given_up(ValidationReport const& validation) {
   std::vector<std::string> names;
-  for (JudgedStructure const& each : judged.structures)
+  for (ValidatedStructure const& each : validation.structures)
     if (each.given_up) names.push_back(each.terms);
   if (names.empty()) return std::nullopt;
   return Finding{
@@ -40,9 +40,9 @@ std::optional<Finding> given_up(JudgedReport const& judged) {
       "use fewer rows, or a smaller `top`, or remove the implicit terms from the dictionary"};
 }
 
-std::optional<Finding> idle_terms(JudgedStructure const& best) {
+std::optional<Finding> idle_terms(ValidatedStructure const& best) {
   std::vector<std::string> idle, names;
-  for (JudgedCoefficient const& each : best.coefficients)
+  for (ValidatedCoefficient const& each : best.coefficients)
     if (!each.of_target && std::abs(each.value) < idle_sds * each.sd) {
       names.push_back(each.term);
       idle.push_back(fmt::format("`{}`{}", each.term, best.equations.size() > 1 ? " of " + each.target : ""));
@@ -56,33 +56,33 @@ std::optional<Finding> idle_terms(JudgedStructure const& best) {
                              one ? "it varies" : "they vary")};
 }
 
-std::optional<Finding> lost_free_run(JudgedReport const& judged) {
-  JudgedStructure const& best = judged.structures.front();
-  std::optional<double> const far = best.percent(&JudgedChannel::horizon), free = best.percent(&JudgedChannel::free_run);
+std::optional<Finding> lost_free_run(ValidationReport const& validation) {
+  ValidatedStructure const& best = validation.structures.front();
+  std::optional<double> const far = best.percent(&ValidatedChannel::horizon), free = best.percent(&ValidatedChannel::free_run);
   if (!free || *free < lost_percent) return std::nullopt;
   std::string const size = std::isfinite(*free) && *free <= 1e4 ? significant(*free, 3) : "more than 1e4";
   std::string message = fmt::format("the error of a free run on {} is {} % of the sd; the run follows the record for {} s",
-                                    judged.aside, size, significant(best.follows, 3));
+                                    validation.held_out, size, significant(best.follows, 3));
   double noise = 0;
-  for (JudgedChannel const& each : best.channels)
+  for (ValidatedChannel const& each : best.channels)
     if (each.sd > 0)
       noise = std::max(noise, 100 * (each.noise > 0 ? std::min(each.noise, each.residual) : each.residual) / each.sd);
   if (noise > telling_percent) message += fmt::format("; the noise of the record is {} % of that sd", significant(noise, 3));
   if (far && *far < foretold_percent)
     return Finding{FindingCode::free_run_lost,
                    Severity::note,
-                   {judged.aside},
+                   {validation.held_out},
                    std::move(message),
                    "expected of a chaotic motion, which can be predicted for a short time only"};
   return Finding{FindingCode::free_run_lost,
                  Severity::warning,
-                 {judged.aside},
+                 {validation.held_out},
                  std::move(message),
                  "the error exceeds half the sd within one dominant period: do not extrapolate, and look for missing terms"};
 }
 
-void add_overestimated_noise(JudgedStructure const& best, Findings& findings) {
-  for (JudgedChannel const& each : best.channels)
+void add_overestimated_noise(ValidatedStructure const& best, Findings& findings) {
+  for (ValidatedChannel const& each : best.channels)
     if (each.residual < small_residual * each.noise)
       findings.push_back({FindingCode::noise_overestimated,
                           Severity::note,
@@ -96,33 +96,33 @@ void add_overestimated_noise(JudgedStructure const& best, Findings& findings) {
 
 }  // namespace
 
-void temper_by_simulation(JudgedReport const& judged, Findings& of_regression) {
-  if (!explains_motion(judged)) return;
+void temper_by_simulation(ValidationReport const& validation, Findings& of_regression) {
+  if (!explains_motion(validation)) return;
   for (Finding& each : of_regression) {
     if (each.code != FindingCode::unexplained_residual) continue;
     each.severity = Severity::note;
     each.message += fmt::format("; but the residual of the simulated motion is {} times the noise",
-                                significant(judged.structures.front().residual_over_noise, 3));
+                                significant(validation.structures.front().residual_over_noise, 3));
     each.help = "use the equation, the coefficients and the sds of the simulation, not those of the regression";
   }
 }
 
-Findings judged_findings(JudgedReport const& judged) {
+Findings validation_findings(ValidationReport const& validation) {
   Findings findings;
-  JudgedStructure const& best = judged.structures.front();
+  ValidatedStructure const& best = validation.structures.front();
   auto const add = [&](FindingCode code, Severity severity, std::vector<std::string> names, std::string message, char const* help) {
     findings.push_back({code, severity, std::move(names), std::move(message), help});
   };
-  auto const regression = std::find_if(judged.structures.begin(), judged.structures.end(),
-                                       [](JudgedStructure const& each) { return each.of_regression == 1; });
-  if (regression != judged.structures.begin())
+  auto const regression = std::find_if(validation.structures.begin(), validation.structures.end(),
+                                       [](ValidatedStructure const& each) { return each.of_regression == 1; });
+  if (regression != validation.structures.begin())
     add(FindingCode::simulation_prefers, Severity::warning, {best.terms, regression->terms},
         fmt::format("simulation ranks `{}` first, the regression `{}`, which {}", best.terms, regression->terms,
                     regression->failure.empty()
                         ? fmt::format("has a probability of {} by the motion", probability_text(regression->probability))
                         : "was not judged: " + regression->failure),
         "the model that is written is the one that simulation ranks first; a record of other amplitude may decide");
-  auto const costly = given_up(judged);
+  auto const costly = given_up(validation);
   if (costly) findings.push_back(*costly);
   if (!best.failure.empty()) {
     if (costly) return findings;
@@ -132,10 +132,10 @@ Findings judged_findings(JudgedReport const& judged) {
     return findings;
   }
   if (auto idle = idle_terms(best)) findings.push_back(std::move(*idle));
-  if (!judged.whole)
+  if (!validation.whole)
     add(FindingCode::followed_in_parts, Severity::note, {},
         fmt::format("the simulation follows the record for {} at a time, from a new start each time",
-                    significant(judged.longest, 3) + " s"),
+                    significant(validation.longest, 3) + " s"),
         "expected of a chaotic motion; else a term or an input is missing");
   if (best.residual_over_noise > tolerable_residual)
     add(FindingCode::motion_unexplained, Severity::warning, {},
@@ -147,8 +147,8 @@ Findings judged_findings(JudgedReport const& judged) {
         fmt::format("{} of {} draws of the coefficients do not stay within ten times the range of the record in a free run",
                     best.draws - best.bounded, best.draws),
         "a term may destabilise the motion where the record has few samples: remove it, or use a record of larger amplitude");
-  if (auto lost = lost_free_run(judged)) findings.push_back(std::move(*lost));
-  if (explains_motion(judged)) add_overestimated_noise(best, findings);
+  if (auto lost = lost_free_run(validation)) findings.push_back(std::move(*lost));
+  if (explains_motion(validation)) add_overestimated_noise(best, findings);
   return findings;
 }
 

@@ -6,9 +6,9 @@
 namespace sysid {
 
 /// judged: with at least one structure.
-Findings judged_findings(JudgedReport const& judged);
+Findings validation_findings(ValidationReport const& validation);
 
 /// What the regression left unexplained is a note where simulation explains the motion to its noise.
-void temper_by_simulation(JudgedReport const& judged, Findings& of_regression);
+void temper_by_simulation(ValidationReport const& validation, Findings& of_regression);
 
 }  // namespace sysid

@@ -38,9 +38,9 @@ double dominant_period_of(std::vector<Experiment> const& records, double step) {
 
 }  // namespace
 
-JudgedRows judged_rows(std::vector<ExperimentData> const& task, std::vector<ExperimentData> const& unused, int states,
-                       int half_width) {
-  JudgedRows rows;
+ValidationRows validation_rows(std::vector<ExperimentData> const& task, std::vector<ExperimentData> const& unused, int states,
+                               int half_width) {
+  ValidationRows rows;
   for (ExperimentData const& each : task) rows.records.push_back(each.experiment);
   std::vector<double> const& time = rows.records.front().time;
   rows.step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
@@ -48,21 +48,21 @@ JudgedRows judged_rows(std::vector<ExperimentData> const& task, std::vector<Expe
   int const least_window = std::max(least_rows, rows_per_state * states), needed = windows_aside * least_window;
   rows.least = std::max({2 * half_width, rows.horizon / 4, least_window});
   for (ExperimentData const& each : unused)
-    if (samples_in(each.experiment, rows_in(each.experiment)) >= needed) rows.aside.push_back(each.experiment);
-  bool const unseen = !rows.aside.empty();
+    if (samples_in(each.experiment, rows_in(each.experiment)) >= needed) rows.held_out.push_back(each.experiment);
+  bool const unseen = !rows.held_out.empty();
   for (Experiment const& each : rows.records) {
     int const count = rows_in(each), last = count / 5;
     bool const cut = !unseen && samples_in(each, last) >= needed;
     rows.ends.push_back(cut ? count - last : count);
-    if (cut) rows.aside.push_back(rows_of(each, count - last, last));
+    if (cut) rows.held_out.push_back(rows_of(each, count - last, last));
     rows.cut = rows.cut || cut;
   }
   int shortest = std::numeric_limits<int>::max();
-  for (Experiment const& each : rows.aside) {
-    rows.aside_name += (rows.aside_name.empty() ? (rows.cut ? "the last fifth of " : "") : ", ") + each.name;
+  for (Experiment const& each : rows.held_out) {
+    rows.held_out_name += (rows.held_out_name.empty() ? (rows.cut ? "the last fifth of " : "") : ", ") + each.name;
     shortest = std::min(shortest, rows_in(each));
   }
-  if (rows.aside.empty()) return rows;
+  if (rows.held_out.empty()) return rows;
   rows.window = std::clamp(rows.horizon, least_window, std::max(least_window, std::min(most_window, shortest / 4)));
   rows.horizon = std::min(rows.horizon, std::max(1, shortest - rows.window - least_origins));
   return rows;

@@ -42,14 +42,14 @@ int task_of_kind(Session& session, StoredResult const& stored, char const* kind)
 }
 
 /// Predictions from the draws of a task that lie beside it, in the order of the file. Those of earlier draws are left out, with a
-/// sentence in `left_out`.
-std::vector<StoredPrediction> predictions_of(Session const& session, int source, std::vector<std::string>& left_out) {
+/// sentence in `omitted`.
+std::vector<StoredPrediction> predictions_of(Session const& session, int source, std::vector<std::string>& omitted) {
   std::vector<StoredPrediction> found;
   for (Task const& task : session.file.tasks) {
     auto const* what = std::get_if<PredictTask>(&task.what);
     if (what == nullptr || what->fit != source || !complete(session.result_folder(task))) continue;
     if (auto const earlier = made_from_earlier(session.result_folder(task))) {
-      left_out.push_back(fmt::format("{}: {}", task.name, earlier->message));
+      omitted.push_back(fmt::format("{}: {}", task.name, earlier->message));
       continue;
     }
     found.push_back({task, *what, read_stored_result(session.result_folder(task)).seed()});
@@ -60,7 +60,7 @@ std::vector<StoredPrediction> predictions_of(Session const& session, int source,
 /// Under another name they are a copy, and what lies beside it was predicted from the task's own folder.
 bool renamed(StoredResult const& stored, InferenceData& data) {
   if (stored.folder.filename() == stored.task()) return false;
-  data.left_out.push_back(
+  data.omitted.push_back(
       fmt::format("predictions: those beside `{}` are of the folder `{}`", stored.folder.filename().string(), stored.task()));
   return true;
 }
@@ -70,7 +70,7 @@ Export fit_export(StoredResult const& stored, Session* session, int draws) {
   if (session == nullptr) return file;
   int const task = task_of_kind<FitTask>(*session, stored, "fit");
   add_simulated(*session, task, stored, draws, file.data);
-  std::vector<StoredPrediction> const predictions = predictions_of(*session, task, file.data.left_out);
+  std::vector<StoredPrediction> const predictions = predictions_of(*session, task, file.data.omitted);
   if (!predictions.empty() && !renamed(stored, file.data)) add_predictions(*session, predictions, file.data);
   return file;
 }
@@ -80,10 +80,10 @@ std::vector<Export> selection_exports(StoredResult const& stored, Session* sessi
   if (session != nullptr) {
     int const task = task_of_kind<SelectTask>(*session, stored, "selection");
     add_candidate_data(*session, task, candidates);
-    std::vector<std::string> left_out;
-    std::vector<StoredPrediction> const predictions = predictions_of(*session, task, left_out);
+    std::vector<std::string> omitted;
+    std::vector<StoredPrediction> const predictions = predictions_of(*session, task, omitted);
     for (CandidateData& each : candidates) {
-      each.data.left_out.insert(each.data.left_out.end(), left_out.begin(), left_out.end());
+      each.data.omitted.insert(each.data.omitted.end(), omitted.begin(), omitted.end());
       if (!predictions.empty() && !renamed(stored, each.data)) add_predictions(*session, predictions, each.place, each.data);
     }
   }
@@ -128,7 +128,7 @@ void export_netcdf(ResultsFolder const& results, Session* session, int draws, st
     for (Export const& file : files) {
       write_file(file.path, file.data.bytes());
       out << fmt::format("{}: {}\n", file.path.string(), groups_text(file.data));
-      for (std::string const& line : file.data.left_out) out << "  left out: " << line << '\n';
+      for (std::string const& line : file.data.omitted) out << "  left out: " << line << '\n';
     }
   }
 }

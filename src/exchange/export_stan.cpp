@@ -32,7 +32,7 @@ class StanExport {
   }
 
   void require_writable(bool force) const {
-    if (files_.empty() && left_out_.all().empty())
+    if (files_.empty() && excluded_.all().empty())
       throw refused("there is no fit to write as a Stan program", "name a file with a fit task, or results of one");
     for (ProgramFile const& file : files_)
       if (!force && std::filesystem::exists(file.path))
@@ -45,7 +45,7 @@ class StanExport {
       write_file(file.path, file.text);
       out << file.path.string() << '\n';
     }
-    return left_out_;
+    return excluded_;
   }
 
  private:
@@ -57,15 +57,15 @@ class StanExport {
       files_.push_back({folder / (task.name + ".stan"), std::move(written.program)});
       files_.push_back({folder / (task.name + ".data.json"), std::move(written.data)});
     } catch (UnusableData const& error) {
-      for (Diagnostic const& each : error.diagnostics().all()) left_out_.add(each);
+      for (Diagnostic const& each : error.diagnostics().all()) excluded_.add(each);
     } catch (UserError const& error) {
-      left_out_.add(error.diagnostic());
+      excluded_.add(error.diagnostic());
     }
   }
 
   Session& session_;
   std::vector<ProgramFile> files_;
-  Diagnostics left_out_;
+  Diagnostics excluded_;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace sysid {
 struct InferenceData {
   Attributes attributes;  // of the root
   std::vector<NetcdfGroup> groups;
-  std::vector<std::string> left_out;  // groups that there could be, with the reason, one line each
+  std::vector<std::string> omitted;  // groups that there could be, with the reason, one line each
 
   void add(NetcdfGroup group) {
     if (!group.empty()) groups.push_back(std::move(group));

@@ -73,15 +73,15 @@ std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
     candidate.data.add(std::move(posterior));
     add_weighted(candidate.data, stored.folder / fmt::format("particles_{}.csv", file), parameters);
     // Chains on the likelihood know parameters of the noise, too.
-    Draws polished = parameters_of(model.value("polished", nlohmann::ordered_json::object()));
+    Draws refined = parameters_of(model.value("polished", nlohmann::ordered_json::object()));
     for (int c = 1; std::filesystem::exists(stored.folder / fmt::format("polished_{}_{}.csv", file, c)); ++c)
-      polished.chains.push_back(read_chain(stored.folder / fmt::format("polished_{}_{}.csv", file, c), polished.names));
-    if (!polished.chains.empty() && !polished.names.empty()) {
+      refined.chains.push_back(read_chain(stored.folder / fmt::format("polished_{}_{}.csv", file, c), refined.names));
+    if (!refined.chains.empty() && !refined.names.empty()) {
       NetcdfGroup group("polished_posterior");
-      add_draws(group, polished);
+      add_draws(group, refined);
       candidate.data.add(std::move(group));
     }
-    candidate.data.left_out.push_back(
+    candidate.data.omitted.push_back(
         "posterior_predictive, log_likelihood, prior, prior_predictive: a selection by distance does not estimate the noise");
     candidates.push_back(std::move(candidate));
   }

@@ -163,8 +163,8 @@ void add_posterior_groups(StoredFit const& fit, int draws, std::uint64_t seed, I
 
 void add_prior_groups(StoredFit const& fit, int draws, std::uint64_t seed, InferenceData& data) {
   if (Parameter const* parameter = improper(fit.model())) {
-    data.left_out.push_back(fmt::format("prior, prior_predictive: the prior of `{}` is {} and cannot be sampled", parameter->name,
-                                        parameter->prior->row->name));
+    data.omitted.push_back(fmt::format("prior, prior_predictive: the prior of `{}` is {} and cannot be sampled", parameter->name,
+                                       parameter->prior->row->name));
     return;
   }
   Draws const drawn = prior_draws(fit, draws, seed);
@@ -186,7 +186,7 @@ void add_simulated(Session& session, int index, StoredResult const& stored, int 
   add_data(session, what, data);
   if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty()) {
     add_process_predictive(session, index, stored.seed(), draws, data);
-    data.left_out.push_back(
+    data.omitted.push_back(
         "log_likelihood, prior, prior_predictive: with an unknown function over the rows the samples have only a joint density, "
         "and "
         "draws of its prior are not supported");

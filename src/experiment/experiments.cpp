@@ -10,7 +10,7 @@
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
 #include "experiment/true_parameters.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 namespace {
@@ -69,19 +69,19 @@ void mark_past(Experiment& experiment, Model const& model, Span place) {
          {},
          "fill the gap, choose other rows, or write `with prediction = free_run`: the model then uses its own prediction"});
   };
-  for (PastSample const& sample : past_samples(model, -2))
+  for (PastSample const& sample : lagged_samples(model, -2))
     if (missing(sample, 0)) refuse(sample, 0);
-  for (PastSample const& sample : past_samples(model, -1))
+  for (PastSample const& sample : lagged_samples(model, -1))
     for (int row = 0; row + 1 < rows; ++row)
       if (missing(sample, row)) refuse(sample, row);
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
-    std::vector<PastSample> const samples = past_samples(model, static_cast<int>(c));
+    std::vector<PastSample> const samples = lagged_samples(model, static_cast<int>(c));
     if (samples.empty()) continue;
-    if (experiment.has_past.empty()) experiment.has_past.resize(model.channels.size());
-    experiment.has_past[c].assign(static_cast<std::size_t>(rows), 1);
+    if (experiment.has_lags.empty()) experiment.has_lags.resize(model.channels.size());
+    experiment.has_lags[c].assign(static_cast<std::size_t>(rows), 1);
     for (int row = 0; row < rows; ++row)
       for (PastSample const& sample : samples)
-        if (missing(sample, row)) experiment.has_past[c][static_cast<std::size_t>(row)] = 0;
+        if (missing(sample, row)) experiment.has_lags[c][static_cast<std::size_t>(row)] = 0;
   }
 }
 
@@ -89,7 +89,7 @@ void mark_past(Experiment& experiment, Model const& model, Span place) {
 
 bool predicts_from_data(Model const& model) {
   for (int c = -1; c < static_cast<int>(model.channels.size()); ++c)
-    if (!past_samples(model, c).empty()) return true;
+    if (!lagged_samples(model, c).empty()) return true;
   return false;
 }
 

@@ -21,14 +21,14 @@ constexpr double nearer = 0.5;              // widths: modes so near have come t
 constexpr std::uint64_t evidence_step = 4;  // of Purpose::start
 
 /// Modes of the density on the sampler's coordinates, each once.
-std::vector<Mode> sampled_modes(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
-                                std::function<bool()> const& stop) {
+std::vector<Mode> sampled_modes(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes,
+                                std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
   std::vector<Mode> of_some_weight;
   for (Mode const& mode : modes)
     if (of_some_weight.empty() || mode.share > of_weight) of_some_weight.push_back(mode);
-  if (aim == Aim::posterior) return of_some_weight;
+  if (objective_kind == ObjectiveKind::posterior) return of_some_weight;
   std::vector<Mode> distinct;
-  for (Mode& mode : refit(target, Aim::posterior, of_some_weight, seed, ledger, stop)) {
+  for (Mode& mode : refit(target, ObjectiveKind::posterior, of_some_weight, seed, ledger, stop)) {
     if (!std::isfinite(mode.log_density)) continue;
     bool const known =
         std::any_of(distinct.begin(), distinct.end(), [&](Mode const& other) { return distance(other, mode) < nearer; });
@@ -95,16 +95,16 @@ double along_axes(Objective const& objective, Mode const& mode, Ledger& ledger) 
 
 }  // namespace
 
-Evidence laplace_evidence(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
-                          std::function<bool()> const& stop) {
-  if (aim == Aim::likelihood)
+Evidence laplace_evidence(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
+                          Ledger& ledger, std::function<bool()> const& stop) {
+  if (objective_kind == ObjectiveKind::likelihood)
     return {{}, "only the likelihood was maximised, but an evidence is an average over the prior", 0, 0, true};
   if (modes.empty() || target.dimension() == 0) return {{}, "no mode was searched for", 0, 0};
-  std::vector<Mode> const found = sampled_modes(target, aim, modes, seed, ledger, stop);
+  std::vector<Mode> const found = sampled_modes(target, objective_kind, modes, seed, ledger, stop);
   if (found.empty()) return {{}, "no mode of the posterior has a finite density", 0, 0};
   auto const best =
       std::max_element(found.begin(), found.end(), [](Mode const& a, Mode const& b) { return a.log_mass < b.log_mass; });
-  Objective const objective = make_objective(target, Aim::posterior, seed, evidence_step);
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, evidence_step);
   if (auto const names = names_at_end(objective, *best); !names.empty())
     return {{}, fmt::format("the mode lies at a bound of {}", fmt::join(names, ", ")), 0, 0};
   if (!best->flat.empty())

@@ -9,7 +9,7 @@
 #include "likelihood/target.hpp"
 #include "result/evidence.hpp"
 #include "result/mode.hpp"
-#include "search/aim.hpp"
+#include "search/objective_kind.hpp"
 
 namespace sysid {
 
@@ -23,7 +23,7 @@ namespace sysid {
 ///
 /// along_axes: the density along each axis of the ellipsoid, through its mode, by Gauss-Hermite quadrature of five points against
 /// the normal one, logs summed over the axes.
-Evidence laplace_evidence(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
-                          std::function<bool()> const& stop = {});
+Evidence laplace_evidence(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
+                          Ledger& ledger, std::function<bool()> const& stop = {});
 
 }  // namespace sysid

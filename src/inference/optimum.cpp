@@ -44,15 +44,16 @@ void write_draw(Target const& target, Mode const& mode, RunContext& context, Fit
   result.draws.chains.push_back({{mode.declared}, {declared_prior}, {log_likelihood}, {log_prior + log_likelihood}, {1.0}});
 }
 
-FitResult run(std::string_view backend, Target const& target, Aim aim, Settings const& settings, RunContext& context) {
+FitResult run(std::string_view backend, Target const& target, ObjectiveKind objective_kind, Settings const& settings,
+              RunContext& context) {
   FitResult result;
   result.settings = settings;
   // A search starts again from its beginning: what it would lose is seconds, and its end is the same.
   nlohmann::json const identity = checkpoint::identity(backend, settings, context.seed, target);
   if (context.resume) result.failure = checkpoint::refuse(*context.resume, identity);
   if (result.failure) return result;
-  SearchResult found =
-      context.modes.empty() ? search(target, aim, context) : SearchResult{context.modes, context.mode_findings, {}, false};
+  SearchResult found = context.modes.empty() ? search(target, objective_kind, context)
+                                             : SearchResult{context.modes, context.mode_findings, {}, false};
   result.failure = found.failure;
   result.interrupted = found.interrupted;
   if (found.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
@@ -88,11 +89,11 @@ FitResult run(std::string_view backend, Target const& target, Aim aim, Settings 
 }  // namespace
 
 FitResult run_map(Target const& target, Settings const& settings, RunContext& context) {
-  return run("map", target, Aim::declared_posterior, settings, context);
+  return run("map", target, ObjectiveKind::declared_posterior, settings, context);
 }
 
 FitResult run_ml(Target const& target, Settings const& settings, RunContext& context) {
-  return run("ml", target, Aim::likelihood, settings, context);
+  return run("ml", target, ObjectiveKind::likelihood, settings, context);
 }
 
 }  // namespace sysid::optimum

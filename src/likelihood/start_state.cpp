@@ -22,7 +22,7 @@ constexpr int least_moves = 6, most_rounds = 40;
 // What a move does to the outputs, in units of their misfit, which is the move in standard deviations of the start. Below the first
 // it is the last one; above the second, a tenth as in the tolerance guard, no start was found: steps of adaptive solvers make
 // slopes rough to a hundredth. The other part is for records that a model meets exactly, in units of the outputs.
-double settled(double misfit, double size) { return 1e-6 * misfit + 1e-10 * size; }
+double is_converged(double misfit, double size) { return 1e-6 * misfit + 1e-10 * size; }
 double doubtful(double misfit, double size) { return 0.1 * misfit + 1e-6 * size; }
 
 Experiment window_of(Experiment const& experiment, int rows) {
@@ -172,7 +172,7 @@ void StartState::advance(Search& search, Slopes const& slopes) const {
   search.predicted = (scaled * solved).norm();
   for (Eigen::Index s = 0; s < effect.size(); ++s) search.move(s) = effect(s) > 0 ? solved(s) / effect(s) : 0;
   double const misfit = std::sqrt(cost) / data_norm_;
-  if (search.moves <= least_moves || !(search.predicted <= settled(misfit, data_norm_))) return;
+  if (search.moves <= least_moves || !(search.predicted <= is_converged(misfit, data_norm_))) return;
   search.state -= search.move;
   search.done = true;
 }

@@ -50,7 +50,7 @@ void Trajectory::record_failures(LaneArray const& parameters, std::vector<Outcom
   // A solve is looked into up to the last sample to score; a trajectory goes on to the last one.
   Experiment whole = simulator_.schedule().experiment();
   whole.scored.back() = 1;
-  whole.has_past.clear();
+  whole.has_lags.clear();
   for (auto& channel : whole.measured) {
     if (channel.empty()) channel.assign(whole.time.size(), std::nan(""));
     channel.back() = 0;

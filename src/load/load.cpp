@@ -20,8 +20,10 @@ std::vector<BackendSettings> settings_of(Rows const& all) {
 std::vector<BackendSettings> fitting_backends() {
   std::vector<BackendSettings> rows;
   for (BackendRow const& row : backends())
-    rows.push_back(
-        {.name = row.name, .settings = row.settings, .optimum = row.aim != Aim::posterior, .prior = row.aim != Aim::likelihood});
+    rows.push_back({.name = row.name,
+                    .settings = row.settings,
+                    .optimum = row.objective_kind != ObjectiveKind::posterior,
+                    .prior = row.objective_kind != ObjectiveKind::likelihood});
   return rows;
 }
 
@@ -38,7 +40,7 @@ std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, Unsave
   std::optional<CheckedFile> file;
   if (!found.has_errors())
     file = check(elaborate(*read.tree, modules, found), {fitting, selecting, discovering, derivatives}, found);
-  if (!complete) keep_independent(*read.tree, read.left_out, source, found);
+  if (!complete) keep_independent(*read.tree, read.unread, source, found);
   for (Diagnostic const& each : found.all()) diagnostics.add(each);
   return complete ? std::move(file) : std::nullopt;
 }

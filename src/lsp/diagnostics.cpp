@@ -51,8 +51,8 @@ Json diagnostics(Documents& documents, Document& document) {
     document.asked.push_back(uri_of(path));
     return unsaved(path);
   };
-  assist::Judgement const found = assist::judge(document.path, document.text, text_of);
-  document.judged = true;
+  assist::Analysis const found = assist::analyse(document.path, document.text, text_of);
+  document.analysed = true;
   Json all = Json::array();
   for (Diagnostic const& each : found.diagnostics.all()) {
     bool const elsewhere = each.primary && found.source.place(each.primary->span.begin).file > 0;

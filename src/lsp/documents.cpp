@@ -63,7 +63,7 @@ void Documents::close(std::string const& uri) {
 void Documents::touch_users(Document const& module) {
   for (auto& [uri, document] : all_)
     if (std::find(document.asked.begin(), document.asked.end(), uri_of(module.path)) != document.asked.end()) {
-      document.judged = false;
+      document.analysed = false;
       document.read = false;
     }
 }
@@ -88,7 +88,7 @@ void Documents::change(Document& document, Json const& changes, std::int64_t ver
     document.text.replace(begin, std::max(begin, end) - begin, text);
   }
   document.version = version;
-  document.judged = false;
+  document.analysed = false;
   document.read = false;
   document.reading = nullptr;
   touch_users(document);

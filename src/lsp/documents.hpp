@@ -33,7 +33,7 @@ std::string uri_of(std::string const& path);
 struct Document {
   std::string uri, path, text;
   std::int64_t version = 0;
-  bool judged = false;                             // its diagnostics are those of this text
+  bool analysed = false;                           // its diagnostics are those of this text
   std::vector<std::string> asked;                  // files that its last judgement looked for, there or not
   std::shared_ptr<assist::Reading const> reading;  // of this text; null: not read yet, or it cannot be read
   bool read = false;

@@ -117,7 +117,7 @@ std::vector<Json> Server::handle(Json const& message) {
 std::vector<Json> Server::publish() {
   std::vector<Json> out;
   for (auto& [uri, document] : documents_.all())
-    if (!document.judged) out.push_back(publication(diagnostics(documents_, document)));
+    if (!document.analysed) out.push_back(publication(diagnostics(documents_, document)));
   return out;
 }
 

@@ -46,7 +46,7 @@ int central_draw(std::vector<std::vector<double>> const& trajectories) {
 }
 
 /// The rows up to the last that is looked at: more scored samples than this show nothing more of a force.
-std::size_t looked_at(Experiment const& experiment) {
+std::size_t examined(Experiment const& experiment) {
   constexpr int samples = 4000;
   int scored = 0;
   std::size_t rows = 0;
@@ -150,7 +150,7 @@ void add_restoring_forces(Model const& model, std::span<TrajectoryQuantity const
   int const shown = quantity_of(quantities, model.states[all.front().displacement].name);
   int const draw = shown < 0 ? -1 : central_draw(result.values[static_cast<std::size_t>(shown)]);
   if (draw < 0 || draw >= parameters.width()) return;
-  auto const states = states_along(model, quantities, result, draw, looked_at(experiment));
+  auto const states = states_along(model, quantities, result, draw, examined(experiment));
   if (states.empty()) return;
   Accelerations const accelerations(model, graph, all, parameters, draw);
   std::vector<MeasuredMotion> motions;

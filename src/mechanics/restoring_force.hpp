@@ -9,10 +9,10 @@
 
 namespace sysid {
 
-/// Adds those of every link between the masses of a model (app/links.hpp), a mass with the ground of its own included; a model
-/// without masses has none. Of many masses twelve links are, and nothing where earlier experiments
-/// have left three: a fleet of fifty has one spring. quantities,
-/// result: of trajectories along the experiment; parameters: those they were run with, SI [parameters x draws].
+/// Adds those of every link between the masses of a model (mechanics/coupling.hpp), a mass with the ground of its own included; a
+/// model without masses has none. Of many masses twelve links are, and nothing where earlier experiments have left three: a fleet
+/// of fifty has one spring. quantities, result: of trajectories along the experiment; parameters: those they were run with, SI
+/// [parameters x draws].
 void add_restoring_forces(Model const& model, std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
                           ConstLanes parameters, Experiment const& experiment, std::vector<RestoringForce>& forces);
 

@@ -55,7 +55,7 @@ struct Unchecked {
 
 /// Of a discrete-time model: what may have a past, a state or what a channel predicts. `registers` are the states that hold its
 /// lags 1, 2, ...
-struct Past : Quantity {
+struct LaggedQuantity : Quantity {
   NodeId present = 0;  // its value at the present sample
   int channel = -1;    // of which it is the prediction
   std::vector<int> registers;
@@ -97,7 +97,7 @@ struct Model {
   std::vector<Expansion> expansions;
   std::vector<Derived> derived;
   std::vector<Unchecked> unchecked;  // in the order of the text
-  std::vector<Past> pasts;
+  std::vector<LaggedQuantity> lagged_quantities;
   std::vector<NodeId> memories;  // leaf previous(i): the value that memories[i] had at the sample before, at the first its own
 
   // Where an unknown is algebraic, or cannot be solved for; else empty. Residuals are zero, of index 1, as many as unknowns. Where

@@ -1,4 +1,4 @@
-// The white part of expressions.
+// The parametric part of expressions.
 #include "model/process.hpp"
 
 namespace sysid {

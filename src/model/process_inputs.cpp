@@ -23,7 +23,7 @@ void processes_as_inputs(Model& model) {
   for (NodeId& memory : model.memories) replace(memory);
   for (Channel& channel : model.channels)
     for (NodeId& argument : channel.noise.arguments) replace(argument);
-  for (Past& past : model.pasts) replace(past.present);
+  for (LaggedQuantity& lagged : model.lagged_quantities) replace(lagged.present);
   model.processes.clear();
 }
 

@@ -112,7 +112,7 @@ class Dump {
         return "position";
       case Control::step:
         return "step";
-      case Control::aim:
+      case Control::objective_kind:
         return "aim";
       case Control::hunts:
         return "hunts";

@@ -85,8 +85,8 @@ class Finder {
       found_.concerns.insert(found_.concerns.end(), usable.concerns.begin(), usable.concerns.end());
     }
     if (!enough(columns)) return std::move(found_);
-    for (FoundTerm& term : found_.terms) term.left_out = true;
-    for (int const term : usable_) found_.terms[static_cast<std::size_t>(term)].left_out = false;
+    for (FoundTerm& term : found_.terms) term.excluded = true;
+    for (int const term : usable_) found_.terms[static_cast<std::size_t>(term)].excluded = false;
     report(columns, choose(columns));
     return std::move(found_);
   }
@@ -94,8 +94,8 @@ class Finder {
  private:
   bool enough(Columns const& columns) {
     Concern concern;
-    bool const looked_at = found_.rows >= static_cast<int>(equation_.terms.size());
-    std::size_t const terms = looked_at ? usable_.size() : equation_.terms.size();
+    bool const examined = found_.rows >= static_cast<int>(equation_.terms.size());
+    std::size_t const terms = examined ? usable_.size() : equation_.terms.size();
     if (found_.rows <= 2 * static_cast<int>(terms)) {
       int const half = projection_.half_width();
       concern.kind = Concern::Kind::too_few_rows;
@@ -132,12 +132,12 @@ class Finder {
     // First with all terms, whose sum is well determined where single coefficients are not; then with those chosen.
     whitened_ = projection_.whitened(index_, fitted(columns), 0);
     whitened_ = projection_.whitened(index_, fitted(whitened_), 0);
-    Choice choice = settled(select(), select, 0);
+    Choice choice = iterated(select(), select, 0);
     // What the channels' noise leaves over is asked of good coefficients: at poor ones all of the motion looks like an error.
     double const own = projection_.own_noise(index_, weights_);
     if (own > 0) {
       whitened_ = projection_.whitened(index_, weights_, own);
-      choice = settled(select(), select, own);
+      choice = iterated(select(), select, own);
     }
     found_.own_noise = own * choice.chosen.noise_sd;
     return choice;
@@ -145,7 +145,7 @@ class Finder {
 
   /// Choices and whitenings in turns until a support repeats.
   template <class Select>
-  Choice settled(Choice choice, Select const& select, double own) {
+  Choice iterated(Choice choice, Select const& select, double own) {
     auto const count = static_cast<Eigen::Index>(equation_.terms.size());
     for (int round = 0; round < most_choices; ++round) {
       std::vector<int> const before = choice.chosen.terms;
@@ -207,8 +207,8 @@ class Finder {
       Eigen::VectorXd against_noise = by_channels.known;
       for (int const j : found_.chosen.terms)
         against_noise -= found_.terms[static_cast<std::size_t>(j)].coefficient * by_channels.terms.col(j);
-      judge_residual(against_noise, residual.norm() / known);
-      judge_independence(whitened_residual);
+      check_residual(against_noise, residual.norm() / known);
+      check_independence(whitened_residual);
     }
     if (!choice.converged) {
       Concern concern{.kind = Concern::Kind::no_convergence, .value = static_cast<double>(choice.iterations)};
@@ -217,7 +217,7 @@ class Finder {
     }
   }
 
-  void judge_residual(Eigen::VectorXd const& residual, double share) {
+  void check_residual(Eigen::VectorXd const& residual, double share) {
     double const freedom = static_cast<double>(residual.size()) - static_cast<double>(found_.chosen.terms.size());
     found_.noise_ratio = std::sqrt(residual.squaredNorm() / freedom);
     if (found_.noise_ratio < unexplained_above || share < unexplained_share) return;
@@ -230,7 +230,7 @@ class Finder {
   }
 
   // Independent rows are what sds and probabilities count on.
-  void judge_independence(Eigen::VectorXd const& residual) {
+  void check_independence(Eigen::VectorXd const& residual) {
     Eigen::Index const rows = residual.size();
     double const squares = residual.squaredNorm();
     if (rows < 4 * lags || !(squares > 0)) return;

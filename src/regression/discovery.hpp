@@ -29,7 +29,7 @@ struct Method {
 struct FoundTerm {
   std::string name;
   bool kept = false;
-  bool left_out = false;           // not offered to the selector: a concern says why
+  bool excluded = false;           // not offered to the selector: a concern says why
   double measure = 0;              // SelectorRow::measure
   double precision = 0;            // ard
   int dropped_in = 0;              // threshold

@@ -110,7 +110,7 @@ Framed in_file(Workbench const& workbench, std::string const& entry) {
 
 /// Inside the block that statements of its kind change; as in a file where there is none yet.
 Framed in_block(Workbench const& workbench, ItemKind kind, std::string const& name, std::string const& entry) {
-  Work const& work = workbench.work();
+  Workspace const& work = workbench.work();
   std::size_t const place = work.find(kind, name);
   if (name.empty() || place == work.items.size()) {
     std::string const before = workbench.work().text() + fmt::format("\n{} unnamed {{\n", word_of(kind));

@@ -13,7 +13,7 @@
 #include "repl/canvas.hpp"
 #include "repl/output.hpp"
 #include "repl/result.hpp"
-#include "repl/work/work.hpp"
+#include "repl/work/workspace.hpp"
 
 namespace sysid::repl {
 
@@ -25,7 +25,7 @@ struct CheckedText {
 
 /// The statements of a session and what belongs to them.
 struct CheckedWork {
-  Work statements;
+  Workspace statements;
   std::shared_ptr<CheckedText const> checked;  // null before the first statement
   std::string model, data;                     // the blocks that statements typed change; empty: none
   std::filesystem::path file;                  // loaded or saved last

@@ -33,10 +33,10 @@ bool take_file(Context& context, std::filesystem::path const& path) {
   context.output.show(diagnostics, source);
   for (Diagnostic const& each : diagnostics.all()) context.output.is_new(each);
   if (!file) return false;
-  Work loaded;
+  Workspace loaded;
   loaded.path = path;
   loaded.items = items_of(text);
-  Work draft = context.work.statements;
+  Workspace draft = context.work.statements;
   if (draft.items.empty())
     draft.path = path;
   else
@@ -92,7 +92,7 @@ bool save(Context& context, std::string const& path) {
   if (context.work.statements.items.empty()) return context.output.refuse("there is nothing to save yet");
   if (std::filesystem::exists(to) && to != context.work.file)
     return context.output.refuse(fmt::format("`{}` exists already", to.string()), "use another name, or remove the file");
-  Work moved = context.work.statements;
+  Workspace moved = context.work.statements;
   moved.move_to(to);
   Diagnostics diagnostics;
   auto const text = formatted(Source(to.string(), moved.text()), diagnostics);

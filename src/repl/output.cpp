@@ -50,7 +50,7 @@ void Output::show(Diagnostics const& diagnostics, Source const& source) {
   voices_.messages << at_the_prompt(render(diagnostics, source, voices_.colour)) << std::flush;
 }
 
-void Output::show(Diagnostics const& diagnostics, Source const& source, Work const& work, std::string const& entry) {
+void Output::show(Diagnostics const& diagnostics, Source const& source, Workspace const& work, std::string const& entry) {
   Source shown("prompt", entry);
   auto const shift = shown.next_begin();
   for (int file = 0; file < source.files(); ++file) shown.include(source.name(file), std::string(source.text(file)));

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/text/diagnostic.hpp"
-#include "repl/work/work.hpp"
+#include "repl/work/workspace.hpp"
 
 namespace sysid::repl {
 
@@ -36,7 +36,7 @@ class Output {
   void show(Diagnostics const& diagnostics, std::string const& entry);
   void show(Diagnostics const& diagnostics, Source const& source);
   /// Diagnostics about the text of a work: places in what was typed are shown there. A warning is shown once in a session.
-  void show(Diagnostics const& diagnostics, Source const& source, Work const& work, std::string const& entry);
+  void show(Diagnostics const& diagnostics, Source const& source, Workspace const& work, std::string const& entry);
   /// Whether no such warning has been shown; from now on it has.
   bool is_new(Diagnostic const& warning);
   /// Runs what may throw; false when it did, with what it said.

@@ -19,7 +19,7 @@ namespace {
 void keep_unsaved(Workbench const& workbench) {
   std::filesystem::path const folder = state_folder();
   if (!workbench.unsaved() || folder.empty()) return;
-  Work work = workbench.work();
+  Workspace work = workbench.work();
   std::filesystem::path const path = folder / "unsaved.sysid";
   work.move_to(path);
   try {

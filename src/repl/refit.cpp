@@ -45,7 +45,7 @@ std::string last_fit(Context const& context) {
 }
 
 /// What was kept under a name of its own is meant as it is now.
-std::string name_now(Work const& work, ItemKind kind, std::string const& item) {
+std::string name_now(Workspace const& work, ItemKind kind, std::string const& item) {
   std::size_t const at = work.find(kind, item);
   return at < work.items.size() && work.items[at].kept ? item.substr(0, item.rfind('_')) : item;
 }
@@ -60,7 +60,7 @@ struct WrittenFit {
 };
 
 /// "NAME = fit MODEL(...) to DATA".
-std::string fit_of(Work const& work, WrittenFit const& earlier, std::string const& name) {
+std::string fit_of(Workspace const& work, WrittenFit const& earlier, std::string const& name) {
   ast::Task const& task = earlier.tree;
   std::string statement = fmt::format("{} = fit {}", name, name_now(work, ItemKind::model, task.subject.text));
   for (std::size_t i = 0; i < task.arguments.size(); ++i) statement += (i == 0 ? "(" : ", ") + earlier.at(task.arguments[i].span);
@@ -109,7 +109,7 @@ namespace command {
 
 bool refit(Context& context, std::string const& arguments) {
   Typed const typed = typed_in(arguments);
-  Work const& work = context.work.statements;
+  Workspace const& work = context.work.statements;
   if (typed.fits.size() > 1)
     return context.output.refuse("`refit` takes one fit", "`refit`, `refit FIT`, `refit FIT as NAME with mh(samples = 4000)`");
   std::string const from = typed.fits.empty() ? last_fit(context) : typed.fits[0];

@@ -33,7 +33,7 @@ void suggest_command(Diagnostics& diagnostics, std::string const& entry) {
 }
 
 /// Puts a part into the draft; tasks to run when it has been checked. False when it cannot be.
-bool draft(Context& context, EntryPart const& part, std::string const& entry, Work& work, std::vector<std::string>& tasks,
+bool draft(Context& context, EntryPart const& part, std::string const& entry, Workspace& work, std::vector<std::string>& tasks,
            std::vector<std::string>& notices) {
   auto const put = [&](WorkItem item) {
     auto const more = work.put(std::move(item), context.results.tasks());
@@ -73,7 +73,8 @@ bool draft(Context& context, EntryPart const& part, std::string const& entry, Wo
 }
 
 /// Asks the files of data blocks that a draft adds or changes for their columns, as far as the files are there.
-void ask_for_columns(Context& context, Work const& draft, Source const& source, CheckedFile const& file, Diagnostics& diagnostics) {
+void ask_for_columns(Context& context, Workspace const& draft, Source const& source, CheckedFile const& file,
+                     Diagnostics& diagnostics) {
   std::ostream nowhere(nullptr);
   Session const session(source, file, context.options, context.progress, nowhere, nowhere);
   for (DataBlock const& block : file.data) {
@@ -108,7 +109,7 @@ void ask_for_columns(Context& context, Work const& draft, Source const& source, 
 
 }  // namespace
 
-bool adopt(Context& context, Work draft, std::string const& entry) {
+bool adopt(Context& context, Workspace draft, std::string const& entry) {
   Source source(draft.path.string(), draft.text());
   Diagnostics diagnostics;
   auto file = sysid::load(source, diagnostics);
@@ -142,7 +143,7 @@ bool enter_statements(Context& context, std::string const& entry) {
       continue;
     }
     // What stands together is checked together, up to a task, which is run before what follows.
-    Work changed = context.work.statements;
+    Workspace changed = context.work.statements;
     std::string const model = context.work.model, data = context.work.data;
     std::vector<std::string> tasks, notices;
     for (; i < parts.size() && parts[i].kind != EntryPart::Kind::expression && tasks.empty(); ++i)
@@ -152,7 +153,7 @@ bool enter_statements(Context& context, std::string const& entry) {
         return false;
       }
     changed.prune();
-    Work const before = context.work.statements;
+    Workspace const before = context.work.statements;
     auto const checked_before = context.work.checked;
     bool const unsaved_before = context.work.unsaved;
     if (!adopt(context, std::move(changed), entry)) {

@@ -11,6 +11,6 @@ namespace sysid::repl {
 bool enter_statements(Context& context, std::string const& entry);
 
 /// Checks a draft and makes it the work, or shows what is wrong with it. entry: what was typed; empty where nothing was.
-bool adopt(Context& context, Work draft, std::string const& entry);
+bool adopt(Context& context, Workspace draft, std::string const& entry);
 
 }  // namespace sysid::repl

@@ -16,7 +16,7 @@ namespace sysid::repl {
 namespace {
 
 /// The model of a task by the name of `list`, where what it ran on is kept beside what it has become.
-std::string model_of_work(Work const& work, std::string const& task, std::string model) {
+std::string model_of_work(Workspace const& work, std::string const& task, std::string model) {
   std::size_t place = work.find(ItemKind::task, task);
   if (place == work.items.size()) return model;
   ast::Task tree = std::get<ast::Task>(item_of(work.items[place].text));
@@ -60,7 +60,7 @@ bool run(Context& context, std::string const& tasks) {
     }
     std::string const seeded = with_seed(context, in_one_line(context.work.statements.items[place].text));
     if (seeded != in_one_line(context.work.statements.items[place].text)) {
-      Work draft = context.work.statements;
+      Workspace draft = context.work.statements;
       draft.items[place].text = seeded;
       if (!adopt(context, std::move(draft), "")) return false;
     }

@@ -110,7 +110,7 @@ bool change(Context& context, std::string const& block) {
 }
 
 bool drop(Context& context, std::string const& name) {
-  Work draft = context.work.statements;
+  Workspace draft = context.work.statements;
   std::size_t const place = draft.find(name);
   std::size_t const model = draft.find(ItemKind::model, context.work.model);
   if (name.empty())

@@ -25,7 +25,7 @@ class Workbench {
   /// Whether the work holds statements that no file holds.
   bool unsaved() const { return context_.work.unsaved; }
 
-  Work const& work() const { return context_.work.statements; }
+  Workspace const& work() const { return context_.work.statements; }
   /// As the front end understood it; null before the first statement.
   CheckedFile const* checked() const { return context_.work.checked ? &context_.work.checked->file : nullptr; }
   std::deque<Result> const& results() const { return context_.results.all; }

@@ -5,7 +5,7 @@ namespace sysid {
 
 Findings TaskPage::all_findings() const {
   Findings all = findings;
-  for (Outlook const& outlook : outlooks) all.insert(all.end(), outlook.findings.begin(), outlook.findings.end());
+  for (PreflightPage const& preflight : preflights) all.insert(all.end(), preflight.findings.begin(), preflight.findings.end());
   return all;
 }
 

@@ -33,7 +33,7 @@ struct DictionaryPage {
     std::vector<DeclaredLine> terms;  // unit: of the coefficient; text: "coefficient k", "known"
   };
   std::vector<Equation> equations;
-  std::vector<std::string> left_out;  // "y*y': excluded"
+  std::vector<std::string> excluded;  // "y*y': excluded"
 };
 
 /// The rows of a record that a task uses.
@@ -119,20 +119,20 @@ struct ProcessPage {
 };
 
 /// What is to be expected of one model of a task: of the fitted one, or of a candidate.
-struct Outlook {
+struct PreflightPage {
   std::string candidate;  // its name; empty in a fit
   std::optional<PriorPage> prior;
   std::optional<InformationPage> information;
   std::vector<ProcessPage> processes;  // of each channel, where the model has Gaussian processes
-  std::string left_out;                // why something was not looked at
+  std::string not_examined;            // why something was not examined
   Findings findings;
 };
 
 struct TaskPage {
   std::string name, what;
-  std::vector<CoveragePage> coverage;  // of each experiment
-  std::vector<Outlook> outlooks;       // one of a fit, one for each candidate of a selection, none of other tasks
-  Findings findings;                   // of the data
+  std::vector<CoveragePage> coverage;     // of each experiment
+  std::vector<PreflightPage> preflights;  // one of a fit, one for each candidate of a selection, none of other tasks
+  Findings findings;                      // of the data
 
   /// Those of the data, then of each outlook.
   Findings all_findings() const;

@@ -53,12 +53,12 @@ struct DiscoveryReport {
   };
   std::vector<Noise> noise;
   std::vector<DiscoveredEquation> equations;
-  struct LeftOut {
+  struct Excluded {
     std::string term, reason;
   };
-  std::vector<LeftOut> left_out;       // of the dictionary, before the record was looked at
-  std::optional<JudgedReport> judged;  // by simulation; absent: it was left out, or there is nothing to simulate
-  std::string source;                  // of the model that was found; empty: none
+  std::vector<Excluded> excluded;              // of the dictionary, before the record was looked at
+  std::optional<ValidationReport> validation;  // by simulation; absent: it was left out, or there is nothing to simulate
+  std::string source;                          // of the model that was found; empty: none
 };
 
 }  // namespace sysid

@@ -9,7 +9,7 @@ namespace sysid {
 /// Pointwise over draws, each [N]; lower and upper: quantiles of 2.5 and 97.5 % by `predictive_quantile`. Empty: there is none.
 struct Band {
   std::vector<double> mean, sd, lower, upper;
-  int draws = 0, left_out = 0;  // of these so many, which it is not of
+  int draws = 0, excluded = 0;  // of these so many, which it is not of
 };
 
 /// A channel, a state or a derived quantity along a record, declared unit.

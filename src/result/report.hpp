@@ -58,7 +58,7 @@ struct DataInfo {
   std::string samples_sha256;      // of the measured samples that the likelihood reads, with their rows and in their declared units
   std::string inputs_sha256;       // of what the model is given beside them: columns, units and rules of its inputs, constants
   std::vector<std::string> notes;  // "input x = force [N], held (zero_order)"
-  std::vector<TrueValue> truth = {};
+  std::vector<TrueValue> true_parameters = {};
 };
 
 /// The scores of a channel on an experiment.

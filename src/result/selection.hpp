@@ -80,8 +80,8 @@ struct SelectionReport {
   SelectionResult result;
   std::string distance;                                     // "nmse"
   std::vector<std::optional<LikelihoodCheck>> likelihoods;  // per model; empty: not asked for
-  std::vector<std::vector<Summary>> polished;               // per model: from chains on the likelihood; may be empty
-  std::vector<Draws> polished_draws;                        // per model
+  std::vector<std::vector<Summary>> refined;                // per model: from chains on the likelihood; may be empty
+  std::vector<Draws> refined_draws;                         // per model
   std::optional<double> floor;                              // what noise alone leaves of the distance
   std::string floor_words;                                  // of which noise
   std::vector<WeightedSummary> shared;                      // over all models that have them

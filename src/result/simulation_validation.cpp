@@ -5,9 +5,9 @@
 
 namespace sysid {
 
-std::optional<double> JudgedStructure::percent(std::optional<double> JudgedChannel::*error) const {
+std::optional<double> ValidatedStructure::percent(std::optional<double> ValidatedChannel::*error) const {
   std::optional<double> worst;
-  for (JudgedChannel const& each : channels)
+  for (ValidatedChannel const& each : channels)
     if (each.*error && each.sd > 0) worst = std::max(worst.value_or(0), 100 * *(each.*error) / each.sd);
   return worst;
 }

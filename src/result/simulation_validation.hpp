@@ -7,7 +7,7 @@
 namespace sysid {
 
 /// Of one channel, in `unit`.
-struct JudgedChannel {
+struct ValidatedChannel {
   std::string channel, unit;
   double sd = 0;        // of what is measured on the rows kept aside
   double residual = 0;  // sd of the refit's residuals
@@ -16,7 +16,7 @@ struct JudgedChannel {
   std::optional<double> one_step, horizon, free_run;
 };
 
-struct JudgedCoefficient {
+struct ValidatedCoefficient {
   std::string target, term, name, unit;
   double regression = 0, regression_sd = 0;  // in `unit`
   double value = 0, sd = 0;
@@ -24,7 +24,7 @@ struct JudgedCoefficient {
 };
 
 /// A structure: one support for each equation.
-struct JudgedStructure {
+struct ValidatedStructure {
   std::string terms;                   // "y'', y', y, y^3"; of several equations "x': x, y; y': ..."
   std::vector<std::string> equations;  // with the refit's coefficients
   int of_regression = 0;               // its place there, from 1
@@ -35,23 +35,23 @@ struct JudgedStructure {
   double residual_over_noise = 0;  // of the worst channel; 0: noise not known
   int draws = 0, bounded = 0;
   double follows = 0;  // [s] of the free run until a channel is off by 40 % of its sd
-  std::vector<JudgedCoefficient> coefficients;
-  std::vector<JudgedChannel> channels;
+  std::vector<ValidatedCoefficient> coefficients;
+  std::vector<ValidatedChannel> channels;
 
   /// The largest error in percent of a channel's sd; nothing where there is none.
-  std::optional<double> percent(std::optional<double> JudgedChannel::*error) const;
+  std::optional<double> percent(std::optional<double> ValidatedChannel::*error) const;
 };
 
-struct JudgedReport {
-  std::vector<JudgedStructure> structures;  // best first
-  int segments = 0;                         // of which the refit starts each afresh
-  double shortest = 0, longest = 0;         // of a segment [s]
-  bool whole = false;                       // no record could be cut less
-  double step = 0;                          // [s] of the record
-  double horizon = 0;                       // [s] of predictions k steps ahead
+struct ValidationReport {
+  std::vector<ValidatedStructure> structures;  // best first
+  int segments = 0;                            // of which the refit starts each afresh
+  double shortest = 0, longest = 0;            // of a segment [s]
+  bool whole = false;                          // no record could be cut less
+  double step = 0;                             // [s] of the record
+  double horizon = 0;                          // [s] of predictions k steps ahead
   int horizon_rows = 0, window_rows = 0;
-  std::string aside;        // "bench.test", "the last fifth of bench"; empty: nothing was scored
-  bool aside_seen = false;  // the choice of structures saw these rows
+  std::string held_out;        // "bench.test", "the last fifth of bench"; empty: nothing was scored
+  bool held_out_seen = false;  // the choice of structures saw these rows
   std::string solver;
 };
 

@@ -26,7 +26,7 @@ struct Slope {
 };
 
 void add_prior(Objective const& objective, std::vector<Climber*> const& block, std::vector<Slope>& slopes) {
-  if (objective.aim == Aim::likelihood) return;
+  if (objective.objective_kind == ObjectiveKind::likelihood) return;
   int const dimension = objective.dimension();
   int const columns = 2 * dimension + 1;
   LaneArray theta(dimension, columns * static_cast<int>(block.size()));

@@ -233,7 +233,7 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
   for (Eigen::Index i = 0; i < n; ++i)
     mode.log_mass += elementary::log(spectrum.unit(i)) + 0.5 * elementary::log(2 * std::numbers::pi / spectrum.values(i));
   Eigen::MatrixXd const slope = fill_declared(objective.target, theta, covariance, mode);
-  if (objective.aim != Aim::posterior) mode.log_mass += log_absolute_determinant(slope);
+  if (objective.objective_kind != ObjectiveKind::posterior) mode.log_mass += log_absolute_determinant(slope);
   for (Eigen::Index const k : spectrum.flat) add_flat(spectrum.unit.cwiseProduct(spectrum.vectors.col(k)), scale, slope, mode);
   return mode;
 }

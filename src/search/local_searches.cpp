@@ -26,12 +26,14 @@ double gap(Objective const& objective, Eigen::VectorXd const& a, Eigen::VectorXd
 }
 
 /// Logarithm of what a mode counts for: a likelihood has no mass.
-double log_weight(Aim aim, Mode const& mode) { return aim == Aim::likelihood ? mode.log_density : mode.log_mass; }
+double log_weight(ObjectiveKind objective_kind, Mode const& mode) {
+  return objective_kind == ObjectiveKind::likelihood ? mode.log_density : mode.log_mass;
+}
 
-void share_out(Aim aim, std::vector<Mode>& modes) {
+void share_out(ObjectiveKind objective_kind, std::vector<Mode>& modes) {
   double heaviest = -std::numeric_limits<double>::infinity(), sum = 0;
-  for (Mode const& mode : modes) heaviest = std::max(heaviest, log_weight(aim, mode));
-  for (Mode& mode : modes) sum += mode.share = elementary::exp(log_weight(aim, mode) - heaviest);
+  for (Mode const& mode : modes) heaviest = std::max(heaviest, log_weight(objective_kind, mode));
+  for (Mode& mode : modes) sum += mode.share = elementary::exp(log_weight(objective_kind, mode) - heaviest);
   for (Mode& mode : modes) mode.share /= sum;
 }
 
@@ -102,17 +104,19 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
       same->hits = hits;
     }
   }
-  std::erase_if(modes, [&](Mode const& mode) { return !std::isfinite(log_weight(objective.aim, mode)); });
+  std::erase_if(modes, [&](Mode const& mode) { return !std::isfinite(log_weight(objective.objective_kind, mode)); });
   // What is asked for is the highest point, except by chains; how much lies around it is another question.
-  auto const rank = [&](Mode const& m) { return objective.aim == Aim::posterior ? m.log_mass : m.log_density; };
+  auto const rank = [&](Mode const& m) {
+    return objective.objective_kind == ObjectiveKind::posterior ? m.log_mass : m.log_density;
+  };
   std::stable_sort(modes.begin(), modes.end(), [&](Mode const& a, Mode const& b) { return rank(a) > rank(b); });
-  share_out(objective.aim, modes);
+  share_out(objective.objective_kind, modes);
   return modes;
 }
 
-LocalSearches modes_from(Target const& target, Aim aim, ConstLanes starts, double least_log_mass, std::uint64_t seed,
-                         Ledger& ledger, std::function<bool()> const& stop) {
-  Objective const objective = make_objective(target, aim, seed, scale_step);
+LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, double least_log_mass,
+                         std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
+  Objective const objective = make_objective(target, objective_kind, seed, scale_step);
   std::vector<double> const density = log_density_in_blocks(objective, starts, ledger, stop);
   std::vector<Climber> climbers;
   for (int w = 0; w < starts.width(); ++w)

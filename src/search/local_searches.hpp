@@ -35,7 +35,7 @@ struct LocalSearches {
 /// remain would not bring it within 30 nats of the best. least_log_mass: modes of less are of no interest. Where no search can
 /// reach one of more at that rate, with the largest volume that Laplace's approximation allows, the best stands for all where it
 /// is.
-LocalSearches modes_from(Target const& target, Aim aim, ConstLanes starts, double least_log_mass, std::uint64_t seed,
-                         Ledger& ledger, std::function<bool()> const& stop = {});
+LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, double least_log_mass,
+                         std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {});
 
 }  // namespace sysid

@@ -12,7 +12,7 @@ namespace sysid {
 
 std::vector<double> Objective::log_prior(ConstLanes theta) const {
   std::vector<double> out(static_cast<std::size_t>(theta.width()), 0.0);
-  if (aim != Aim::likelihood) target.log_prior(theta, out, aim == Aim::posterior);
+  if (objective_kind != ObjectiveKind::likelihood) target.log_prior(theta, out, objective_kind == ObjectiveKind::posterior);
   return out;
 }
 
@@ -27,9 +27,9 @@ std::vector<double> Objective::log_density(ConstLanes theta, Ledger& ledger) con
   return out;
 }
 
-Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws) {
+Objective make_objective(Target const& target, ObjectiveKind objective_kind, ConstLanes prior_draws) {
   int const dimension = target.dimension();
-  Objective objective{target, aim, Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Constant(dimension, -infinity),
+  Objective objective{target, objective_kind, Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Constant(dimension, -infinity),
                       Eigen::VectorXd::Constant(dimension, infinity)};
   for (int p = 0; p < dimension; ++p) {
     std::vector<double> finite;
@@ -49,11 +49,11 @@ Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws) 
   return objective;
 }
 
-Objective make_objective(Target const& target, Aim aim, std::uint64_t seed, std::uint64_t step) {
+Objective make_objective(Target const& target, ObjectiveKind objective_kind, std::uint64_t seed, std::uint64_t step) {
   constexpr int enough = 512;
   LaneArray draws(target.dimension(), enough);
   target.sample_prior({seed, Purpose::start, 0, step}, draws);
-  return make_objective(target, aim, draws);
+  return make_objective(target, objective_kind, draws);
 }
 
 LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points) {

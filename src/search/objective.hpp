@@ -6,13 +6,13 @@
 
 #include "core/system/ledger.hpp"
 #include "likelihood/target.hpp"
-#include "search/aim.hpp"
+#include "search/objective_kind.hpp"
 
 namespace sysid {
 
 struct Objective {
   Target const& target;
-  Aim aim;
+  ObjectiveKind objective_kind;
   Eigen::VectorXd scale;  // [P] half the central 68 % of the prior draws, > 0
   Eigen::VectorXd low,
       high;  // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
@@ -26,9 +26,9 @@ struct Objective {
 };
 
 /// prior_draws [P x N] give the scales.
-Objective make_objective(Target const& target, Aim aim, ConstLanes prior_draws);
+Objective make_objective(Target const& target, ObjectiveKind objective_kind, ConstLanes prior_draws);
 /// Scales from as many draws as know the prior's widths, which is all that is asked of them; step: theirs, of Purpose::start.
-Objective make_objective(Target const& target, Aim aim, std::uint64_t seed, std::uint64_t step);
+Objective make_objective(Target const& target, ObjectiveKind objective_kind, std::uint64_t seed, std::uint64_t step);
 
 /// The columns of a batch, from vectors.
 LaneArray to_lanes(std::vector<Eigen::VectorXd> const& points);

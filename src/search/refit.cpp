@@ -17,9 +17,9 @@ constexpr std::uint64_t refit_step = 2;
 
 }  // namespace
 
-std::vector<Mode> refit(Target const& target, Aim aim, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
-                        std::function<bool()> const& stop) {
-  Objective const objective = make_objective(target, aim, seed, refit_step);
+std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
+                        Ledger& ledger, std::function<bool()> const& stop) {
+  Objective const objective = make_objective(target, objective_kind, seed, refit_step);
   std::vector<Climber> climbers;
   std::vector<Eigen::VectorXd> points;
   for (Mode const& mode : modes) points.push_back(theta_of(mode));

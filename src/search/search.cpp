@@ -127,7 +127,7 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
 
 void add_findings(Objective const& objective, SearchResult& result) {
   std::vector<Mode> const& modes = result.modes;
-  for (std::size_t i = 1; i < modes.size() && objective.aim != Aim::likelihood; ++i) {
+  for (std::size_t i = 1; i < modes.size() && objective.objective_kind != ObjectiveKind::likelihood; ++i) {
     if (modes[i].share <= notable_share) continue;
     result.findings.push_back(
         {FindingCode::second_mode,
@@ -163,7 +163,7 @@ void begin_without_functions(Target const& target, LaneArray& draws) {
 
 }  // namespace
 
-SearchResult search(Target const& target, Aim aim, RunContext& context) {
+SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context) {
   SearchResult result;
   Breadth const& breadth = target.has_gradient() ? narrow : has_coefficients(target) ? few : broad;
   // All that a search of one pass does but its last rounds, of which a handful is usual.
@@ -186,7 +186,7 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   int const passes = has_coefficients(target) ? 1 : most_passes;
   for (int pass = 0; pass < passes && !stop(); ++pass) {
     LaneArray draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
-    if (!objective) objective.emplace(make_objective(target, aim, draws));
+    if (!objective) objective.emplace(make_objective(target, objective_kind, draws));
     begin_without_functions(target, draws);
     std::vector<Climber> starts = choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop);
     begun = begun || !starts.empty();
@@ -223,7 +223,7 @@ SearchResult search(Target const& target, Aim aim, RunContext& context) {
   return result;
 }
 
-SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunContext& context) {
+SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context) {
   SearchResult result;
   std::uint64_t const before = context.ledger.solves();
   auto const round = static_cast<std::uint64_t>(target.has_gradient() ? 1 : 2 * target.dimension() + 1 + 4);
@@ -234,7 +234,8 @@ SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunCo
   };
   context.progress.begin("searching near an earlier fit", expected);
   result.modes =
-      modes_from(target, aim, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger, stop).modes;
+      modes_from(target, objective_kind, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger, stop)
+          .modes;
   result.interrupted = stop();
   context.progress.end(!result.interrupted);
   if (result.interrupted) {
@@ -245,8 +246,9 @@ SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunCo
     result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(starts.width()));
     return result;
   }
-  add_findings(make_objective(target, aim, draw_prior(target, {context.seed, Purpose::start, 0, search_step}, draws_per_pass)),
-               result);
+  add_findings(
+      make_objective(target, objective_kind, draw_prior(target, {context.seed, Purpose::start, 0, search_step}, draws_per_pass)),
+      result);
   return result;
 }
 
@@ -276,7 +278,7 @@ namespace {
 /// Redraws the columns of `starts` until the density is finite at each; `redraw(chain, attempt)` gives the next try. Returns the
 /// chains that never got one.
 template <class Redraw>
-std::vector<int> settle(Target const& target, LaneArray& starts, int attempts, Ledger& ledger, Redraw const& redraw) {
+std::vector<int> make_finite(Target const& target, LaneArray& starts, int attempts, Ledger& ledger, Redraw const& redraw) {
   std::vector<int> open(static_cast<std::size_t>(starts.width()));
   std::iota(open.begin(), open.end(), 0);
   for (int attempt = 0; attempt < attempts && !open.empty(); ++attempt) {
@@ -314,7 +316,7 @@ LaneArray overdispersed_starts(Target const& target, std::vector<Mode> const& mo
     Eigen::VectorXd const move = cholesky_or_diagonal(covariance_of(mode)) * z;
     return theta_of(mode) + inflation * move;
   };
-  for (int const chain : settle(target, starts, 100, context.ledger, redraw))
+  for (int const chain : make_finite(target, starts, 100, context.ledger, redraw))
     for (int p = 0; p < starts.rows(); ++p) starts(p, chain) = mode_of(chain).theta[static_cast<std::size_t>(p)];
   return starts;
 }
@@ -326,7 +328,7 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
                         prior_start_step + static_cast<std::uint64_t>(attempt)};
     return column(draw_prior(target, key, 1), 0);
   };
-  if (!settle(target, starts, 1000, context.ledger, redraw).empty()) return std::nullopt;
+  if (!make_finite(target, starts, 1000, context.ledger, redraw).empty()) return std::nullopt;
   return starts;
 }
 

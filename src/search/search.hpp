@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "likelihood/target.hpp"
-#include "search/aim.hpp"
 #include "search/objective.hpp"
+#include "search/objective_kind.hpp"
 #include "search/run_context.hpp"
 
 namespace sysid {
@@ -27,11 +27,11 @@ struct SearchResult {
 /// have a better neighbour that was not met. Where the target has a gradient, fewer: 64 draws, 8 of them climbed from, 4 to the
 /// end; where an equation holds an unknown function, 16 are climbed from, its coefficients at zero, 3 to the end, in one pass.
 /// Progress counts simulations against those of a typical search.
-SearchResult search(Target const& target, Aim aim, RunContext& context);
+SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context);
 
 /// Local searches from `starts` [P x N] alone, which need not have a finite density: a search that somebody has aimed. What lies
 /// elsewhere is not looked for, and a note says so.
-SearchResult search_from(Target const& target, Aim aim, ConstLanes starts, RunContext& context);
+SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context);
 
 /// Spreads `chains` over modes by their shares: every mode above 1 % gets one while chains last, the rest go where the share is
 /// most under-represented. Returns the mode of each chain; modes in order.

@@ -45,7 +45,7 @@ class AdaptiveLanes : public Stepper {
       bool finite = true;
       for (int i = 0; i < states.rows(); ++i) finite = finite && std::isfinite(states(i, w));
       position[w] = finite ? 0 : 1;  // nothing is tried with a dead lane
-      row(Control::aim)[w] = std::numeric_limits<double>::max();
+      row(Control::objective_kind)[w] = std::numeric_limits<double>::max();
       row(Control::hunts)[w] = 0;
     }
     file_.load_row(file_.schedule.step_row(sample, 0), file_.program.step.uniforms.kernel.outputs);

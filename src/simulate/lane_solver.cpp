@@ -30,7 +30,7 @@ void LaneSolvers::store(int lane) {
       states(s, w) = failed ? std::numeric_limits<double>::quiet_NaN() : states_[static_cast<std::size_t>(s)];
 }
 
-void LaneSolvers::settle(int sample) {
+void LaneSolvers::make_consistent(int sample) {
   sample_ = sample;
   if (equations_.states() == equations_.differential()) return;
   equations_.set_interval(sample);
@@ -38,19 +38,19 @@ void LaneSolvers::settle(int sample) {
     Lane& lane = lanes_[static_cast<std::size_t>(w)];
     if (lane.failure) continue;
     load(w);
-    lane.failure = lane.solver->settle(equations_.time(sample), states_);
+    lane.failure = lane.solver->make_consistent(equations_.time(sample), states_);
     store(w);
   }
 }
 
 void LaneSolvers::start() {
   for (Lane& lane : lanes_) lane.failure.reset(), lane.fresh = true;
-  settle(0);
+  make_consistent(0);
 }
 
 void LaneSolvers::parameters_changed() {
   for (Lane& lane : lanes_) lane.fresh = true;
-  if (sample_ >= 0) settle(sample_);
+  if (sample_ >= 0) make_consistent(sample_);
 }
 
 void LaneSolvers::step(int sample) {
@@ -67,7 +67,7 @@ void LaneSolvers::step(int sample) {
     if (!lane.failure) lane.failure = lane.solver->advance(equations_.time(sample + 1), states_);
     store(w);
   }
-  settle(sample + 1);
+  make_consistent(sample + 1);
 }
 
 }  // namespace sysid

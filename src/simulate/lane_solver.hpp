@@ -15,7 +15,7 @@ class LaneSolver {
  public:
   virtual ~LaneSolver() = default;
   /// Makes the algebraic states satisfy the constraints at `time`; nothing to do without any.
-  virtual std::optional<StepFailure> settle(double, std::span<double>) { return std::nullopt; }
+  virtual std::optional<StepFailure> make_consistent(double, std::span<double>) { return std::nullopt; }
   /// Told before each interval, which ends at `end`, where it begins.
   virtual void enter(double time, double end, std::span<double const> states) = 0;
   /// Begins anew from `states`, which satisfy the constraints.
@@ -46,7 +46,7 @@ class LaneSolvers : public Stepper {
     std::optional<StepFailure> failure;
     bool fresh = true;  // to be restarted at the next step
   };
-  void settle(int sample);
+  void make_consistent(int sample);
   void load(int lane);
   void store(int lane);
 

@@ -21,8 +21,8 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
     std::vector<std::uint8_t> summed(experiment.time.size());
     int count = 0;
     for (std::size_t i = 0; i < summed.size(); ++i) {
-      bool const has_past = experiment.has_past.empty() || experiment.has_past[c].empty() || experiment.has_past[c][i] != 0;
-      summed[i] = !measured.empty() && experiment.scored[i] != 0 && has_past && !std::isnan(measured[i]);
+      bool const has_lags = experiment.has_lags.empty() || experiment.has_lags[c].empty() || experiment.has_lags[c][i] != 0;
+      summed[i] = !measured.empty() && experiment.scored[i] != 0 && has_lags && !std::isnan(measured[i]);
       if (summed[i] == 0) continue;
       ++count;
       last_summed_ = std::max(last_summed_, static_cast<int>(i) + 1);

@@ -41,7 +41,9 @@ class IdaLane : public SundialsLane {
   }
   ~IdaLane() override { IDAFree(&memory_); }
 
-  std::optional<StepFailure> settle(double time, std::span<double> states) override { return algebraic_.solve(time, states); }
+  std::optional<StepFailure> make_consistent(double time, std::span<double> states) override {
+    return algebraic_.solve(time, states);
+  }
 
   std::optional<StepFailure> restart(double time, std::span<double const> states) override {
     std::copy(states.begin(), states.end(), data(states_));

@@ -17,10 +17,10 @@ inline constexpr std::size_t most_text_bytes = 1'000'000;
 std::optional<ast::File> parse(Source const& source, Diagnostics& diagnostics);
 
 /// A file as far as it can be read. Where anything was reported, the statements and items that hold a mistake are left out of the
-/// tree, and `left_out` has their places, in any order; nothing can be read where a block does not end.
+/// tree, and `unread` has their places, in any order; nothing can be read where a block does not end.
 struct ReadableFile {
   std::optional<ast::File> tree;
-  std::vector<Span> left_out;
+  std::vector<Span> unread;
 };
 ReadableFile parse_readable(Source const& source, Diagnostics& diagnostics);
 

@@ -70,7 +70,7 @@ inline Answer answer(std::string const& name, std::string const& text, Depth dep
       SilentProgress progress;
       std::ostringstream ignored;
       Session session(source, *file, options, progress, ignored, ignored);
-      check_readiness(session, [](Task const& task) { return std::holds_alternative<FitTask>(task.what); }).require();
+      check_preconditions(session, [](Task const& task) { return std::holds_alternative<FitTask>(task.what); }).require();
     }
     if (file && depth == Depth::run) {
       SilentProgress progress;

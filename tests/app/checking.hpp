@@ -31,8 +31,8 @@ inline TaskPage const& task(CheckResult const& result, std::string const& name) 
 }
 
 /// Of a fit; or of a candidate.
-inline Outlook const& outlook(CheckResult const& result, std::string const& name, std::string const& candidate = "") {
-  for (Outlook const& each : task(result, name).outlooks)
+inline PreflightPage const& preflight(CheckResult const& result, std::string const& name, std::string const& candidate = "") {
+  for (PreflightPage const& each : task(result, name).preflights)
     if (each.candidate == candidate) return each;
   throw InternalError("no outlook of " + name + " " + candidate);
 }

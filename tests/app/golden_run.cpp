@@ -1,6 +1,6 @@
 // Every shipped model runs to its recorded summary: numbers to 1e-6 of their size (the seed fixes the bytes, but special functions
-// may differ in the last digits between processors), words exactly. SYSID_BLESS=1 rewrites the record. And its pages can be made
-// anew.
+// may differ in the last digits between processors), words exactly. Its pages can be made anew, and the documentation quotes what it
+// prints. SYSID_BLESS=1 rewrites the record.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include "app/running.hpp"
 #include "app/stored_pages.hpp"
+#include "house/quoted_output.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -60,6 +61,7 @@ TEST_CASE("every shipped model runs to its recorded summary and exit code") {
       options.output = folder.path() / "results";
       options.execution.threads = 0;
       RunResult const result = run_text(entry.path(), read_file(entry.path()), options);
+      testing::check_quotes("./sysid run models/" + model_name + ".sysid", result.out);
       json found = {{"exit", result.exit}};
       CHECK(test::broken_promises(options.output) == "");
       for (auto const& task : std::filesystem::directory_iterator(options.output)) {

@@ -36,7 +36,7 @@ std::vector<Diagnostic> diagnostics_of(std::string const& text) {
     std::ostringstream ignored;
     RunOptions const options;
     Session session(source, *file, options, progress, ignored, ignored);
-    check_readiness(session, [](Task const& task) { return !std::holds_alternative<SimulateTask>(task.what); }).require();
+    check_preconditions(session, [](Task const& task) { return !std::holds_alternative<SimulateTask>(task.what); }).require();
   } catch (UnusableData const& error) {
     return error.diagnostics().all();
   } catch (UserError const& error) {

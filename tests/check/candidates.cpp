@@ -101,7 +101,7 @@ TEST_CASE("each candidate of a selection is what a fit of it alone would be") {
     REQUIRE(task.fits[c].experiments.size() == 2);
     CHECK(task.fits[c].experiments[1].name == "d.b");
     CHECK(task.fits[c].solver == SolverSettings{.substeps = 4});
-    CHECK_FALSE(task.fits[c].settle);
+    CHECK_FALSE(task.fits[c].refine_solver);
   }
   CHECK(task.distance.kind == DistanceRule::Kind::nmse);
   CHECK(task.distance.channels == std::vector<std::string>{"displacement"});

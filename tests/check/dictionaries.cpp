@@ -68,17 +68,17 @@ TEST_CASE("terms that differ in order or by a constant are one, and the dictiona
   auto const found =
       dictionary("target = x\nterms = y*y', 3*y'*y, abs(y')*y', y'*abs(-y'), y, polynomial(y, y', degree = 2), 1, 2 [N]");
   CHECK(terms(found) == Texts{"y*y'", "abs(y')*y'", "y", "y'", "y^2", "y'^2", "1"});
-  REQUIRE(found.left_out.size() == 5);
-  CHECK(found.left_out.at(0).text == "3*y'*y");
-  CHECK(found.left_out.at(0).detail == "y*y'");
+  REQUIRE(found.excluded.size() == 5);
+  CHECK(found.excluded.at(0).text == "3*y'*y");
+  CHECK(found.excluded.at(0).detail == "y*y'");
 }
 
 TEST_CASE("a term that is always zero is no constant") {
   auto const found = dictionary("target = x\nterms = y, 0*y, 1");
   CHECK(terms(found) == Texts{"y", "1"});
-  REQUIRE(found.left_out.size() == 1);
-  CHECK(found.left_out.at(0).text == "0*y");
-  CHECK(found.left_out.at(0).why == LeftOutTerm::Why::zero);
+  REQUIRE(found.excluded.size() == 1);
+  CHECK(found.excluded.at(0).text == "0*y");
+  CHECK(found.excluded.at(0).why == ExcludedTerm::Why::zero);
 }
 
 TEST_CASE("exclusions take out what they name, families too") {
@@ -95,9 +95,9 @@ TEST_CASE("a coefficient has the unit of the target over that of its term") {
 TEST_CASE("units prune what coefficients may be") {
   auto const found = dictionary("target = x\nterms = polynomial(y, y', degree = 3)\ncoefficients = [N/mm], [N/m^3]");
   CHECK(terms(found) == Texts{"y", "y^3"});
-  CHECK(found.left_out.size() == 7);
-  CHECK(found.left_out.at(0).why == LeftOutTerm::Why::unit);
-  CHECK(found.left_out.at(0).detail == "N s/m");
+  CHECK(found.excluded.size() == 7);
+  CHECK(found.excluded.at(0).why == ExcludedTerm::Why::unit);
+  CHECK(found.excluded.at(0).detail == "N s/m");
   auto const named = dictionary("parameter k3 [N/mm^3]\ntarget = x\nterms = y, k3*polynomial(y, y', degree = 3)");
   CHECK(terms(named) == Texts{"y", "y^3"});
   CHECK(named.equations.at(0).terms.at(1).coefficient == "k3");

@@ -19,7 +19,7 @@ std::string const blocks = block_of("bench", "constant dose = 30 [mg]") +
                            block_of("hall", "constant dose = 5; constant mass = 700 [g]") +
                            block_of("field", "constant dose = 1; constant k = 3");
 
-std::vector<ExperimentUse> fitted(std::string const& data) {
+std::vector<ExperimentUse> fitted_uses(std::string const& data) {
   return std::get<FitTask>(checked(fleet_model + blocks + "f = fit m to " + data + " with mh\n").tasks.at(0).what).experiments;
 }
 std::string refused_tasks(std::string const& text) { return messages(fleet_model + blocks + text + "\n"); }
@@ -27,20 +27,20 @@ std::string refused_tasks(std::string const& text) { return messages(fleet_model
 }  // namespace
 
 TEST_CASE("experiments are named by their blocks, and by their parts too where a block is used twice") {
-  auto const plain = fitted("bench.late, hall");
+  auto const plain = fitted_uses("bench.late, hall");
   REQUIRE(plain.size() == 2);
   CHECK(plain[0].name == "bench");
   CHECK(plain[0].part == 1);
   CHECK(plain[1].name == "hall");
   CHECK(plain[1].part == -1);
-  auto const twice = fitted("bench.late, hall, bench.early");
+  auto const twice = fitted_uses("bench.late, hall, bench.early");
   CHECK(twice[0].name == "bench.late");
   CHECK(twice[1].name == "hall");
   CHECK(twice[2].name == "bench.early");
 }
 
 TEST_CASE("constants are in SI, bare ones in the unit of the parameter, and take the place of a value or a prior") {
-  auto const uses = fitted("bench, hall, field");
+  auto const uses = fitted_uses("bench, hall, field");
   CHECK(uses[0].constants[0].value() == near(30e-6));
   CHECK_FALSE(uses[0].constants[1]);
   CHECK_FALSE(uses[0].constants[2]);

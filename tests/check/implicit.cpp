@@ -69,7 +69,7 @@ TEST_CASE("an implicit model is solved by ida, and by no solver of explicit equa
   CheckedFile const file = checked(braking + data + "fit braking to d with map");
   auto const& fit = std::get<FitTask>(file.tasks.at(0).what);
   CHECK(fit.solver.method == "ida");
-  CHECK(fit.settle);
+  CHECK(fit.refine_solver);
   for (char const* solver : {"substeps = 2", "solver = rk4", "solver = cvode"}) {
     std::string const shown = messages(braking + data + "fit braking to d with map, " + solver);
     CHECK(errors_in(shown) == 1);

@@ -57,14 +57,14 @@ TEST_CASE("settings of a back end are its defaults where they are not given") {
   CHECK(task.settings.word("proposal") == "spherical");
   CHECK(task.seed.value() == 7);
   CHECK(task.solver == SolverSettings{.substeps = 3});
-  CHECK_FALSE(task.settle);
+  CHECK_FALSE(task.refine_solver);
   CHECK(task.experiments.at(0).part == 1);
   CHECK(fit("mh").settings.integer("samples") == 25000);
-  CHECK(fit("mh, substeps = automatic").settle);
+  CHECK(fit("mh, substeps = automatic").refine_solver);
   CHECK(fit("mh, solver = heun").solver.method == "heun");
-  CHECK(fit("mh, solver = heun").settle);
+  CHECK(fit("mh, solver = heun").refine_solver);
   CHECK(fit("mh, solver = heun(substeps = 3)").solver == SolverSettings{.method = "heun", .substeps = 3});
-  CHECK_FALSE(fit("mh, solver = heun(substeps = 3)").settle);
+  CHECK_FALSE(fit("mh, solver = heun(substeps = 3)").refine_solver);
 }
 
 TEST_CASE("a start is the record's first row, rest or estimated") {

@@ -22,12 +22,12 @@ std::unique_ptr<Target> centred(double centre, int rows = 1) {
                                       });
 }
 
-SettledSolver settled(std::function<double(int substeps)> const& centre, int rows) {
+RefinedSolver settled(std::function<double(int substeps)> const& centre, int rows) {
   Bench bench;
   SolverSettings const from;
-  std::vector<Mode> modes = search(*centred(centre(from.substeps)), Aim::posterior, bench.context).modes;
+  std::vector<Mode> modes = search(*centred(centre(from.substeps)), ObjectiveKind::posterior, bench.context).modes;
   MakeTarget const make = [&](SolverSettings const& solver) { return centred(centre(solver.substeps), rows); };
-  return settle_solver(make, Aim::posterior, from, std::move(modes), bench.context);
+  return refined_solver(make, ObjectiveKind::posterior, from, std::move(modes), bench.context);
 }
 
 constexpr int short_record = 10, long_record = 200'000;
@@ -37,19 +37,19 @@ constexpr int short_record = 10, long_record = 200'000;
 TEST_CASE("a solver is refined until halving its step moves nothing any more, however long that takes") {
   for (int const rows : {short_record, long_record}) {
     // 3 sd between one step and two, a quarter of it each time: 0.19 sd, then 0.05.
-    SettledSolver const found = settled([](int substeps) { return 0.4 / std::pow(substeps, 2); }, rows);
-    CHECK(found.settled);
+    RefinedSolver const found = settled([](int substeps) { return 0.4 / std::pow(substeps, 2); }, rows);
+    CHECK(found.converged);
     CHECK(found.solver.substeps == 8);
   }
 }
 
 TEST_CASE("a result that moves at every halving is tried to the finest, unless that takes long") {
   auto const restless = [](int substeps) { return static_cast<int>(std::log2(substeps)) % 2 == 0 ? 0.0 : 0.3; };
-  SettledSolver const quick = settled(restless, short_record), slow = settled(restless, long_record);
-  CHECK(!quick.settled);
+  RefinedSolver const quick = settled(restless, short_record), slow = settled(restless, long_record);
+  CHECK(!quick.converged);
   CHECK(!quick.given_up);
   CHECK(quick.solver.substeps == 256);
-  CHECK(!slow.settled);
+  CHECK(!slow.converged);
   CHECK(slow.given_up);
   CHECK(slow.solver.substeps < 64);
 }

@@ -19,7 +19,7 @@
 #include "likelihood/compiled_model.hpp"
 #include "likelihood/process/process_model.hpp"
 #include "load/modules.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 #include "simulate/simulator.hpp"
 #include "syntax/format.hpp"
 #include "syntax/parse.hpp"

@@ -10,17 +10,13 @@
 //   ```cpp from FILE                 text of that file, word for word
 //
 // Pages that save files are followed, command by command (followed.cpp).
-//
-// With SYSID_BLESS set in the environment, blocks of the fourth kind that leave nothing out are written anew.
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
-#include <map>
 #include <regex>
 
-#include "house/markdown.hpp"
+#include "house/quoted_output.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/run/pipeline.hpp"
 #include "app/running.hpp"
@@ -151,32 +147,6 @@ void check_command(Page const& page, std::string const& command) {
   }
 }
 
-// What `./sysid VERB FILE` prints on standard output, run once.
-std::string const& printed_by(std::string const& command) {
-  static std::map<std::string, std::string> done;
-  auto const [place, fresh] = done.emplace(command, "");
-  if (!fresh) return place->second;
-  std::vector<std::string> const words = words_of(command);
-  REQUIRE_MESSAGE((words.size() == 3 && words[0] == "./sysid"), "cannot run `" << command << "` for its output");
-  TemporaryFolder const folder;
-  Source source((root / words[2]).string(), read_file(root / words[2]));
-  Diagnostics diagnostics;
-  auto const file = load(source, diagnostics);
-  REQUIRE_MESSAGE(file, render(diagnostics, source, false));
-  RunOptions options;
-  options.output = folder.path();
-  options.force = true;
-  options.figures = false;
-  SilentProgress progress;
-  std::ostringstream out, notices;
-  if (words[1] == "check") {
-    Session session(source, *file, options, progress, out, notices);
-    return place->second = check_text(check_file(session).page);
-  }
-  run_tasks(source, *file, words[1] == "run" ? std::vector<std::string>{} : std::vector{words[1]}, options, progress, out, notices);
-  return place->second = out.str();
-}
-
 }  // namespace
 
 TEST_CASE("snippets of the language pass the checker or are refused as said") {
@@ -205,22 +175,31 @@ TEST_CASE("commands have verbs, options and files that exist") {
 }
 
 TEST_CASE("quoted output is what the program prints") {
-  // From the last block of a page to the first, so that writing one anew moves none of the others.
-  for (fs::path const& path : pages()) {
-    Page const page = read_page(path);
-    for (auto block = page.blocks.rbegin(); block != page.blocks.rend(); ++block) {
-      if (!block->info.starts_with("text from ")) continue;
-      std::string const& printed = printed_by(block->info.substr(10));
-      // An excerpt stays what it is, and is mended by hand.
-      if (std::getenv("SYSID_BLESS") != nullptr && block->text.size() == lines_of(printed).size()) {
-        bless(page, *block, printed);
-        continue;
-      }
-      std::string const missing = not_printed(block->text, lines_of(printed));
-      CHECK_MESSAGE(missing.empty(), page.name << ":" << block->line << ": not printed here: " << missing << "\nprinted:\n"
-                                               << printed);
+  int run = 0;
+  each_block("text from ", [&](Page const& page, Fence const& block) {
+    std::string const command = block.info.substr(10);
+    std::vector<std::string> const words = words_of(command);
+    CAPTURE(page.name << ":" << block.line);
+    REQUIRE_MESSAGE((words.size() == 3 && words[0] == "./sysid"), "cannot run `" << command << "` for its output");
+    if (words[1] == "run") {  // compared where that model is run (tests/app/golden_run.cpp)
+      CHECK((words[2].starts_with("models/") && fs::exists(root / words[2])));
+      ++run;
+      return;
     }
-  }
+    REQUIRE(words[1] == "check");
+    TemporaryFolder const folder;
+    Source source((root / words[2]).string(), read_file(root / words[2]));
+    Diagnostics diagnostics;
+    auto const file = load(source, diagnostics);
+    REQUIRE_MESSAGE(file, render(diagnostics, source, false));
+    RunOptions options;
+    options.output = folder.path();
+    SilentProgress progress;
+    std::ostringstream out, notices;
+    Session session(source, *file, options, progress, out, notices);
+    check_quotes(command, check_text(check_file(session).page));
+  });
+  CHECK(run > 10);
 }
 
 TEST_CASE("quoted C++ stands in the file it is said to be from") {

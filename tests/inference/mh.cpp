@@ -73,7 +73,7 @@ void check_moments(FitResult const& result, Eigen::VectorXd const& mean, Eigen::
     CHECK(std::fabs(s.mean - mean(i)) < 3 * s.mcse_mean);
     CHECK(s.sd == doctest::Approx(sd(i)).epsilon(0.05));
   }
-  CHECK(judge(result.findings).pass);
+  CHECK(verdict_of(result.findings).pass);
 }
 
 bool same_draws(FitResult const& a, FitResult const& b) {
@@ -174,7 +174,7 @@ TEST_CASE("both modes of a bimodal posterior get chains, and the user is told of
   CHECK(result.modes[1].share == doctest::Approx(0.3).epsilon(1e-3));
   CHECK(found(result, "second_mode"));
   CHECK(found(result, "chains_disagree"));
-  CHECK_FALSE(judge(result.findings).pass);
+  CHECK_FALSE(verdict_of(result.findings).pass);
   int left = 0;
   for (Chain const& chain : result.draws.chains) left += chain.values.back()[0] < 0;
   CHECK(left == 3);
@@ -187,7 +187,7 @@ TEST_CASE("the tutorial's spherical proposal of absurd size is caught standing s
   settings.set("variance", 1e4);
   FitResult const result = fit(known.target, settings);
   REQUIRE(found(result, "chain_did_not_move"));
-  Verdict const verdict = judge(result.findings);
+  Verdict const verdict = verdict_of(result.findings);
   CHECK(verdict.exit_code == 1);
   CHECK(verdict.text.find("the chain did not move") != std::string::npos);
   CHECK(verdict.text.find("proposal = adaptive") != std::string::npos);
@@ -355,5 +355,5 @@ TEST_CASE("Duffing's oscillator is identified from prior draws alone, as the tut
   CHECK(summaries[0].sd < 0.0015);
   CHECK(summaries[2].sd < 20);
   CHECK(summaries[4].sd / summaries[4].mean == doctest::Approx(std::sqrt(2.0 / 500)).epsilon(0.1));
-  CHECK(judge(result.findings).pass);
+  CHECK(verdict_of(result.findings).pass);
 }

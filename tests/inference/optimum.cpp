@@ -51,7 +51,7 @@ TEST_CASE("ml finds the sample mean and variance, with the sds of the Fisher inf
   CHECK(result.modes[0].sd[1] == doctest::Approx(precision * std::sqrt(2 / n)).epsilon(0.01));
   CHECK(result.draws.chains[0].log_likelihood[0] ==
         doctest::Approx(-0.5 * n * std::log(2 * std::numbers::pi * variance()) - 0.5 * n).epsilon(1e-9));
-  CHECK(judge(result.findings).pass);
+  CHECK(verdict_of(result.findings).pass);
 }
 
 TEST_CASE("map is the maximum of the density of the declared parameters, whatever the sampler's coordinate") {
@@ -68,7 +68,7 @@ TEST_CASE("map is the maximum of the density of the declared parameters, whateve
 TEST_CASE("modes that a search has found are not searched for again") {
   TestTarget const target = normal_sample(sample, {Prior::log_uniform, 0.01, 1000});
   Bench first, second;
-  SearchResult const found = search(target, Aim::declared_posterior, first.context);
+  SearchResult const found = search(target, ObjectiveKind::declared_posterior, first.context);
   second.context.modes = found.modes;
   second.context.mode_findings = {{FindingCode::flat_direction, Severity::warning, {}, "", ""}};
   auto const before = target.solves;

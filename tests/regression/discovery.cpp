@@ -261,9 +261,9 @@ TEST_CASE("terms that the data cannot tell apart are named") {
   CHECK(has(found, Concern::Kind::repeats));
   CHECK(has(found, Concern::Kind::collinear));
   CHECK(has(found, Concern::Kind::always_zero));
-  CHECK(found.terms[11].left_out);
-  CHECK(found.terms[12].left_out);
-  CHECK(found.terms[13].left_out);
+  CHECK(found.terms[11].excluded);
+  CHECK(found.terms[12].excluded);
+  CHECK(found.terms[13].excluded);
 }
 
 TEST_CASE("two terms of which one is needed, and no saying which, are a pair") {

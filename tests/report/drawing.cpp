@@ -75,8 +75,8 @@ TEST_CASE("small multiples stand in rows inside the figure, apart from each othe
       CHECK_MESSAGE(apart, i << " and " << j);
     }
   }
-  CHECK(multiples_left_out(shown_multiples) == "");
-  CHECK(multiples_left_out(40) == " Shown are the first 18 of 40.");
+  CHECK(multiples_excluded(shown_multiples) == "");
+  CHECK(multiples_excluded(40) == " Shown are the first 18 of 40.");
 }
 
 TEST_CASE("panels side by side fill the width and leave room for the ordinate") {

@@ -215,7 +215,7 @@ TEST_CASE("an input that does not vary has no correlation and no panel") {
 
 TEST_CASE("the value that data were made with is a line at its place, where all records agree on it") {
   Report report = example::duffing(40);
-  report.data[0].truth = {{"m", "kg", 1.0001}, {"beta", "1/m^2", 9e11}};
+  report.data[0].true_parameters = {{"m", "kg", 1.0001}, {"beta", "1/m^2", 9e11}};
   plot::Figure figure = posterior_figure(report);
   REQUIRE(block(figure.script, "truth0").size() == 2);
   CHECK(block(figure.script, "truth0")[0][0] == doctest::Approx(1.0001));
@@ -223,7 +223,7 @@ TEST_CASE("the value that data were made with is a line at its place, where all 
   CHECK(block(figure.script, "truth4").empty());  // far outside
   CHECK(figure.caption.find("Generated with values outside the shown range: beta (9.000·10¹¹)") != std::string::npos);
   report.data.push_back(report.data[0]);
-  report.data[1].truth[0].value = 1.0002;
+  report.data[1].true_parameters[0].value = 1.0002;
   CHECK(block(posterior_figure(report).script, "truth0").empty());
 }
 

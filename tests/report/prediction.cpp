@@ -43,14 +43,14 @@ TEST_CASE("a draw that failed is left out whole; without draws there is no band"
   CHECK(b.mean[0] == 1.5);
   CHECK(b.mean[1] == 1.5);
   CHECK(b.draws == 3);
-  CHECK(b.left_out == 1);
-  CHECK(band({{std::nan("")}}).left_out == 1);
+  CHECK(b.excluded == 1);
+  CHECK(band({{std::nan("")}}).excluded == 1);
   CHECK(band({{std::nan("")}}).mean.empty());
   Band const gap = band({{1, std::nan(""), 5}, {3, std::nan(""), 7}});  // a sample that follows from one that was not measured
   CHECK(gap.mean.front() == 2);
   CHECK(std::isnan(gap.mean[1]));
   CHECK(gap.mean[2] == 6);
-  CHECK(gap.left_out == 0);
+  CHECK(gap.excluded == 0);
   CHECK(band({}).mean.empty());
 }
 

@@ -32,7 +32,8 @@ LaneArray at(std::vector<double> const& places) {
 TEST_CASE("each mode that searches end in comes once, with the number of searches that did") {
   TestTarget const target = two_peaks();
   Ledger ledger;
-  std::vector<Mode> const modes = modes_from(target, Aim::posterior, at({1.5, 3, 1.9, -2.5, 2.2}), -infinity, 1, ledger).modes;
+  std::vector<Mode> const modes =
+      modes_from(target, ObjectiveKind::posterior, at({1.5, 3, 1.9, -2.5, 2.2}), -infinity, 1, ledger).modes;
   REQUIRE(modes.size() == 2);
   CHECK(modes[0].hits + modes[1].hits == 5);
   for (Mode const& mode : modes) {
@@ -48,7 +49,7 @@ TEST_CASE("searches that meet go on as one: eight cost little more than one") {
   Ledger ledger;
   LaneArray one(target.dimension(), 1), eight(target.dimension(), 8);
   Bench bench(1);
-  std::vector<double> const best = search(target, Aim::posterior, bench.context).modes.front().declared;
+  std::vector<double> const best = search(target, ObjectiveKind::posterior, bench.context).modes.front().declared;
   LaneArray declared(target.dimension(), 8), theta = declared;
   for (int w = 0; w < 8; ++w)
     for (int p = 0; p < target.dimension(); ++p)
@@ -56,10 +57,10 @@ TEST_CASE("searches that meet go on as one: eight cost little more than one") {
   target.unconstrain(declared, eight);
   for (int p = 0; p < target.dimension(); ++p) one(p, 0) = eight(p, 0);
   target.solves = 0;
-  std::vector<Mode> const of_one = modes_from(target, Aim::posterior, one, -infinity, 1, ledger).modes;
+  std::vector<Mode> const of_one = modes_from(target, ObjectiveKind::posterior, one, -infinity, 1, ledger).modes;
   std::uint64_t const cost_of_one = target.solves;
   target.solves = 0;
-  std::vector<Mode> const of_eight = modes_from(target, Aim::posterior, eight, -infinity, 1, ledger).modes;
+  std::vector<Mode> const of_eight = modes_from(target, ObjectiveKind::posterior, eight, -infinity, 1, ledger).modes;
   REQUIRE(of_one.size() == 1);
   REQUIRE(of_eight.size() == 1);
   CHECK(of_eight[0].hits == 8);
@@ -72,27 +73,27 @@ TEST_CASE("a start without a finite density is left out, and nothing is found fr
     rows[0] = x[0] < 0 ? std::numeric_limits<double>::quiet_NaN() : (x[0] - 2) / 0.1;
   });
   Ledger ledger;
-  std::vector<Mode> const modes = modes_from(target, Aim::posterior, at({-1, 2.5, -3}), -infinity, 1, ledger).modes;
+  std::vector<Mode> const modes = modes_from(target, ObjectiveKind::posterior, at({-1, 2.5, -3}), -infinity, 1, ledger).modes;
   REQUIRE(modes.size() == 1);
   CHECK(modes[0].hits == 1);
-  CHECK(modes_from(target, Aim::posterior, at({-1, -3}), -infinity, 1, ledger).modes.empty());
+  CHECK(modes_from(target, ObjectiveKind::posterior, at({-1, -3}), -infinity, 1, ledger).modes.empty());
 }
 
 TEST_CASE("a search that cannot come to the mass that is asked for is given up, one that can is not") {
   TestTarget const target = duffing(3);
   Bench bench(1);
-  Mode const best = search(target, Aim::posterior, bench.context).modes.front();
+  Mode const best = search(target, ObjectiveKind::posterior, bench.context).modes.front();
   LaneArray starts(target.dimension(), 4);
   target.sample_prior({1, Purpose::test, 0, 0}, starts);
   for (int p = 0; p < target.dimension(); ++p) starts(p, 0) = best.theta[static_cast<std::size_t>(p)] + 0.05;
   Ledger ledger;
   target.solves = 0;
-  LocalSearches const reached = modes_from(target, Aim::posterior, starts, best.log_mass - 1, 1, ledger);
+  LocalSearches const reached = modes_from(target, ObjectiveKind::posterior, starts, best.log_mass - 1, 1, ledger);
   std::uint64_t const whole = target.solves;
   CHECK_FALSE(reached.given_up);
   CHECK(reached.modes.front().log_mass == doctest::Approx(best.log_mass).epsilon(1e-4));
   target.solves = 0;
-  LocalSearches const missed = modes_from(target, Aim::posterior, starts, best.log_mass + 1000, 1, ledger);
+  LocalSearches const missed = modes_from(target, ObjectiveKind::posterior, starts, best.log_mass + 1000, 1, ledger);
   CHECK(missed.given_up);
   REQUIRE(missed.modes.size() == 1);
   CHECK(missed.modes.front().log_mass < best.log_mass + 1000);

@@ -22,16 +22,16 @@ TestTarget centred(double centre, bool broken = false) {
 
 TEST_CASE("a mode follows its target, and its move is measured in its own sds") {
   Bench bench;
-  std::vector<Mode> const modes = search(centred(2), Aim::posterior, bench.context).modes;
+  std::vector<Mode> const modes = search(centred(2), ObjectiveKind::posterior, bench.context).modes;
   REQUIRE(modes.size() == 1);
-  std::vector<Mode> const same = refit(centred(2), Aim::posterior, modes, 1, bench.ledger),
-                          moved = refit(centred(2.05), Aim::posterior, modes, 1, bench.ledger);
+  std::vector<Mode> const same = refit(centred(2), ObjectiveKind::posterior, modes, 1, bench.ledger),
+                          moved = refit(centred(2.05), ObjectiveKind::posterior, modes, 1, bench.ledger);
   CHECK(largest_move(modes[0], same[0]).size < 1e-3);
   // The prior holds back 1e-4 of the move: half an sd.
   CHECK(largest_move(modes[0], moved[0]).value == doctest::Approx(0.5).epsilon(1e-3));
   CHECK(largest_move(modes[0], moved[0]).size == doctest::Approx(0.5).epsilon(1e-2));
   CHECK(moved[0].share == modes[0].share);
-  CHECK(refit(centred(2), Aim::posterior, {}, 1, bench.ledger).empty());
+  CHECK(refit(centred(2), ObjectiveKind::posterior, {}, 1, bench.ledger).empty());
 }
 
 TEST_CASE("a change of width is a move of the limits") {
@@ -47,8 +47,8 @@ TEST_CASE("a change of width is a move of the limits") {
 
 TEST_CASE("a mode that can no longer be solved keeps its place and has moved infinitely far") {
   Bench bench;
-  std::vector<Mode> const modes = search(centred(2), Aim::posterior, bench.context).modes;
-  std::vector<Mode> const lost = refit(centred(2, true), Aim::posterior, modes, 1, bench.ledger);
+  std::vector<Mode> const modes = search(centred(2), ObjectiveKind::posterior, bench.context).modes;
+  std::vector<Mode> const lost = refit(centred(2, true), ObjectiveKind::posterior, modes, 1, bench.ledger);
   REQUIRE(lost.size() == 1);
   CHECK(lost[0].theta == modes[0].theta);
   CHECK(largest_move(modes[0], lost[0]).size == infinity);

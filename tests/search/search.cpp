@@ -43,7 +43,7 @@ TEST_CASE("Duffing's oscillator is found from draws two decades wide, for every 
     CAPTURE(seed);
     TestTarget const target = duffing(seed);
     Bench bench(1000 + seed);
-    SearchResult const result = search(target, Aim::posterior, bench.context);
+    SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
     REQUIRE_FALSE(result.modes.empty());
     Mode const& best = result.modes.front();
     double const truth[] = {1, 20, 1e4, 5e9};
@@ -61,7 +61,7 @@ TEST_CASE("modes are weighed by the mass below them, not by their height") {
   // The narrow mode is 7.5 times as high and holds a quarter; the third is too small to mention.
   TestTarget const target = mixture({0.746, 0.25, 0.004}, {-20, 10, 40}, {2, 0.0894, 1});
   Bench bench;
-  SearchResult const result = search(target, Aim::posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   REQUIRE(result.modes.size() >= 2);
   // The prior tilts each Gaussian: N(x | c, s^2) N(x | 0, t^2) integrates to N(c | 0, s^2 + t^2).
   auto const mass = [&](double share, double c, double s) {
@@ -78,7 +78,7 @@ TEST_CASE("modes are weighed by the mass below them, not by their height") {
 TEST_CASE("one mode alone raises no warning") {
   TestTarget const target = mixture({1}, {3}, {0.5});
   Bench bench;
-  SearchResult const result = search(target, Aim::posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   CHECK(result.modes.size() == 1);
   CHECK(result.findings.empty());
   CHECK(result.modes[0].share == 1);
@@ -101,7 +101,7 @@ TEST_CASE("Laplace's mass of a Gaussian is its evidence") {
   // Marginal covariance I + 25 11': determinant 1 + 25 n, inverse I - 25/(1 + 25 n) 11'.
   double const evidence = constant - 0.5 * std::log(1 + 25.0 * n) - 0.5 * (square - 25 / (1 + 25.0 * n) * sum * sum);
   Bench bench;
-  SearchResult const result = search(target, Aim::posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   CHECK(result.modes.front().log_mass == doctest::Approx(evidence).epsilon(1e-8));
   CHECK(result.modes.front().sd[0] == doctest::Approx(std::sqrt(1 / (n + 0.04))).epsilon(1e-6));
 }
@@ -111,7 +111,7 @@ TEST_CASE("a combination that the data leave alone is reported") {
   TestTarget const target({"a", "b"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
                           [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] + w[1] - 1) / 0.01; });
   Bench likelihood, posterior;
-  SearchResult const flat = search(target, Aim::likelihood, likelihood.context);
+  SearchResult const flat = search(target, ObjectiveKind::likelihood, likelihood.context);
   REQUIRE(flat.findings.size() == 1);
   CHECK(flat.findings[0].code == FindingCode::flat_direction);
   CHECK(flat.findings[0].message.find("a combination of a and b") != std::string::npos);
@@ -119,7 +119,7 @@ TEST_CASE("a combination that the data leave alone is reported") {
   REQUIRE(flat.modes[0].flat.size() == 2);
   CHECK(std::fabs(flat.modes[0].flat[0]) == doctest::Approx(0.1).epsilon(0.05));
   CHECK(flat.modes[0].flat[1] == doctest::Approx(-flat.modes[0].flat[0]).epsilon(1e-3));
-  CHECK(search(target, Aim::posterior, posterior.context).findings.empty());
+  CHECK(search(target, ObjectiveKind::posterior, posterior.context).findings.empty());
 }
 
 TEST_CASE("a sum that alone is measured is reported for bounded priors, too, where one term is known better than the other") {
@@ -127,7 +127,7 @@ TEST_CASE("a sum that alone is measured is reported for bounded priors, too, whe
       {"a", "b"}, {{Prior::uniform, 0, 10}, {Prior::uniform, 0, 10}}, 1, 0,
       [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] + 0.5 * w[1] - 4) / 1e-5; });
   Bench bench;
-  SearchResult const result = search(target, Aim::likelihood, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::likelihood, bench.context);
   CHECK(std::any_of(result.findings.begin(), result.findings.end(),
                     [](Finding const& each) { return each.code == FindingCode::flat_direction; }));
 }
@@ -136,7 +136,7 @@ TEST_CASE("a parameter that the data leave alone is named by itself") {
   TestTarget const target({"a", "idle"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
                           [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] - 1) / 0.01; });
   Bench bench;
-  SearchResult const result = search(target, Aim::likelihood, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::likelihood, bench.context);
   REQUIRE(result.findings.size() == 1);
   CHECK(result.findings[0].message == "the data do not determine idle: its posterior is as wide as its prior");
 }
@@ -148,7 +148,7 @@ TEST_CASE("a parameter known to a billionth leaves the others their widths") {
                             rows[1] = (w[1] - 1) / 0.1;
                           });
   Bench bench;
-  SearchResult const result = search(target, Aim::posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   CHECK(result.findings.empty());
   CHECK(result.modes.front().sd[0] == doctest::Approx(1e-9).epsilon(1e-3));
   CHECK(result.modes.front().sd[1] == doctest::Approx(std::sqrt(1 / 101.0)).epsilon(1e-3));
@@ -157,7 +157,7 @@ TEST_CASE("a parameter known to a billionth leaves the others their widths") {
 TEST_CASE("an optimum is the highest mode, and a lower one that holds more is reported with its share") {
   TestTarget const target = mixture({0.75, 0.25}, {-20, 10}, {2, 0.0894});
   Bench bench;
-  SearchResult const result = search(target, Aim::declared_posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::declared_posterior, bench.context);
   REQUIRE(result.modes.size() == 2);
   CHECK(result.modes[0].declared[0] == doctest::Approx(10).epsilon(1e-3));
   // By the prior's tilt 0.75 and 0.25 become 0.71 and 0.29 of their sum, see above.
@@ -183,7 +183,7 @@ TEST_CASE("progress counts simulations up to those of a usual search") {
   TestTarget const target = mixture({1}, {3}, {0.5});
   Ledger ledger;
   RunContext context{1, progress, ledger};
-  search(target, Aim::posterior, context);
+  search(target, ObjectiveKind::posterior, context);
   CHECK(progress.calls > 10);
   CHECK(progress.last < progress.total);
   CHECK(progress.last > 2048);
@@ -192,7 +192,7 @@ TEST_CASE("progress counts simulations up to those of a usual search") {
   RunContext stopped{1, progress, again};
   stopped.interrupted = [&] { return again.solves() > 3000; };
   progress.last = 0;
-  CHECK(search(target, Aim::posterior, stopped).interrupted);
+  CHECK(search(target, ObjectiveKind::posterior, stopped).interrupted);
   CHECK_FALSE(progress.finished);
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("a prior without a solvable point is a failure that names the place") 
   TestTarget const target({"x"}, {{Prior::uniform, 0, 1}}, 1, 0,
                           [](std::vector<double> const&, std::vector<double>& rows) { rows[0] = infinity; });
   Bench bench;
-  SearchResult const result = search(target, Aim::posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   REQUIRE(result.failure);
   CHECK(result.failure->severity == Severity::error);
   CHECK(result.failure->message.find("none of 8192 draws") != std::string::npos);
@@ -213,7 +213,7 @@ TEST_CASE("solvable points are used however rare they are") {
     rows[0] = w[0] < 0.005 ? (w[0] - 0.002) / 0.0005 : infinity;
   });
   Bench bench;
-  SearchResult const result = search(target, Aim::posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   REQUIRE_FALSE(result.failure);
   CHECK(result.modes.front().declared[0] == doctest::Approx(0.002).epsilon(0.2));
   CHECK(bench.ledger.failed() > 1000);
@@ -232,7 +232,7 @@ TEST_CASE("chains are spread over modes by mass, and a notable mode is never lef
 TEST_CASE("starts are wider than the posterior and differ from each other") {
   TestTarget const target = mixture({1}, {3}, {0.5});
   Bench bench;
-  SearchResult const result = search(target, Aim::posterior, bench.context);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   constexpr int chains = 400;
   LaneArray const starts = overdispersed_starts(target, result.modes, std::vector<int>(chains, 0), bench.context);
   double square = 0;

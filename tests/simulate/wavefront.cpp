@@ -42,15 +42,15 @@ LaneArray parameters(int width) {
   return result;
 }
 
-struct Run {
+struct Wavefront {
   LaneArray sums;
   std::vector<Ending> endings;
   std::vector<int> failed_at;
 };
 
-Run run(Simulator const& simulator, ConstLanes parameters, double bound, ThreadPool* pool = nullptr) {
+Wavefront run_wavefront(Simulator const& simulator, ConstLanes parameters, double bound, ThreadPool* pool = nullptr) {
   auto const width = static_cast<std::size_t>(parameters.width());
-  Run result{LaneArray(1, parameters.width()), std::vector<Ending>(width), std::vector<int>(width)};
+  Wavefront result{LaneArray(1, parameters.width()), std::vector<Ending>(width), std::vector<int>(width)};
   Work const work = wavefront_work(
       simulator, parameters, [bound](ConstLanes sums, int column, int) { return sums(0, column) <= bound; }, result.sums,
       result.endings, result.failed_at);
@@ -80,7 +80,7 @@ TEST_CASE("lanes within the bound end with the bytes of an undisturbed run, all 
     REQUIRE(finite.size() > 100);
     REQUIRE(finite.size() < width);
     double const bound = finite[finite.size() / 3];
-    Run const bounded = run(simulator, theta, bound);
+    Wavefront const bounded = run_wavefront(simulator, theta, bound);
     int finished = 0;
     for (int w = 0; w < width; ++w) {
       auto const i = static_cast<std::size_t>(w);
@@ -101,7 +101,7 @@ TEST_CASE("without a bound every lane that stays finite finishes, and those that
   LaneArray whole(1, width);
   std::vector<Outcome> outcome(width);
   simulator.sums(theta, whole, outcome);
-  Run const all = run(simulator, theta, std::numeric_limits<double>::infinity());
+  Wavefront const all = run_wavefront(simulator, theta, std::numeric_limits<double>::infinity());
   for (int w = 0; w < width; ++w) {
     auto const i = static_cast<std::size_t>(w);
     CHECK(all.endings[i] == (outcome[i].ok ? Ending::finished : Ending::failed));
@@ -123,7 +123,7 @@ TEST_CASE("a state that overflows within the last samples fails its lane, though
   std::vector<Outcome> outcome(1);
   simulator.sums(theta, whole, outcome);
   CHECK_FALSE(outcome[0].ok);
-  CHECK(run(simulator, theta, std::numeric_limits<double>::infinity()).endings[0] == Ending::failed);
+  CHECK(run_wavefront(simulator, theta, std::numeric_limits<double>::infinity()).endings[0] == Ending::failed);
 }
 
 TEST_CASE("the ending of a lane depends on that lane alone: widths of blocks, threads and neighbours change nothing") {
@@ -132,8 +132,8 @@ TEST_CASE("the ending of a lane depends on that lane alone: widths of blocks, th
   auto const program = std::make_shared<SimulationProgram const>(compile(squared_residuals("rk4")));
   Simulator const reference(program, Schedule(*program, record(), {.substeps = 1}), {.lanes = 4, .threads = 1});
   double const bound = 2e-7;
-  Run const expected = run(reference, theta, bound);
-  auto const equal = [&](Run const& other, int first) {
+  Wavefront const expected = run_wavefront(reference, theta, bound);
+  auto const equal = [&](Wavefront const& other, int first) {
     bool same = true;
     for (int w = 0; w < other.sums.width(); ++w) {
       auto const i = static_cast<std::size_t>(w), j = static_cast<std::size_t>(first + w);
@@ -147,7 +147,7 @@ TEST_CASE("the ending of a lane depends on that lane alone: widths of blocks, th
       ExecutionOptions const options{lanes, threads};
       auto const pool = make_pool(options);
       Simulator const simulator(program, Schedule(*program, record(), {.substeps = 1}), options, pool);
-      CHECK(equal(run(simulator, theta, bound, pool.get()), 0));
+      CHECK(equal(run_wavefront(simulator, theta, bound, pool.get()), 0));
     }
-  CHECK(equal(run(reference, theta.view().columns(123, 45), bound), 123));
+  CHECK(equal(run_wavefront(reference, theta.view().columns(123, 45), bound), 123));
 }

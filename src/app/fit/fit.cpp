@@ -90,17 +90,18 @@ class Fit {
     print_data_findings(session_, task_, data_, model_);
     print_findings(session_, task_, size);
     preparation_.solver = what_.solver;
-    if (what_.settle && model_.integrated() && !choose_search_solver(make, context)) return false;
+    if (what_.refine_solver && model_.integrated() && !choose_search_solver(make, context)) return false;
     auto const target = make(preparation_.solver);
-    SearchResult found =
-        what_.near ? search_near(session_, *what_.near, *target, backend_.aim, context) : search(*target, backend_.aim, context);
+    SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.objective_kind, context)
+                                    : search(*target, backend_.objective_kind, context);
     if (found.interrupted) return false;
     if (found.failure) throw UserError(no_result(task_, *found.failure));
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     preparation_.findings.insert(preparation_.findings.end(), size.begin(), size.end());
     print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
-    return !what_.settle || refine_solver(session_, task_, make, backend_.aim, what_.solver, preparation_, context);
+    return !what_.refine_solver ||
+           refine_solver(session_, task_, make, backend_.objective_kind, what_.solver, preparation_, context);
   }
 
   // False: interrupted.
@@ -120,8 +121,8 @@ class Fit {
     // Sampling must not be given up on the way, the checks may.
     Target const& target =
         likelihood_->set_target(preparation_.solver, interrupted ? session_.options.execution : session_.interruptible());
-    FinishedFit finished{session_, what_,        *likelihood_, target, data_,  preparation_,
-                         result,   backend_.aim, ledger_,      seed_,  report, {}};
+    FinishedFit finished{session_, what_, *likelihood_, target, data_, preparation_, result, backend_.objective_kind,
+                         ledger_,  seed_, report,       {}};
     if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
     for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
       finished.rows.push_back(likelihood_->fitted_rows(report.draws, e, report.forces));
@@ -129,7 +130,7 @@ class Fit {
     name_held(report, report.findings);
     if (!interrupted) {
       report.functions = likelihood_->functions(result, report.draws);
-      report.evidence = laplace_evidence(target, backend_.aim, preparation_.modes, seed_, finished.extra);
+      report.evidence = laplace_evidence(target, backend_.objective_kind, preparation_.modes, seed_, finished.extra);
       report.noise = noise_parameters(likelihood_->space());
     }
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);

@@ -46,8 +46,8 @@ Findings input_timing(FinishedFit& fit) {
   TargetOf const target_of = [&](std::vector<Experiment> experiments) {
     return fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
   };
-  return check_input_timing(target_of, fit.likelihood.model(), experiments_of(fit.data), fit.aim, fit.preparation.modes.front(),
-                            fit.seed, fit.extra);
+  return check_input_timing(target_of, fit.likelihood.model(), experiments_of(fit.data), fit.objective_kind,
+                            fit.preparation.modes.front(), fit.seed, fit.extra);
 }
 
 // --- the solver and unknown functions
@@ -62,11 +62,11 @@ Findings solver_accuracy(FinishedFit& fit) {
   auto const fine = fit.likelihood.make_target(experiments_of(fit.data), preparation.solver.finer(), fit.session.interruptible());
   Findings findings;
   if (draws.total() > 1)
-    findings = tolerance_findings(check_tolerance(fit.target, *fine, draws, fit.extra), preparation.solver, fit.what.settle);
+    findings = tolerance_findings(check_tolerance(fit.target, *fine, draws, fit.extra), preparation.solver, fit.what.refine_solver);
   auto const weighty =
       std::count_if(preparation.modes.begin(), preparation.modes.end(), [](Mode const& each) { return each.share > 0.01; });
-  if (findings.empty() && !fit.what.settle && (draws.total() == 1 || weighty > 1) && !preparation.modes.empty())
-    findings = check_modes(*fine, fit.aim, preparation.modes, preparation.solver, fit.seed, fit.extra);
+  if (findings.empty() && !fit.what.refine_solver && (draws.total() == 1 || weighty > 1) && !preparation.modes.empty())
+    findings = check_modes(*fine, fit.objective_kind, preparation.modes, preparation.solver, fit.seed, fit.extra);
   return findings;
 }
 

@@ -7,7 +7,7 @@
 
 #include "app/fit/fit_likelihood.hpp"
 #include "app/session/preparation.hpp"
-#include "search/aim.hpp"
+#include "search/objective_kind.hpp"
 
 namespace sysid {
 
@@ -20,7 +20,7 @@ struct FinishedFit {
   std::vector<ExperimentData> const& data;
   Preparation const& preparation;
   FitResult const& result;
-  Aim aim;
+  ObjectiveKind objective_kind;
   Ledger const& sampling;  // its failures
   std::uint64_t seed;
   Report& report;                // holds priors, draws, summary and the findings so far; scores are added

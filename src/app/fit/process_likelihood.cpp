@@ -51,7 +51,7 @@ class ProcessLikelihood : public FitLikelihood {
 
   Draws draws(FitResult const& result) const override {
     Draws draws = with_coefficients(*target_, *space_, result.draws, seed_);
-    add_derived(*compile_white(*model_, start_rows(what_.start) > 0, what_.solver.method), *space_, draws);
+    add_derived(*compile_parametric(*model_, start_rows(what_.start) > 0, what_.solver.method), *space_, draws);
     return draws;
   }
 
@@ -72,7 +72,7 @@ class ProcessLikelihood : public FitLikelihood {
   }
 
   FitCheck check_residuals(FitResult const&, Draws const& draws) const override {
-    ProcessScores scores = score_left_out(*target_, *space_, parameters_of_best(draws), data_);
+    ProcessScores scores = score_leave_one_out(*target_, *space_, parameters_of_best(draws), data_);
     return {std::move(scores.lines), std::move(scores.findings)};
   }
 
@@ -93,7 +93,7 @@ class ProcessLikelihood : public FitLikelihood {
     Trajectory::Result const result = forecast_draws(forecast, *space_, columns, own, 100, prediction_noise(seed_, e));
     // Constraints beside processes are refused by the checker (E3217), so that nothing can drift.
     FittedRows rows{bands_along(forecast.quantities(), result, experiment, model()), {}, {}};
-    // No other finding reports a trajectory that failed. It is reported once, with the channel, not again with its white part.
+    // No other finding reports a trajectory that failed. It is reported once, with the channel, not again with its parametric part.
     rows.bands = band_findings(rows.prediction, 0, result.failed(), data_.size() > 1);
     return rows;
   }

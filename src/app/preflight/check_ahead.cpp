@@ -12,21 +12,21 @@
 namespace sysid {
 namespace {
 
-std::string measured_channels(LookedAt const& look) {
+std::string measured_channels(Preflight const& preflight) {
   std::vector<std::string> names;
-  for (std::size_t c = 0; c < look.model().channels.size(); ++c)
-    if (std::any_of(look.experiments.begin(), look.experiments.end(),
+  for (std::size_t c = 0; c < preflight.model().channels.size(); ++c)
+    if (std::any_of(preflight.experiments.begin(), preflight.experiments.end(),
                     [&](Experiment const& each) { return !each.measured[c].empty(); }))
-      names.push_back(look.model().channels[c].name);
+      names.push_back(preflight.model().channels[c].name);
   return listed(names);
 }
 
 // Why slopes cannot be taken; empty when they can.
-std::string obstacle(LookedAt const& look, PriorDraws const& prior, std::vector<int> const& sized) {
-  auto const responds = [](JudgedParameter const& each) { return each.role == ParameterRole::response; };
+std::string obstacle(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& sized) {
+  auto const responds = [](AssessedParameter const& each) { return each.role == ParameterRole::response; };
   if (std::none_of(prior.coordinates.begin(), prior.coordinates.end(), responds)) return "no sampled parameter enters the response";
   if (sized.size() < 2) return "fewer than two prior draws predict a response of the measured size";
-  if (look.effort.looked_at == 0)
+  if (preflight.effort.examined == 0)
     return fmt::format("derivatives with respect to {} parameters would take too long for a model of this size",
                        prior.coordinates.size());
   return {};
@@ -43,50 +43,50 @@ Parameter const* improper(Model const& model) {
 Findings check_prior_size(Session& session, FitTask const& what, std::vector<ExperimentData> const& data) {
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
   if (improper(written) != nullptr) return {};
-  Outlook page;
+  PreflightPage page;
   if (!written.processes.empty()) {
-    look_at_processes(session, what, data, page);
+    preflight_processes(session, what, data, page);
   } else {
-    LookedAt const look(session, what, data, page);
-    describe_prior(look, draw_prior(look));
+    Preflight const preflight(session, what, data, page);
+    describe_prior(preflight, draw_prior(preflight));
   }
   std::erase_if(page.findings, [](Finding const& each) { return each.code != FindingCode::prior_far_from_data; });
   return page.findings;
 }
 
-void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
+void run_preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page) {
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
   if (Parameter const* parameter = improper(written)) {
-    page.left_out =
+    page.not_examined =
         fmt::format("the prior-based checks: the prior of `{}` is improper ({})", parameter->name, parameter->prior->row->name);
     return;
   }
   if (!written.processes.empty()) {
-    look_at_processes(session, what, data, page);
-    page.left_out = "identifiability: the model has a Gaussian process";
+    preflight_processes(session, what, data, page);
+    page.not_examined = "identifiability: the model has a Gaussian process";
     return;
   }
-  LookedAt const look(session, what, data, page);
-  std::string const unlooked = look.model().integrated() ? "identifiability and the solver: " : "identifiability: ";
-  PriorDraws const prior = draw_prior(look);
-  std::vector<int> const sized = describe_prior(look, prior);
-  if (std::string const why = obstacle(look, prior, sized); !why.empty()) {
-    page.left_out = unlooked + why;
+  Preflight const preflight(session, what, data, page);
+  std::string const unlooked = preflight.model().integrated() ? "identifiability and the solver: " : "identifiability: ";
+  PriorDraws const prior = draw_prior(preflight);
+  std::vector<int> const sized = describe_prior(preflight, prior);
+  if (std::string const why = obstacle(preflight, prior, sized); !why.empty()) {
+    page.not_examined = unlooked + why;
     return;
   }
-  std::vector<LocalResponse> const responses = local_responses(look, prior, sized);
+  std::vector<LocalResponse> const responses = local_responses(preflight, prior, sized);
   if (responses.size() < 2) {
-    page.left_out = unlooked + "the response is not smooth in the parameters at the prior draws that were examined";
+    page.not_examined = unlooked + "the response is not smooth in the parameters at the prior draws that were examined";
     return;
   }
   page.information.emplace();
   page.information->draws = static_cast<int>(responses.size());
   page.information->noise = prior.noise;
-  if (look.shortened) page.information->rows = static_cast<int>(LookedAt::most_scored);
+  if (preflight.shortened) page.information->rows = static_cast<int>(Preflight::most_scored);
   std::vector<LocalSlopes> locals;
   for (LocalResponse const& each : responses) locals.push_back(each.slopes);
-  describe_information(prior.coordinates, locals, measured_channels(look), page);
-  describe_solvers(look, prior, responses);
+  describe_information(prior.coordinates, locals, measured_channels(preflight), page);
+  describe_solvers(preflight, prior, responses);
 }
 
 }  // namespace sysid

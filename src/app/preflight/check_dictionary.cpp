@@ -28,7 +28,7 @@ DictionaryPage describe_dictionary(CheckedDictionary const& dictionary) {
                                                         : "coefficient " + term.coefficient});
     page.equations.push_back(std::move(entry));
   }
-  for (LeftOutText const& each : left_out_texts(dictionary)) page.left_out.push_back(each.term + ": " + each.reason);
+  for (ExcludedText const& each : excluded_texts(dictionary)) page.excluded.push_back(each.term + ": " + each.reason);
   return page;
 }
 

@@ -66,8 +66,8 @@ void look_ahead_at_candidates(Session& session, Task const& task, SelectTask con
   if (refusal(task, selection, session.file.models, data)) return;
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
   for (std::size_t k = 0; k < selection.fits.size(); ++k) {
-    page.outlooks.emplace_back().candidate = set.models[k].name;
-    look_ahead(session, selection.fits[k], data[k], page.outlooks.back());
+    page.preflights.emplace_back().candidate = set.models[k].name;
+    run_preflight(session, selection.fits[k], data[k], page.preflights.back());
   }
 }
 
@@ -88,7 +88,7 @@ void look_at_fit(Session& session, Task const& task, Looked data, TaskPage& page
   auto const experiments = cover(session, data.front(), page);
   check_bands(page);
   if (experiments && !refusal(task, what, model, *experiments))
-    look_ahead(session, what, *experiments, page.outlooks.emplace_back());
+    run_preflight(session, what, *experiments, page.preflights.emplace_back());
 }
 
 void look_at_select(Session& session, Task const& task, Looked data, TaskPage& page) {
@@ -119,7 +119,7 @@ void look_at_predict(Session& session, Task const& task, Looked data, TaskPage& 
 
 struct LookRow {
   TaskKind kind;
-  void (*look)(Session&, Task const&, Looked, TaskPage&);
+  void (*preflight)(Session&, Task const&, Looked, TaskPage&);
 };
 constexpr LookRow look_rows[] = {
     {TaskKind::simulate, &look_at_simulate}, {TaskKind::fit, &look_at_fit},         {TaskKind::select, &look_at_select},
@@ -131,7 +131,7 @@ static_assert(std::size(look_rows) == task_kind_count);
 TaskPage check_task(Session& session, Task const& task) {
   TaskPage page;
   page.name = task.name;
-  row_for(look_rows, kind_of(task)).look(session, task, task_row(task).data(session.file, task), page);
+  row_for(look_rows, kind_of(task)).preflight(session, task, task_row(task).data(session.file, task), page);
   return page;
 }
 
@@ -159,9 +159,9 @@ CheckResult check_file(Session& session) {
       result.page.models.push_back(describe_structure(*written, session.file.tree, model));
   for (CheckedDictionary const& dictionary : session.file.dictionaries)
     result.page.dictionaries.push_back(describe_dictionary(dictionary));
-  Readiness const readiness = check_readiness(session);
-  result.diagnostics = readiness.diagnostics;
-  result.unreadable = readiness.unreadable;
+  Preconditions const preconditions = check_preconditions(session);
+  result.diagnostics = preconditions.diagnostics;
+  result.unreadable = preconditions.unreadable;
   for (Task const& task : session.file.tasks) {
     try {
       result.page.tasks.push_back(check_task(session, task));

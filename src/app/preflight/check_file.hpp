@@ -32,6 +32,6 @@ DictionaryPage describe_dictionary(CheckedDictionary const& dictionary);
 CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model);
 
 /// Simulates prior draws of a fit with its input and fills the page's prior, information and findings.
-void look_ahead(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page);
+void run_preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page);
 
 }  // namespace sysid

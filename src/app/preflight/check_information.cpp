@@ -16,10 +16,10 @@ constexpr double still_unknown = 0.25;  // of the prior's sd: what a confounded 
 
 class Description {
  public:
-  Description(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals, std::string const& channels,
-              Outlook& page)
+  Description(std::vector<AssessedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
+              std::string const& channels, PreflightPage& page)
       : coordinates_(coordinates), locals_(locals), channels_(channels), page_(page) {
-    for (JudgedParameter const& each : coordinates)
+    for (AssessedParameter const& each : coordinates)
       if (each.role == ParameterRole::response) {
         asked_.push_back(each.words);
         if (!each.coefficient) named_ = asked_.size();
@@ -31,7 +31,7 @@ class Description {
   void fill() {
     name_null_directions();
     std::size_t i = 0;
-    for (JudgedParameter const& coordinate : coordinates_) {
+    for (AssessedParameter const& coordinate : coordinates_) {
       if (coordinate.coefficient) {
         count_coefficient(coordinate.words.name);
         continue;
@@ -123,7 +123,7 @@ class Description {
           "its posterior will be close to its prior: use an informative prior, or fix it to a value");
   }
 
-  std::string unasked(JudgedParameter const& coordinate) {
+  std::string unasked(AssessedParameter const& coordinate) {
     if (coordinate.role == ParameterRole::noise) return "from the residuals";
     if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
     if (coordinate.role == ParameterRole::none) return "not used";  // the checker has warned of it
@@ -175,10 +175,10 @@ class Description {
         "determined");
   }
 
-  std::vector<JudgedParameter> const& coordinates_;
+  std::vector<AssessedParameter> const& coordinates_;
   std::vector<LocalSlopes> const& locals_;
   std::string const& channels_;
-  Outlook& page_;
+  PreflightPage& page_;
   std::vector<ParameterWords> asked_;  // those that may show in the response
   std::size_t named_ = 0;              // of them, that are no coefficients
   int coefficients_ = 0;               // of the function whose line is the last
@@ -188,8 +188,8 @@ class Description {
 
 }  // namespace
 
-void describe_information(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
-                          std::string const& channels, Outlook& page) {
+void describe_information(std::vector<AssessedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
+                          std::string const& channels, PreflightPage& page) {
   Description(coordinates, locals, channels, page).fill();
 }
 

@@ -9,7 +9,7 @@
 namespace sysid {
 
 /// A sampled parameter of a fit, as it is judged here.
-struct JudgedParameter {
+struct AssessedParameter {
   ParameterWords words;
   ParameterRole role = ParameterRole::response;
   bool relative = false;     // by its logarithm
@@ -19,7 +19,7 @@ struct JudgedParameter {
 
 /// Fills lines, rank and null directions of `page.information` and adds findings. locals: at two draws or more, with respect to the
 /// coordinates whose role is `response`, in their order. channels: "displacement", for sentences.
-void describe_information(std::vector<JudgedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
-                          std::string const& channels, Outlook& page);
+void describe_information(std::vector<AssessedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
+                          std::string const& channels, PreflightPage& page);
 
 }  // namespace sysid

@@ -23,40 +23,43 @@ struct Draw {
   double mismatch;  // sum over channels of |log(predicted range / measured range)|
 };
 
-PriorPage counts(LookedAt const& look, SettledDraws const& settled) {
+PriorPage counts(Preflight const& preflight, PriorSimulations const& simulations) {
   PriorPage page;
-  page.draws = look.effort.prior_draws;
-  page.stated = look.what.solver.text();
-  page.failed_as_stated = settled.failed_as_stated;
-  page.failed = static_cast<int>(std::count(settled.followed.begin(), settled.followed.end(), false));
-  page.failures = settled.ledger.failures();
-  page.untraced = settled.untraced;
+  page.draws = preflight.effort.prior_draws;
+  page.stated = preflight.what.solver.text();
+  page.failed_as_stated = simulations.failed_as_stated;
+  page.failed = static_cast<int>(std::count(simulations.followed.begin(), simulations.followed.end(), false));
+  page.failures = simulations.ledger.failures();
+  page.untraced = simulations.untraced;
   return page;
 }
 
-void judge_failures(LookedAt const& look) {
-  PriorPage const& page = *look.page.prior;
+void check_failures(Preflight const& preflight) {
+  PriorPage const& page = *preflight.page.prior;
   double const share = static_cast<double>(page.failed) / page.draws;
   double const lost = static_cast<double>(page.failed_as_stated - page.failed) / page.draws;
   if (page.failed == page.draws)
-    look.add(FindingCode::prior_fails, Severity::error, {}, fmt::format("the simulation fails at all {} prior draws", page.draws),
-             "check the priors, the units of the input and the named part of the equation");
+    preflight.add(FindingCode::prior_fails, Severity::error, {},
+                  fmt::format("the simulation fails at all {} prior draws", page.draws),
+                  "check the priors, the units of the input and the named part of the equation");
   else if (share > many_failures)
-    look.add(FindingCode::prior_fails, !look.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
-             fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
-                         look.candidate()
-                             ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}", 1 / (1 - share))
-                             : ""),
-             "narrow the priors, or check the named part of the equation");
-  if (!look.settles() && lost > many_failures)
-    look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} {:.0f} % of the prior draws overflow, which adaptive steps do not", look.what.solver.text(),
-                         100 * lost),
-             fmt::format("{}: use shorter steps, or `solver = dopri5` or `cvode`",
-                         look.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations"));
+    preflight.add(
+        FindingCode::prior_fails, !preflight.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
+        fmt::format("the simulations of {:.0f} % of the prior draws fail{}", 100 * share,
+                    preflight.candidate()
+                        ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}", 1 / (1 - share))
+                        : ""),
+        "narrow the priors, or check the named part of the equation");
+  if (!preflight.refines_solver() && lost > many_failures)
+    preflight.add(
+        FindingCode::integration_step, Severity::warning, {},
+        fmt::format("with {} {:.0f} % of the prior draws overflow, which adaptive steps do not", preflight.what.solver.text(),
+                    100 * lost),
+        fmt::format("{}: use shorter steps, or `solver = dopri5` or `cvode`",
+                    preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations"));
 }
 
-void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double apart) {
+void check_ranges(Preflight const& preflight, PriorPage::Channel const& line, double apart) {
   if (line.middle == 0) return;  // held constant by the model, in whatever unit
   double const ratio = line.middle / line.measured;
   std::string size;
@@ -68,7 +71,7 @@ void judge_ranges(LookedAt const& look, PriorPage::Channel const& line, double a
         fmt::format("{:.0f} % of the prior draws predict a range of {} more than {} times larger or smaller than the one measured",
                     100 * apart, line.name, wild);
   if (size.empty()) return;
-  look.page.findings.push_back(prior_far_from_data({line.name}, size));
+  preflight.page.findings.push_back(prior_far_from_data({line.name}, size));
 }
 
 double range(auto const& value, int first, int end) {
@@ -81,8 +84,8 @@ double range(auto const& value, int first, int end) {
 }
 
 // One channel of one experiment: rows [first, end) of the predictions.
-void compare(LookedAt const& look, int first, int end, LaneArray const& centres, std::vector<Draw>& draws) {
-  std::vector<Output::Place> const& places = look.outputs.front().places();
+void compare(Preflight const& preflight, int first, int end, LaneArray const& centres, std::vector<Draw>& draws) {
+  std::vector<Output::Place> const& places = preflight.outputs.front().places();
   double const measured = range([&](int r) { return places[static_cast<std::size_t>(r)].measured; }, first, end);
   std::vector<double> finite;
   double apart = 0;  // draws
@@ -98,35 +101,35 @@ void compare(LookedAt const& look, int first, int end, LaneArray const& centres,
   }
   if (finite.empty()) return;
   Output::Place const& place = places[static_cast<std::size_t>(first)];
-  Channel const& channel = look.model().channels[static_cast<std::size_t>(place.channel)];
+  Channel const& channel = preflight.model().channels[static_cast<std::size_t>(place.channel)];
   std::string name = channel.name;
-  if (look.experiments.size() > 1) name += " on " + look.experiments[static_cast<std::size_t>(place.experiment)].name;
+  if (preflight.experiments.size() > 1) name += " on " + preflight.experiments[static_cast<std::size_t>(place.experiment)].name;
   PriorPage::Channel line{name,
                           channel.unit_text(),
                           channel.from_si(quantile(finite, 0.05)),
                           channel.from_si(quantile(finite, 0.5)),
                           channel.from_si(quantile(finite, 0.95)),
                           channel.from_si(measured)};
-  if (measured > 0) judge_ranges(look, line, apart / static_cast<double>(finite.size()));
-  look.page.prior->channels.push_back(std::move(line));
+  if (measured > 0) check_ranges(preflight, line, apart / static_cast<double>(finite.size()));
+  preflight.page.prior->channels.push_back(std::move(line));
 }
 
 }  // namespace
 
-PriorDraws draw_prior(LookedAt const& look) {
-  int const count = look.effort.prior_draws;
-  ParameterSpace const& space = *look.space;
+PriorDraws draw_prior(Preflight const& preflight) {
+  int const count = preflight.effort.prior_draws;
+  ParameterSpace const& space = *preflight.space;
   PriorDraws prior;
   LaneArray theta(space.dimension(), count), declared(space.dimension(), count);
-  space.sample_prior({look.session.options.seed.value_or(look.what.seed.value_or(1)), Purpose::prior, 0, 0}, theta);
+  space.sample_prior({preflight.session.options.seed.value_or(preflight.what.seed.value_or(1)), Purpose::prior, 0, 0}, theta);
   space.constrain(theta, declared);
-  std::vector<ParameterRole> const roles = parameter_roles(look.model());
+  std::vector<ParameterRole> const roles = parameter_roles(preflight.model());
   std::vector<std::string> noise;
   for (int k = 0; k < space.dimension(); ++k) {
     FittedParameter const& row = space.rows()[static_cast<std::size_t>(space.sampled()[static_cast<std::size_t>(k)])];
     ParameterInfo const& info = space.infos()[static_cast<std::size_t>(k)];
     auto const values = declared.row(k);
-    JudgedParameter coordinate{
+    AssessedParameter coordinate{
         {row.name, info.unit, row.to_si(1)}, roles[static_cast<std::size_t>(row.parameter)], info.lower >= 0, 0, info.coefficient};
     std::vector<double> scaled;
     for (double const value : values) scaled.push_back(coordinate.relative ? elementary::log(value) : row.to_si(value));
@@ -139,23 +142,24 @@ PriorDraws draw_prior(LookedAt const& look) {
     prior.coordinates.push_back(std::move(coordinate));
   }
   prior.noise = listed(noise);
-  Output const& stated = look.outputs.front();
+  Output const& stated = preflight.outputs.front();
   LaneArray const values = space.values_of_declared(declared);
   prior.points = LaneArray(stated.point_rows(), count);
   for (int r = 0; r < values.rows(); ++r)
     for (int w = 0; w < count; ++w) prior.points(r, w) = values(r, w);
   stated.start(prior.points);
-  prior.settled = settle_draws(look.session, look.what, look.compiled, look.space, look.experiments, stated, theta, prior.points);
+  prior.simulations = simulate_prior(preflight.session, preflight.what, preflight.compiled, preflight.space, preflight.experiments,
+                                     stated, theta, prior.points);
   return prior;
 }
 
-std::vector<int> describe_prior(LookedAt const& look, PriorDraws const& prior) {
-  look.page.prior = counts(look, prior.settled);
-  judge_failures(look);
+std::vector<int> describe_prior(Preflight const& preflight, PriorDraws const& prior) {
+  preflight.page.prior = counts(preflight, prior.simulations);
+  check_failures(preflight);
   std::vector<Draw> draws;
-  for (int w = 0; w < look.effort.prior_draws; ++w)
-    if (prior.settled.followed[static_cast<std::size_t>(w)]) draws.push_back({w, 0});
-  for (auto const& [first, end] : look.responses()) compare(look, first, end, prior.settled.centres, draws);
+  for (int w = 0; w < preflight.effort.prior_draws; ++w)
+    if (prior.simulations.followed[static_cast<std::size_t>(w)]) draws.push_back({w, 0});
+  for (auto const& [first, end] : preflight.responses()) compare(preflight, first, end, prior.simulations.centres, draws);
   std::erase_if(draws, [](Draw const& draw) { return !std::isfinite(draw.mismatch); });
   std::stable_sort(draws.begin(), draws.end(), [](Draw const& a, Draw const& b) { return a.mismatch < b.mismatch; });
   std::vector<int> lanes;

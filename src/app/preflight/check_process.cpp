@@ -54,9 +54,9 @@ int repeated_rows(Eigen::MatrixXd const& inputs) {
   return static_cast<int>(rows.end() - std::unique(rows.begin(), rows.end()));
 }
 
-class Look {
+class ProcessPreflight {
  public:
-  Look(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page)
+  ProcessPreflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page)
       : page_(page),
         model_(process_model(session, what, what.prediction)),
         target_(process_target(what, model_, experiments_of(data), what.solver, session.options.execution)),
@@ -205,7 +205,7 @@ class Look {
     page_.findings.push_back({code, severity, std::move(names), std::move(message), std::move(help)});
   }
 
-  Outlook& page_;
+  PreflightPage& page_;
   std::shared_ptr<ProcessModel const> model_;
   std::unique_ptr<ProcessTarget> target_;
   int experiments_;
@@ -214,8 +214,8 @@ class Look {
 
 }  // namespace
 
-void look_at_processes(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page) {
-  Look(session, what, data, page).run();
+void preflight_processes(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page) {
+  ProcessPreflight(session, what, data, page).run();
 }
 
 }  // namespace sysid

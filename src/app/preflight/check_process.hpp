@@ -8,6 +8,6 @@ namespace sysid {
 
 /// Draws of the prior against the sd of what is measured and against range and spacing of the processes' inputs, and what one
 /// likelihood takes, onto the page. Every prior can be drawn from.
-void look_at_processes(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page);
+void preflight_processes(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page);
 
 }  // namespace sysid

@@ -28,32 +28,32 @@ double roughness(Sensitivity const& s) {
   return worst;
 }
 
-std::vector<Converged> converge(LookedAt const& look, PriorDraws const& prior, std::vector<int> const& draws) {
-  int const rows = static_cast<int>(look.outputs.front().places().size());
-  auto const refinements = static_cast<Eigen::Index>(look.solvers.size()) - 1;
+std::vector<Converged> converge(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& draws) {
+  int const rows = static_cast<int>(preflight.outputs.front().places().size());
+  auto const refinements = static_cast<Eigen::Index>(preflight.solvers.size()) - 1;
   // Many at once fill the lanes; long records leave room for fewer.
-  int const most = std::clamp(static_cast<int>(most_numbers / (static_cast<std::size_t>(rows) * look.solvers.size())), 1,
-                              look.effort.candidates);
+  int const most = std::clamp(static_cast<int>(most_numbers / (static_cast<std::size_t>(rows) * preflight.solvers.size())), 1,
+                              preflight.effort.candidates);
   int const width = std::min(most, static_cast<int>(draws.size()));
   LaneArray points(prior.points.rows(), width), before(rows, width), now(rows, width);
   std::vector<Converged> all;
   for (int w = 0; w < width; ++w) {
-    all.push_back({draws[static_cast<std::size_t>(w)], look.solvers.size(), Eigen::MatrixXd(rows, refinements), 0});
+    all.push_back({draws[static_cast<std::size_t>(w)], preflight.solvers.size(), Eigen::MatrixXd(rows, refinements), 0});
     for (int r = 0; r < points.rows(); ++r) points(r, w) = prior.points(r, all.back().lane);
   }
-  look.outputs.front().centres(points, before);
+  preflight.outputs.front().centres(points, before);
   std::vector<double> last(all.size());
   for (int w = 0; w < width && refinements == 0; ++w) {
     all[static_cast<std::size_t>(w)].level = 0;
     for (int r = 0; r < rows; ++r) last[static_cast<std::size_t>(w)] += 0 * before(r, w);  // NaN where a solve failed
   }
-  for (std::size_t level = 0; level + 1 < look.solvers.size(); ++level) {
-    look.outputs[level + 1].centres(points, now);
+  for (std::size_t level = 0; level + 1 < preflight.solvers.size(); ++level) {
+    preflight.outputs[level + 1].centres(points, now);
     for (int w = 0; w < width; ++w) {
       Converged& draw = all[static_cast<std::size_t>(w)];
       double& moved = last[static_cast<std::size_t>(w)];
       moved = 0;
-      for (auto const& [first, end] : look.responses()) {
+      for (auto const& [first, end] : preflight.responses()) {
         double size = 0, change = 0, mean = 0;
         for (int r = first; r < end; ++r) mean += now(r, w) / (end - first);
         for (int r = first; r < end; ++r) {
@@ -78,15 +78,15 @@ std::vector<Converged> converge(LookedAt const& look, PriorDraws const& prior, s
 
 // Slopes of the response in units of its noise; first states are nuisances. shift: mean square, in the same units, of what the
 // first refinement changes.
-LocalSlopes slopes_at(LookedAt const& look, PriorDraws const& prior, Converged const& draw, double& shift) {
+LocalSlopes slopes_at(Preflight const& preflight, PriorDraws const& prior, Converged const& draw, double& shift) {
   // Slopes of adaptive steps need a tolerance far below the steps of their differences.
   std::size_t level = draw.level;
-  while (!look.what.solver.fixed_step() && level + 1 < look.solvers.size() &&
-         look.solvers[level].relative > LookedAt::smooth_enough)
+  while (!preflight.what.solver.fixed_step() && level + 1 < preflight.solvers.size() &&
+         preflight.solvers[level].relative > Preflight::smooth_enough)
     ++level;
-  Output const& output = look.on_jumps ? *look.on_jumps : look.outputs[level];
+  Output const& output = preflight.on_jumps ? *preflight.on_jumps : preflight.outputs[level];
   int const rows = static_cast<int>(output.places().size()), all = prior.points.rows();
-  int const own = static_cast<int>(look.space->rows().size());
+  int const own = static_cast<int>(preflight.space->rows().size());
   LaneArray here(all, 1);
   for (int r = 0; r < all; ++r) here(r, 0) = prior.points(r, draw.lane);
   std::vector<double> const noise = output.noise(here), sizes = output.state_sizes(here);
@@ -94,9 +94,9 @@ LocalSlopes slopes_at(LookedAt const& look, PriorDraws const& prior, Converged c
   std::vector<int> moved;  // rows of the point
   std::vector<double> point, scale, spread;
   for (std::size_t k = 0; k < prior.coordinates.size(); ++k) {
-    JudgedParameter const& coordinate = prior.coordinates[k];
+    AssessedParameter const& coordinate = prior.coordinates[k];
     if (coordinate.role != ParameterRole::response) continue;
-    moved.push_back(look.space->sampled()[k]);
+    moved.push_back(preflight.space->sampled()[k]);
     point.push_back(here(moved.back(), 0));
     scale.push_back(coordinate.relative ? std::abs(point.back()) : coordinate.spread);
     spread.push_back(coordinate.relative ? coordinate.spread : 1);
@@ -135,12 +135,12 @@ LocalSlopes slopes_at(LookedAt const& look, PriorDraws const& prior, Converged c
 
 }  // namespace
 
-std::vector<LocalResponse> local_responses(LookedAt const& look, PriorDraws const& prior, std::vector<int> const& draws) {
+std::vector<LocalResponse> local_responses(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& draws) {
   std::vector<LocalResponse> all;
-  for (Converged const& draw : converge(look, prior, draws)) {
-    if (static_cast<int>(all.size()) == look.effort.looked_at) break;
+  for (Converged const& draw : converge(preflight, prior, draws)) {
+    if (static_cast<int>(all.size()) == preflight.effort.examined) break;
     LocalResponse here;
-    here.slopes = slopes_at(look, prior, draw, here.shift);
+    here.slopes = slopes_at(preflight, prior, draw, here.shift);
     here.moved = draw.moved;
     if (here.slopes.sensitivity.finite && roughness(here.slopes.sensitivity) <= tolerable_roughness) all.push_back(std::move(here));
   }

@@ -37,27 +37,27 @@ double middle(std::vector<double> values) {
 
 // What a selection compares are distances, and its thresholds end where noise or the best model leaves them: so the integrator is
 // judged by what it does to those.
-void describe_distances(LookedAt const& look, PriorDraws const& prior, double response_move, double shift) {
-  look.page.information->response_move = response_move;
-  std::string const help =
-      look.page.information->advised.empty() ? "use a finer solver" : fmt::format("use {}", look.page.information->advised);
+void describe_distances(Preflight const& preflight, PriorDraws const& prior, double response_move, double shift) {
+  preflight.page.information->response_move = response_move;
+  std::string const help = preflight.page.information->advised.empty() ? "use a finer solver"
+                                                                       : fmt::format("use {}", preflight.page.information->advised);
   if (!(response_move <= gross_move))
-    look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} the solver changes the distances: {} moves the median response by {} of its sd",
-                         look.what.solver.text(), look.what.solver.finer_words(),
-                         std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than 100 %"),
-             help);
+    preflight.add(FindingCode::integration_step, Severity::warning, {},
+                  fmt::format("with {} the solver changes the distances: {} moves the median response by {} of its sd",
+                              preflight.what.solver.text(), preflight.what.solver.finer_words(),
+                              std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than 100 %"),
+                  help);
   else if (prior.noise.empty() && shift > visible_shift)
-    look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} the solver changes the distances: {} moves them by {:.2g} of what the stated noise leaves",
-                         look.what.solver.text(), look.what.solver.finer_words(), shift),
-             help);
+    preflight.add(FindingCode::integration_step, Severity::warning, {},
+                  fmt::format("with {} the solver changes the distances: {} moves them by {:.2g} of what the stated noise leaves",
+                              preflight.what.solver.text(), preflight.what.solver.finer_words(), shift),
+                  help);
 }
 
 }  // namespace
 
-void describe_solvers(LookedAt const& look, PriorDraws const& prior, std::vector<LocalResponse> const& responses) {
-  std::vector<double> moves(look.solvers.size() - 1, 0.0), response_moves, shifts;
+void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::vector<LocalResponse> const& responses) {
+  std::vector<double> moves(preflight.solvers.size() - 1, 0.0), response_moves, shifts;
   if (moves.empty()) return;
   for (LocalResponse const& each : responses) {
     for (std::size_t level = 0; level < moves.size(); ++level)
@@ -65,23 +65,24 @@ void describe_solvers(LookedAt const& look, PriorDraws const& prior, std::vector
     response_moves.push_back(each.moved);
     shifts.push_back(each.shift);
   }
-  InformationPage& information = *look.page.information;
-  information.refinement = look.what.solver.finer_words();
-  if (!look.settles()) information.taken = look.what.solver.text();
+  InformationPage& information = *preflight.page.information;
+  information.refinement = preflight.what.solver.finer_words();
+  if (!preflight.refines_solver()) information.taken = preflight.what.solver.text();
   for (std::size_t level = 0; level < moves.size(); ++level) {
-    information.moves.emplace_back(look.solvers[level].text(), moves[level]);
+    information.moves.emplace_back(preflight.solvers[level].text(), moves[level]);
     if (moves[level] > tolerable_move) continue;
-    information.advised = look.solvers[level].text();
+    information.advised = preflight.solvers[level].text();
     break;
   }
-  if (!look.what.settle && !look.candidate() && moves.front() > tolerable_move)
-    look.add(FindingCode::integration_step, Severity::warning, {},
-             fmt::format("with {} the solver changes the result: with {} parameters move by up to {}", look.what.solver.text(),
-                         look.what.solver.finer_words(), moves.front() > 5 ? "many sds" : fmt::format("{:.2g} sd", moves.front())),
-             information.advised.empty()
-                 ? "remove its settings, which are then chosen automatically"
-                 : fmt::format("use {}, or remove its settings, which are then chosen automatically", information.advised));
-  if (look.candidate()) describe_distances(look, prior, middle(std::move(response_moves)), middle(std::move(shifts)));
+  if (!preflight.what.refine_solver && !preflight.candidate() && moves.front() > tolerable_move)
+    preflight.add(
+        FindingCode::integration_step, Severity::warning, {},
+        fmt::format("with {} the solver changes the result: with {} parameters move by up to {}", preflight.what.solver.text(),
+                    preflight.what.solver.finer_words(), moves.front() > 5 ? "many sds" : fmt::format("{:.2g} sd", moves.front())),
+        information.advised.empty()
+            ? "remove its settings, which are then chosen automatically"
+            : fmt::format("use {}, or remove its settings, which are then chosen automatically", information.advised));
+  if (preflight.candidate()) describe_distances(preflight, prior, middle(std::move(response_moves)), middle(std::move(shifts)));
 }
 
 }  // namespace sysid

@@ -64,11 +64,11 @@ void add_orders(Model const& model, ModelPage& page) {
 
 // Each state has an equation for its present sample, however many past ones are remembered.
 void add_pasts(Model const& model, ModelPage& page) {
-  for (Past const& past : model.pasts) {
-    if (past.channel >= 0) continue;
-    std::size_t const lags = past.registers.size();
-    page.states.push_back({past.name, past.unit_text(), lags == 0 ? std::string() : counted(lags, "past sample")});
-    page.unknowns.push_back(past.name);
+  for (LaggedQuantity const& lagged : model.lagged_quantities) {
+    if (lagged.channel >= 0) continue;
+    std::size_t const lags = lagged.registers.size();
+    page.states.push_back({lagged.name, lagged.unit_text(), lags == 0 ? std::string() : counted(lags, "past sample")});
+    page.unknowns.push_back(lagged.name);
   }
 }
 
@@ -106,7 +106,8 @@ ModelPage describe_structure(ast::File const& written, ast::File const& flat, Mo
          fmt::format("an unknown function of {}: {} coefficients", fmt::join(inputs, ", "), expansion.coefficients.size())});
   }
   auto const is_state = [&](Derived const& derived) {  // its present sample, in discrete time
-    return std::any_of(model.pasts.begin(), model.pasts.end(), [&](Past const& past) { return past.name == derived.name; });
+    return std::any_of(model.lagged_quantities.begin(), model.lagged_quantities.end(),
+                       [&](LaggedQuantity const& lagged) { return lagged.name == derived.name; });
   };
   for (Derived const& derived : model.derived)
     if (!is_state(derived)) page.derived.push_back({derived.name, derived.unit_text(), text_of(texts.derived, derived.name)});

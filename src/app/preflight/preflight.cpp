@@ -16,7 +16,7 @@ constexpr double most_work = 1.2e9;           // operations of the equations at 
 // The experiment up to its so many scored rows: enough to look ahead, and done in a second.
 Experiment shortened_to_scored(Experiment experiment) {
   std::size_t rows = 0, counted = 0;
-  while (rows < experiment.time.size() && counted < LookedAt::most_scored) counted += experiment.scored[rows++] != 0;
+  while (rows < experiment.time.size() && counted < Preflight::most_scored) counted += experiment.scored[rows++] != 0;
   if (rows == experiment.time.size()) return experiment;
   experiment.time.resize(rows);
   experiment.scored.resize(rows);
@@ -63,13 +63,13 @@ Effort effort_of(double work, int coordinates, Effort effort) {
   while (effort.refinements > 2 && refined() < enough_candidates) --effort.refinements;
   effort.candidates = within(refined(), std::min(4, effort.candidates), effort.candidates);
   double const slopes = trajectories / 2 / (1 + 16.0 * coordinates);
-  effort.looked_at = slopes < 1 ? 0 : within(slopes, 2, std::min(effort.looked_at, effort.candidates));
+  effort.examined = slopes < 1 ? 0 : within(slopes, 2, std::min(effort.examined, effort.candidates));
   return effort;
 }
 
 }  // namespace
 
-LookedAt::LookedAt(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page)
+Preflight::Preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page)
     : session(session),
       what(what),
       page(page),
@@ -99,12 +99,12 @@ LookedAt::LookedAt(Session& session, FitTask const& what, std::vector<Experiment
   }
 }
 
-void LookedAt::add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message,
-                   std::string help) const {
+void Preflight::add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message,
+                    std::string help) const {
   page.findings.push_back({code, severity, std::move(names), std::move(message), std::move(help)});
 }
 
-std::vector<std::pair<int, int>> LookedAt::responses() const {
+std::vector<std::pair<int, int>> Preflight::responses() const {
   std::vector<std::pair<int, int>> all;
   std::vector<Output::Place> const& places = outputs.front().places();
   for (int r = 0; r < static_cast<int>(places.size()); ++r) {

@@ -19,17 +19,17 @@ namespace sysid {
 struct Effort {
   int prior_draws = 128;
   int candidates = 24;  // draws among which those are sought whose slopes are taken,
-  int looked_at = 8;    // so many; 0: slopes would take too long
+  int examined = 8;     // so many; 0: slopes would take too long
   int refinements = 6;  // of the solver
 };
 
-class LookedAt {
+class Preflight {
  public:
-  LookedAt(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, Outlook& page);
+  Preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page);
 
   Session& session;
   FitTask const& what;
-  Outlook& page;
+  PreflightPage& page;
   std::shared_ptr<CompiledModel const> compiled;
   std::shared_ptr<ParameterSpace const> space;
   std::vector<Experiment> experiments;
@@ -45,7 +45,7 @@ class LookedAt {
   Model const& model() const { return compiled->model; }
   bool candidate() const { return !page.candidate.empty(); }
   /// Whether the task makes the solver finer until it settles the result: fits do, selections take theirs as it is.
-  bool settles() const { return what.settle && !candidate(); }
+  bool refines_solver() const { return what.refine_solver && !candidate(); }
   void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) const;
   /// Rows [first, end) of the predictions: one channel of one experiment each.
   std::vector<std::pair<int, int>> responses() const;
@@ -55,15 +55,15 @@ class LookedAt {
 /// all.
 struct PriorDraws {
   LaneArray points;  // [point rows x draws]
-  SettledDraws settled;
-  std::vector<JudgedParameter> coordinates;
+  PriorSimulations simulations;
+  std::vector<AssessedParameter> coordinates;
   std::string noise;  // the level of noise taken, in words; empty: stated
 };
-PriorDraws draw_prior(LookedAt const& look);
+PriorDraws draw_prior(Preflight const& preflight);
 
 /// Ranges and failures of the draws, with findings, onto the page; the draws that predict all channels of about the size measured,
 /// nearest first.
-std::vector<int> describe_prior(LookedAt const& look, PriorDraws const& prior);
+std::vector<int> describe_prior(Preflight const& preflight, PriorDraws const& prior);
 
 /// A draw whose response ever finer solvers leave where it is, with its slopes.
 struct LocalResponse {
@@ -71,10 +71,10 @@ struct LocalResponse {
   double moved = 0;  // by the first refinement: of a channel's response, the largest part of its sd
   double shift = 0;  // the same as a mean square in units of the noise
 };
-/// Up to Effort::looked_at of the draws given, in their order.
-std::vector<LocalResponse> local_responses(LookedAt const& look, PriorDraws const& prior, std::vector<int> const& draws);
+/// Up to Effort::examined of the draws given, in their order.
+std::vector<LocalResponse> local_responses(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& draws);
 
 /// Which solver the result needs, or the distances of a selection do; fills page.information, which is there.
-void describe_solvers(LookedAt const& look, PriorDraws const& prior, std::vector<LocalResponse> const& responses);
+void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::vector<LocalResponse> const& responses);
 
 }  // namespace sysid

@@ -22,11 +22,11 @@ LaneArray gathered(ConstLanes from, std::vector<int> const& lanes) {
   return to;
 }
 
-class Settling {
+class PriorSimulation {
  public:
-  Settling(Session& session, FitTask const& what, std::shared_ptr<ParameterSpace const> const& space,
-           std::vector<Experiment> const& experiments, std::shared_ptr<CompiledModel const> const& compiled, ConstLanes theta,
-           ConstLanes points, SettledDraws& result)
+  PriorSimulation(Session& session, FitTask const& what, std::shared_ptr<ParameterSpace const> const& space,
+                  std::vector<Experiment> const& experiments, std::shared_ptr<CompiledModel const> const& compiled,
+                  ConstLanes theta, ConstLanes points, PriorSimulations& result)
       : session_(session),
         what_(what),
         last_compiled_(compiled),
@@ -102,18 +102,18 @@ class Settling {
   std::shared_ptr<ParameterSpace const> space_;
   std::vector<Experiment> const& experiments_;
   ConstLanes theta_, points_;
-  SettledDraws& result_;
+  PriorSimulations& result_;
   std::shared_ptr<ThreadPool> pool_;
   std::size_t samples_ = 0;
 };
 
 }  // namespace
 
-SettledDraws settle_draws(Session& session, FitTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
-                          std::shared_ptr<ParameterSpace const> const& space, std::vector<Experiment> const& experiments,
-                          Output const& stated, ConstLanes theta, ConstLanes points) {
+PriorSimulations simulate_prior(Session& session, FitTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
+                                std::shared_ptr<ParameterSpace const> const& space, std::vector<Experiment> const& experiments,
+                                Output const& stated, ConstLanes theta, ConstLanes points) {
   auto const width = static_cast<std::size_t>(theta.width());
-  SettledDraws result{LaneArray(static_cast<int>(stated.places().size()), theta.width()), std::vector<bool>(width), 0, {}, 0};
+  PriorSimulations result{LaneArray(static_cast<int>(stated.places().size()), theta.width()), std::vector<bool>(width), 0, {}, 0};
   std::vector<double> density(width);
   Ledger untold;
   make_fit_target(session, what, compiled, space, experiments, what.solver, session.options.execution)
@@ -122,17 +122,17 @@ SettledDraws settle_draws(Session& session, FitTask const& what, std::shared_ptr
   for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(density[w]);
   result.failed_as_stated = static_cast<int>(std::count(result.followed.begin(), result.followed.end(), false));
   Model const& model = compiled->model;
-  Settling settling(session, what, space, experiments, compiled, theta, points, result);
+  PriorSimulation simulation(session, what, space, experiments, compiled, theta, points, result);
   if (model.integrated() && !model.implicit && what.solver.fixed_step()) {
     // Where adaptive steps begin they take a Jacobian, which many states make dear: there only what fixed steps lose is tried.
     std::vector<int> lanes(width);
     std::iota(lanes.begin(), lanes.end(), 0);
-    if (model.states.size() > many_states) lanes = settling.open();
-    settling.attempt(adaptive_solver(), explicit_steps, lanes);
-    std::vector<int> const left = settling.open();
-    if (!left.empty()) settling.attempt(stiff_solver(), implicit_steps / left.size(), left);
+    if (model.states.size() > many_states) lanes = simulation.open();
+    simulation.attempt(adaptive_solver(), explicit_steps, lanes);
+    std::vector<int> const left = simulation.open();
+    if (!left.empty()) simulation.attempt(stiff_solver(), implicit_steps / left.size(), left);
   }
-  settling.trace();
+  simulation.trace();
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace sysid {
 
-struct SettledDraws {
+struct PriorSimulations {
   LaneArray centres;           // [R x W] of Output, SI; NaN where nothing follows the draw
   std::vector<bool> followed;  // [W] by some method: response and density are finite
   int failed_as_stated = 0;    // with the task's own solver
@@ -20,8 +20,8 @@ struct SettledDraws {
 /// first. Where that has fixed steps, adaptive ones try after it, explicit and then implicit, to 1e-4 and within a budget of work
 /// that keeps `check` below a second; what they follow replaces what fixed steps made of it, in a model of more than 64 states only
 /// where those fail.
-SettledDraws settle_draws(Session& session, FitTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
-                          std::shared_ptr<ParameterSpace const> const& space, std::vector<Experiment> const& experiments,
-                          Output const& stated, ConstLanes theta, ConstLanes points);
+PriorSimulations simulate_prior(Session& session, FitTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
+                                std::shared_ptr<ParameterSpace const> const& space, std::vector<Experiment> const& experiments,
+                                Output const& stated, ConstLanes theta, ConstLanes points);
 
 }  // namespace sysid

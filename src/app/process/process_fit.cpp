@@ -23,10 +23,10 @@ std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_pt
   return std::make_unique<ProcessTarget>(std::move(model), space, std::move(experiments), std::move(options));
 }
 
-std::shared_ptr<CompiledModel const> compile_white(ProcessModel const& model, bool free_start, std::string const& method) {
-  Model white = model.model();
-  remove_processes(white);
-  return compile(std::move(white), free_start, method);
+std::shared_ptr<CompiledModel const> compile_parametric(ProcessModel const& model, bool free_start, std::string const& method) {
+  Model parametric = model.model();
+  remove_processes(parametric);
+  return compile(std::move(parametric), free_start, method);
 }
 
 }  // namespace sysid

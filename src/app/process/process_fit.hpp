@@ -18,7 +18,7 @@ std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_pt
                                               ExecutionOptions const& execution);
 
 /// The model with every process at zero, which derived quantities are computed with.
-std::shared_ptr<CompiledModel const> compile_white(ProcessModel const& model, bool free_start, std::string const& method);
+std::shared_ptr<CompiledModel const> compile_parametric(ProcessModel const& model, bool free_start, std::string const& method);
 
 ExitCode run_process_predict(Session& session, Task const& task, PredictTask const& what);
 

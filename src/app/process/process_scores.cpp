@@ -8,7 +8,7 @@
 #include "app/process/process_draws.hpp"
 #include "diagnostics/residual_tests.hpp"
 #include "gaussian_process/concern.hpp"
-#include "gaussian_process/left_out.hpp"
+#include "gaussian_process/leave_one_out.hpp"
 
 namespace sysid {
 namespace {
@@ -52,14 +52,14 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
                         fmt::format("the length-scale of `{}` of `{}` is {:.2g} times the range that was fitted: along this input "
                                     "the process is constant or linear, and its prior determines the length",
                                     name.second, name.first, regression.parameters[k] / range),
-                        "remove the input if the fit is as good without it; otherwise add a linear term to the white part"});
+                        "remove the input if the fit is as good without it; otherwise add a linear term to the parametric part"});
   }
 }
 
 }  // namespace
 
-ProcessScores score_left_out(ProcessTarget const& target, ParameterSpace const& all, std::vector<double> const& declared,
-                             std::vector<ExperimentData> const& data) {
+ProcessScores score_leave_one_out(ProcessTarget const& target, ParameterSpace const& all, std::vector<double> const& declared,
+                                  std::vector<ExperimentData> const& data) {
   ProcessScores result;
   LaneArray const parameters = fitted_parameters(all, declared);
   std::string names;
@@ -69,16 +69,16 @@ ProcessScores score_left_out(ProcessTarget const& target, ParameterSpace const& 
     auto const regression = target.regression(parameters, static_cast<int>(c), false);
     if (regression) look_at_inputs(target, c, *regression, result.findings);
     if (!regression || regression->observations.values.size() > most_samples) continue;
-    auto const left_out =
+    auto const leave_one_out =
         gaussian_process::leave_one_out(target.model().channels()[c].covariance, regression->observations, regression->parameters);
-    if (left_out.mean.size() == 0) continue;
+    if (leave_one_out.mean.size() == 0) continue;
     std::vector<double> observed, predicted, standardised;
     int inside = 0;
-    for (Eigen::Index i = 0; i < left_out.mean.size(); ++i) {
-      // Of what the process is to explain; the white part is the same on both sides.
+    for (Eigen::Index i = 0; i < leave_one_out.mean.size(); ++i) {
+      // Of what the process is to explain; the parametric part is the same on both sides.
       observed.push_back(channel.from_si(regression->observations.values[i]));
-      predicted.push_back(channel.from_si(left_out.mean[i]));
-      standardised.push_back((regression->observations.values[i] - left_out.mean[i]) / std::sqrt(left_out.variance[i]));
+      predicted.push_back(channel.from_si(leave_one_out.mean[i]));
+      standardised.push_back((regression->observations.values[i] - leave_one_out.mean[i]) / std::sqrt(leave_one_out.variance[i]));
       inside += std::fabs(standardised.back()) <= 1.959964;
     }
     double const unit_squared = std::pow(rmse(observed, predicted), 2);

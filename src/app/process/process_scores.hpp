@@ -16,7 +16,7 @@ struct ProcessScores {
 
 /// At one vector of all parameters, declared. Residuals of samples that are left out one by one have the sizes that the process
 /// and the noise say; where they have not, it is said.
-ProcessScores score_left_out(ProcessTarget const& target, ParameterSpace const& all, std::vector<double> const& declared,
-                             std::vector<ExperimentData> const& data);
+ProcessScores score_leave_one_out(ProcessTarget const& target, ParameterSpace const& all, std::vector<double> const& declared,
+                                  std::vector<ExperimentData> const& data);
 
 }  // namespace sysid

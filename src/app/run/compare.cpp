@@ -16,7 +16,7 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 namespace {

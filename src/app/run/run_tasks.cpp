@@ -27,7 +27,7 @@ ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& ask
   for (Task const& task : file.tasks)
     if (asked(task) && options.resume && kept(task)) complete_already.insert(&task);
   auto const wanted = [&](Task const& task) { return asked(task) && !complete_already.contains(&task); };
-  check_readiness(session, wanted).require();  // before old results are touched
+  check_preconditions(session, wanted).require();  // before old results are touched
   for (Task const& task : file.tasks) {
     if (!wanted(task)) continue;
     if (kind_of(task) == TaskKind::simulate && kept(task) && !options.force)

@@ -41,13 +41,13 @@ double unit_term(Candidate const& candidate, Candidate const& first) {
 }
 
 /// Follows the modes to finer solvers; a solver that the task states is only asked.
-void settle(Session& session, Candidate const& candidate, std::uint64_t seed, CandidatePosterior& posterior) {
+void refine(Session& session, Candidate const& candidate, std::uint64_t seed, CandidatePosterior& posterior) {
   if (!candidate.compiled->model.integrated() || posterior.modes.empty() || posterior.modes.front().theta.empty()) return;
   Ledger extra;
-  if (!candidate.fit->settle) {
+  if (!candidate.fit->refine_solver) {
     std::vector<Mode> const weightiest = {posterior.modes.front()};
     posterior.move = move_to_finer(*likelihood_target(session, candidate, candidate.fit->solver.finer(), session.interruptible()),
-                                   Aim::posterior, weightiest, seed, extra);
+                                   ObjectiveKind::posterior, weightiest, seed, extra);
     return;
   }
   MakeTarget const make = [&](SolverSettings const& solver) {
@@ -59,17 +59,18 @@ void settle(Session& session, Candidate const& candidate, std::uint64_t seed, Ca
                      .ledger = extra,
                      .interrupted = [&] { return session.interrupted(); },
                      .checkpoint_interval = 0};
-  SettledSolver settled = settle_solver(make, Aim::posterior, candidate.fit->solver, std::move(posterior.modes), context);
-  posterior.modes = std::move(settled.modes);
-  if (settled.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none
+  RefinedSolver refined =
+      refined_solver(make, ObjectiveKind::posterior, candidate.fit->solver, std::move(posterior.modes), context);
+  posterior.modes = std::move(refined.modes);
+  if (refined.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none
   // What is left is weighed as the finer one has it.
   std::stable_sort(posterior.modes.begin(), posterior.modes.end(),
                    [](Mode const& a, Mode const& b) { return a.log_mass > b.log_mass; });
   double const evidence = log_evidence(posterior.modes);
   for (Mode& mode : posterior.modes) mode.share = elementary::exp(mode.log_mass - evidence);
-  posterior.solver = settled.solver;
-  posterior.settled = settled.settled;
-  if (!settled.moves.empty()) posterior.move = settled.moves.front();
+  posterior.solver = refined.solver;
+  posterior.converged = refined.converged;
+  if (!refined.moves.empty()) posterior.move = refined.moves.front();
 }
 
 }  // namespace
@@ -102,18 +103,18 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     session.progress.advance(i + 1, result.models[k].name);
   }
   // What a finer solver does to one may make another one worth a look.
-  std::vector<bool> looked_at(candidates.size());
+  std::vector<bool> examined(candidates.size());
   std::string finer;  // told once the progress line is closed
   for (std::size_t k = 0; k < candidates.size();) {
     auto const checks = evidences(candidates, posteriors, result);
     bool const worth = result.models[k].probability >= worth_a_look || (checks[k] && checks[k]->probability >= worth_a_look);
     // What was given up lies too far below for a finer solver to matter, and has no mode to follow.
-    if (looked_at[k] || !worth || posteriors[k].given_up) {
+    if (examined[k] || !worth || posteriors[k].given_up) {
       ++k;
       continue;
     }
-    looked_at[k] = true;
-    settle(session, candidates[k], seed, posteriors[k]);
+    examined[k] = true;
+    refine(session, candidates[k], seed, posteriors[k]);
     if (posteriors[k].solver != candidates[k].fit->solver)
       finer +=
           fmt::format("the likelihood of `{}` with {}: with {} {} with {}\n", candidates[k].what->name, posteriors[k].solver.text(),
@@ -163,7 +164,7 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
                        *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
            fmt::format("select again with `{}`", finer)});
     }
-    if (posterior.settled) continue;
+    if (posterior.converged) continue;
     std::string const what =
         posterior.modes.empty()
             ? fmt::format("with a finer solver than {} the likelihood of `{}` is not finite at any mode near its particles",

@@ -18,7 +18,7 @@ struct CandidatePosterior {
   SolverSettings solver;    // under which they are
   /// By how many sds a parameter's limits move from the task's solver to the next finer one; nothing where that was not asked.
   std::optional<double> move;
-  bool settled = true;  // false: they still move with the finest solver that is tried, or finer ones lose them
+  bool converged = true;  // false: they still move with the finest solver that is tried, or finer ones lose them
 };
 
 /// Modes of each candidate's posterior, climbed to from its particles with the task's solver. Of candidates worth a look the solver

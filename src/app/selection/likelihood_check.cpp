@@ -57,7 +57,7 @@ LocalSearches modes_near(ModelTarget const& target, SelectedModel const& model, 
     for (std::size_t p = 0; p < rows.size(); ++p)
       if (rows[p] >= 0) from(static_cast<int>(p), s) = model.theta(rows[p], particle);
   }
-  return modes_from(target, Aim::posterior, from, least_log_mass, seed, ledger, stop);
+  return modes_from(target, ObjectiveKind::posterior, from, least_log_mass, seed, ledger, stop);
 }
 
 double log_evidence(std::vector<Mode> const& modes) {

@@ -21,21 +21,21 @@ Settings settings_for(std::int64_t samples) {
 
 }  // namespace
 
-Polish polish_candidates(Session& session, std::vector<Candidate> const& candidates,
-                         std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
-                         SelectionReport& selection) {
-  Polish polish;
-  selection.polished.resize(candidates.size());
-  selection.polished_draws.resize(candidates.size());
+Refinement refine_candidates(Session& session, std::vector<Candidate> const& candidates,
+                             std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
+                             SelectionReport& selection) {
+  Refinement refinement;
+  selection.refined.resize(candidates.size());
+  selection.refined_draws.resize(candidates.size());
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     SelectedModel const& model = selection.result.models[k];
     if (model.probability < worth_a_look) continue;
     auto const missed = [&](std::string const& why) {
-      polish.findings.push_back({FindingCode::not_polished,
-                                 Severity::warning,
-                                 {model.name},
-                                 fmt::format("`polish` has no draws of `{}`: {}", model.name, why),
-                                 ""});
+      refinement.findings.push_back({FindingCode::not_polished,
+                                     Severity::warning,
+                                     {model.name},
+                                     fmt::format("`polish` has no draws of `{}`: {}", model.name, why),
+                                     ""});
     };
     if (candidates[k].space->dimension() == 0) continue;  // one point, which is known
     if (posteriors[k].modes.empty()) {
@@ -55,23 +55,23 @@ Polish polish_candidates(Session& session, std::vector<Candidate> const& candida
                        .modes = posteriors[k].modes};
     FitResult chains = mh::run(*target, settings_for(samples), context);
     if (chains.interrupted) {
-      polish.interrupted = true;
-      return polish;
+      refinement.interrupted = true;
+      return refinement;
     }
     if (chains.failure || chains.draws.total() == 0) {
       missed(chains.failure ? chains.failure->message : std::string("no draws"));
       continue;
     }
-    selection.polished[k] = summarise(chains);
-    selection.polished_draws[k] = std::move(chains.draws);
+    selection.refined[k] = summarise(chains);
+    selection.refined_draws[k] = std::move(chains.draws);
     for (Finding finding : chains.findings) {
       if (finding.severity == Severity::note) continue;
       finding.names.insert(finding.names.begin(), model.name);
       finding.message = fmt::format("polishing `{}`: {}", model.name, finding.message);
-      polish.findings.push_back(std::move(finding));
+      refinement.findings.push_back(std::move(finding));
     }
   }
-  return polish;
+  return refinement;
 }
 
 }  // namespace sysid

@@ -120,8 +120,8 @@ class Select {
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
       report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, candidate.compiled->model));
       add_restoring_forces(candidate.compiled->model, trajectory.quantities(), result, parameters, experiment, report.forces);
-      Findings left_out = leave_out_noise(candidate.compiled->model, report.predictions.back());
-      if (e == 0) report.findings.insert(report.findings.end(), left_out.begin(), left_out.end());
+      Findings excluded = leave_out_noise(candidate.compiled->model, report.predictions.back());
+      if (e == 0) report.findings.insert(report.findings.end(), excluded.begin(), excluded.end());
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
         report.findings.push_back(std::move(finding));
       for (Finding& finding : check_ranges(candidate.compiled->model, experiment, candidate.fit->solver,
@@ -150,16 +150,16 @@ class Select {
       if (found) posteriors = std::move(*found);
     }
     bool const checked = !interrupted && what_.settings.flag("cross_check"),
-               polished = !interrupted && what_.settings.flag("polish");
+               refined = !interrupted && what_.settings.flag("polish");
     if (checked) check_by_likelihood(leading, posteriors, selection, report);
     if (!interrupted) check_simulations(target, leading, posteriors, selection, report);
-    if (polished) {
-      Polish polish =
-          polish_candidates(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
-      add(polish.findings, report);
-      interrupted = polish.interrupted;
+    if (refined) {
+      Refinement refinement =
+          refine_candidates(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
+      add(refinement.findings, report);
+      interrupted = refinement.interrupted;
     }
-    note_end(selection, interrupted, polished, report);
+    note_end(selection, interrupted, refined, report);
     if (!interrupted) add_predictions(selection, report);
     add_settings(selection, report);
     add_outcome(selection, report);
@@ -171,7 +171,7 @@ class Select {
       return ExitCode::interrupted;
     }
     remove_file(checkpoint_.path());
-    return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+    return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
   }
 
   static void add(Findings const& more, Report& report) { report.findings.insert(report.findings.end(), more.begin(), more.end()); }
@@ -218,7 +218,7 @@ class Select {
       add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver), report);
   }
 
-  static void note_end(SelectionReport const& selection, bool interrupted, bool polished, Report& report) {
+  static void note_end(SelectionReport const& selection, bool interrupted, bool refined, Report& report) {
     if (interrupted)
       report.findings.push_back(interrupted_finding("these are the particles of the last complete population"));
     else if (!selection.result.ran_out)
@@ -231,7 +231,7 @@ class Select {
                                  {},
                                  "the sd of the particles depends on the threshold and is not that of the posterior: it is larger "
                                  "after an early stop, smaller after a late one",
-                                 polished ? "" : "`polish = yes` continues with chains on the likelihood and prints both"});
+                                 refined ? "" : "`polish = yes` continues with chains on the likelihood and prints both"});
   }
 
   void add_settings(SelectionReport const& selection, Report& report) const {
@@ -269,7 +269,7 @@ class Select {
                                ? fmt::format("threshold {}{}", significant(selection.result.threshold, 4), floor)
                                : "no threshold: these are draws of the priors";
     return fmt::format("`{}` has probability {:.3f} at {}; {}", best.name, best.probability, at,
-                       judge(findings).text.substr(0, judge(findings).text.find('\n')));
+                       verdict_of(findings).text.substr(0, verdict_of(findings).text.find('\n')));
   }
 
   Session& session_;

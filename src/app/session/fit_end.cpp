@@ -78,7 +78,7 @@ std::vector<std::string> noise_parameters(ParameterSpace const& space) {
 
 ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpoint const& checkpoint, SolverSettings const& solver,
                       Report report, std::chrono::steady_clock::time_point began, bool interrupted) {
-  Verdict const verdict = judge(report.findings);
+  Verdict const verdict = verdict_of(report.findings);
   report.verdict = verdict.text;
   std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
   report.timing.emplace_back("wall_seconds", wall.count());

@@ -11,7 +11,7 @@
 #include "experiment/experiments.hpp"
 #include "inference/table.hpp"
 #include "likelihood/simulated_parameters.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
 
@@ -90,7 +90,7 @@ std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what) {
   return std::nullopt;
 }
 
-void Readiness::require() const {
+void Preconditions::require() const {
   if (diagnostics.all().empty()) return;
   if (unreadable) throw UnreadableData(diagnostics);
   throw UnusableData(diagnostics);
@@ -106,10 +106,10 @@ Task const* maker(Session const& session, DataBlock const& block) {
   return nullptr;
 }
 
-Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted) {
-  Readiness result;
+Preconditions check_preconditions(Session& session, std::function<bool(Task const&)> const& wanted) {
+  Preconditions result;
   bool only_unreadable = true;
-  std::set<std::pair<int, Model const*>> left_out;  // data that a message has been said about
+  std::set<std::pair<int, Model const*>> reported;  // data that a message has been said about
   std::set<std::string> said;
   auto const add = [&](Diagnostics const& more, bool unreadable) {
     for (Diagnostic const& each : more.all()) {
@@ -131,7 +131,7 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
       for (ExperimentUse const& use : *data.experiments) {
         DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
         Task const* made = maker(session, block);
-        if (left_out.contains({use.data, data.model}) || (made != nullptr && wanted(*made))) {
+        if (reported.contains({use.data, data.model}) || (made != nullptr && wanted(*made))) {
           complete = false;
           continue;
         }
@@ -139,10 +139,10 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
           cut(session.record(use.data, *data.model), block, *as_predicted, use.part, data.start);
           continue;
         } catch (UnusableData const& error) {
-          left_out.insert({use.data, data.model});
+          reported.insert({use.data, data.model});
           add(error.diagnostics(), false);
         } catch (UnreadableData const& error) {
-          left_out.insert({use.data, data.model});
+          reported.insert({use.data, data.model});
           add(error.diagnostics(), true);
         } catch (UserError const& error) {
           add_one(error.diagnostic());
@@ -157,8 +157,8 @@ Readiness check_readiness(Session& session, std::function<bool(Task const&)> con
   return result;
 }
 
-Readiness check_readiness(Session& session) {
-  return check_readiness(session, [&](Task const& task) {
+Preconditions check_preconditions(Session& session) {
+  return check_preconditions(session, [&](Task const& task) {
     auto const* made = std::get_if<SimulateTask>(&task.what);
     return made == nullptr || !std::filesystem::exists(session.result_folder(task) / made->file);
   });

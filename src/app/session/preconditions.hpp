@@ -22,7 +22,7 @@ std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std:
 /// Settings of a discovery that do not go together.
 std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what);
 
-struct Readiness {
+struct Preconditions {
   Diagnostics diagnostics;
   bool unreadable = false;  // all of them are files that cannot be read
   /// UnreadableData or UnusableData when there is anything.
@@ -31,10 +31,10 @@ struct Readiness {
 
 /// Reads the data of the wanted tasks and asks `refusal`; each mistake once. Data that a wanted simulate
 /// task of the file makes are left for later.
-Readiness check_readiness(Session& session, std::function<bool(Task const&)> const& wanted);
+Preconditions check_preconditions(Session& session, std::function<bool(Task const&)> const& wanted);
 
 /// Of all tasks, as far as it can be known before any runs: data that a simulate task makes are looked at where they are there.
-Readiness check_readiness(Session& session);
+Preconditions check_preconditions(Session& session);
 
 /// The simulate task whose result the data block reads, or nullptr.
 Task const* maker(Session const& session, DataBlock const& block);

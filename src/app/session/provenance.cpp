@@ -11,7 +11,7 @@
 #include "core/text/words.hpp"
 #include "experiment/placeholders.hpp"
 #include "experiment/true_parameters.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 namespace {
@@ -40,8 +40,8 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
   for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
     std::string text;
     for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
-      bool const with_past = c >= experiment.has_past.size() || experiment.has_past[c].empty() || experiment.has_past[c][i] != 0;
-      if (experiment.scored[i] == 0 || !with_past || !std::isfinite(experiment.measured[c][i])) continue;
+      bool const with_lags = c >= experiment.has_lags.size() || experiment.has_lags[c].empty() || experiment.has_lags[c][i] != 0;
+      if (experiment.scored[i] == 0 || !with_lags || !std::isfinite(experiment.measured[c][i])) continue;
       text += fmt::format("{} {}\n", experiment.first_row + static_cast<int>(i),
                           shortest(model.channels[c].from_si(experiment.measured[c][i])));
     }
@@ -80,7 +80,7 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   info.scored_rows = scored_rows(data.experiment);
   info.samples_sha256 = samples_digest(data.experiment, model);
   info.inputs_sha256 = inputs_digest(block, data.use, model);
-  info.truth = true_values(data.record.comments, model, data.use.name);
+  info.true_parameters = true_values(data.record.comments, model, data.use.name);
   for (Quantity const& input : model.inputs)
     for (DataInputUse const& use : block.inputs)
       if (use.input == input.name)
@@ -101,9 +101,9 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   if (int const history = data_lag(model); history > 0)
     info.notes.push_back(
         fmt::format("the first {} the model looks back to {} not scored", counted(history, "row"), history == 1 ? "is" : "are"));
-  for (std::size_t c = 0; c < data.experiment.has_past.size(); ++c) {
-    std::vector<std::uint8_t> const& has_past = data.experiment.has_past[c];
-    auto const without = std::count(has_past.begin(), has_past.end(), 0);
+  for (std::size_t c = 0; c < data.experiment.has_lags.size(); ++c) {
+    std::vector<std::uint8_t> const& has_lags = data.experiment.has_lags[c];
+    auto const without = std::count(has_lags.begin(), has_lags.end(), 0);
     if (without > 0)
       info.notes.push_back(fmt::format("{}: {} rows are not scored, a past sample is missing", model.channels[c].name, without));
   }

@@ -89,7 +89,7 @@ std::string resolved_select(Session const& session, Task const& task, SelectTask
       task.name, without_tasks(session), task.name, session.file.candidates[static_cast<std::size_t>(what.candidates)].name,
       data_names(session.file, first.experiments), settings_text(what.backend, what.settings), what.distance.text, weights,
       simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first,
-                      first.settle ? without_accuracy(first.solver) : first.solver.text()),
+                      first.refine_solver ? without_accuracy(first.solver) : first.solver.text()),
       seed);
 }
 

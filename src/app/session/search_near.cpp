@@ -30,7 +30,7 @@ std::vector<int> columns_there(Target const& target, Draws const& earlier) {
 
 }  // namespace
 
-SearchResult search_near(Session& session, int earlier, Target const& target, Aim aim, RunContext& context) {
+SearchResult search_near(Session& session, int earlier, Target const& target, ObjectiveKind objective_kind, RunContext& context) {
   Draws const& draws = fitted_model(session, earlier).draws;
   std::vector<int> const columns = columns_there(target, draws);
   auto const coefficient = [&](int p) { return target.parameters()[static_cast<std::size_t>(p)].coefficient; };
@@ -58,7 +58,7 @@ SearchResult search_near(Session& session, int earlier, Target const& target, Ai
   for (int w = 0; w < count; ++w)
     for (int p = 0; p < target.dimension(); ++p)
       if (!std::isfinite(starts(p, w))) starts(p, w) = prior(p, w);
-  SearchResult result = search_from(target, aim, starts, context);
+  SearchResult result = search_from(target, objective_kind, starts, context);
   std::string const& name = session.file.tasks[static_cast<std::size_t>(earlier)].name;
   if (!result.modes.empty())
     result.findings.push_back({FindingCode::searched_near,

@@ -9,7 +9,7 @@
 
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 

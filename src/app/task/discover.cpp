@@ -65,13 +65,13 @@ class Discover {
                              .discovery = found,
                              .seed = seed_};
     std::vector<FoundStructure> structures = best_structures(found, what_.top);
-    std::optional<Judgement> judgement;
+    std::optional<Validation> validation;
     if (what_.refit && !structures.empty()) {
-      judgement = judge_structures(source, structures, aside(), method.interrupted);
-      if (judgement->interrupted) return stop();
-      structures = judgement->order;
+      validation = validate_structures(source, structures, held_out(), method.interrupted);
+      if (validation->interrupted) return stop();
+      structures = validation->order;
     }
-    return finish(found, *method.selector, source, structures, judgement);
+    return finish(found, *method.selector, source, structures, validation);
   }
 
  private:
@@ -88,13 +88,13 @@ class Discover {
   }
 
   // With the dictionary's columns, as the task's own.
-  std::vector<ExperimentData> aside() const {
+  std::vector<ExperimentData> held_out() const {
     return load_experiments(session_, unused_parts(session_.file, what_, 1), dictionary_.measured, {StartRule::Kind::rest, 0},
                             PredictionRule::as_written);
   }
 
   ExitCode finish(regression::Discovery const& found, regression::SelectorRow const& selector, FoundSource const& source,
-                  std::vector<FoundStructure> structures, std::optional<Judgement>& judgement) {
+                  std::vector<FoundStructure> structures, std::optional<Validation>& validation) {
     Report report;
     report.version = SYSID_VERSION;
     report.task = task_.name;
@@ -114,10 +114,10 @@ class Discover {
     for (ExperimentData const& each : data_) add_data(session_.file, each, dictionary_.measured, report);
     DiscoveryReport discovery = described(found, selector);
     add_findings(found, report.findings);
-    if (judgement) {
-      temper_by_simulation(judgement->report, report.findings);
-      report.findings.insert(report.findings.end(), judgement->findings.begin(), judgement->findings.end());
-      discovery.judged = std::move(judgement->report);
+    if (validation) {
+      temper_by_simulation(validation->report, report.findings);
+      report.findings.insert(report.findings.end(), validation->findings.begin(), validation->findings.end());
+      discovery.validation = std::move(validation->report);
     }
     report.equations = equations(discovery);
     if (!what_.candidates && !structures.empty()) structures.resize(1);
@@ -136,13 +136,13 @@ class Discover {
     if (!report.discovery->source.empty())
       session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,
                                       (session_.result_folder(task_) / "found.sysid").string());
-    return judge(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+    return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
   }
 
   // By simulation where that has judged.
   static std::vector<std::string> equations(DiscoveryReport const& discovery) {
-    if (discovery.judged && discovery.judged->structures.front().failure.empty())
-      return discovery.judged->structures.front().equations;
+    if (discovery.validation && discovery.validation->structures.front().failure.empty())
+      return discovery.validation->structures.front().equations;
     std::vector<std::string> all;
     for (DiscoveredEquation const& each : discovery.equations)
       if (!each.equation.empty()) all.push_back(each.equation);
@@ -154,7 +154,7 @@ class Discover {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
-    std::string const judged = judge(findings).text;
+    std::string const judged = verdict_of(findings).text;
     return terms + "; " + judged.substr(0, judged.find('\n'));
   }
 
@@ -172,7 +172,7 @@ class Discover {
       Channel const& channel = dictionary_.measured.channels[c];
       out.noise.push_back({channel.name, channel.unit_text(), channel.from_si(found.noise_sd[c]), given(c)});
     }
-    for (LeftOutText& each : left_out_texts(dictionary_)) out.left_out.push_back({std::move(each.term), std::move(each.reason)});
+    for (ExcludedText& each : excluded_texts(dictionary_)) out.excluded.push_back({std::move(each.term), std::move(each.reason)});
     for (std::size_t e = 0; e < found.equations.size(); ++e)
       out.equations.push_back(described(found.equations[e], static_cast<int>(e)));
     return out;
@@ -200,7 +200,7 @@ class Discover {
       to.name = names[j];
       to.unit = term.unit ? term.unit->text : "";
       to.kept = from.kept;
-      to.fate = from.left_out         ? "left out"
+      to.fate = from.excluded         ? "left out"
                 : term.in_target      ? "known"
                 : from.kept           ? "kept"
                 : from.dropped_in > 0 ? fmt::format("dropped in round {}", from.dropped_in)
@@ -245,7 +245,7 @@ class Discover {
   void add_source(FoundSource const& source, std::vector<FoundStructure> const& structures, DiscoveryReport& discovery,
                   Findings& findings) const {
     std::vector<FoundStructure> written;
-    std::vector<std::string> left_out, names;
+    std::vector<std::string> excluded, names;
     for (FoundStructure const& each : structures) {
       written.push_back(each);
       std::string text = source.text(written);
@@ -257,17 +257,17 @@ class Discover {
       }
       written.pop_back();
       names.push_back(structure_text(dictionary_, each));
-      left_out.push_back(fmt::format("`{}` ({})", names.back(), diagnostics.all().front().message));
+      excluded.push_back(fmt::format("`{}` ({})", names.back(), diagnostics.all().front().message));
     }
-    if (left_out.empty()) return;
+    if (excluded.empty()) return;
     std::string const help = "a model needs as many equations as states, each with a derivative in it";
     if (written.empty())
       findings.push_back({FindingCode::equation_no_model, Severity::warning, std::move(names),
-                          "the equation that was found is not a model that can be simulated: " + left_out.front(), help});
+                          "the equation that was found is not a model that can be simulated: " + excluded.front(), help});
     else
       findings.push_back({FindingCode::candidates_left_out, Severity::warning, std::move(names),
                           fmt::format("`found.sysid` holds {} of {} structures; no model that can be simulated: {}", written.size(),
-                                      structures.size(), fmt::join(left_out, ", ")),
+                                      structures.size(), fmt::join(excluded, ", ")),
                           help});
   }
 

@@ -70,7 +70,7 @@ std::string first_failure(Session const& session, SimulateTask const& what, Comp
 
 bool reads_samples(Model const& model) {
   for (int c = -1; c < static_cast<int>(model.channels.size()); ++c)
-    if (!past_samples(model, c).empty()) return true;
+    if (!lagged_samples(model, c).empty()) return true;
   return false;
 }
 

@@ -10,7 +10,7 @@
 #include "core/setting/settings.hpp"
 #include "data/experiment.hpp"
 #include "data/start_rule.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 #include "regression/column/dictionary.hpp"
 #include "solver/solver.hpp"
 #include "syntax/ast.hpp"
@@ -101,8 +101,8 @@ struct FitTask {
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;
   SolverSettings solver;
-  bool settle = true;       // the tolerance guard chooses how fine the solver is, from `solver` on
-  std::optional<int> near;  // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
+  bool refine_solver = true;  // the tolerance guard chooses how fine the solver is, from `solver` on
+  std::optional<int> near;    // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
   std::optional<std::uint64_t> seed;
 };
 
@@ -181,7 +181,7 @@ struct DictionaryEquation {
 };
 
 /// A term that the dictionary could hold and does not.
-struct LeftOutTerm {
+struct ExcludedTerm {
   enum class Why { same, zero, excluded, unit };
   Why why = Why::same;
   std::string text;
@@ -196,7 +196,7 @@ struct CheckedDictionary {
   std::vector<ast::FunctionDefinition> functions;  // of the file, that its expressions may call
   regression::Dictionary numbers;
   std::vector<DictionaryEquation> equations;
-  std::vector<LeftOutTerm> left_out;
+  std::vector<ExcludedTerm> excluded;
   std::vector<Quantity> states;
   std::vector<Span> channel_spans;  // where each channel is bound
   /// What data blocks are bound to: inputs and channels, no states and no noise.

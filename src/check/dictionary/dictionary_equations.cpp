@@ -75,7 +75,7 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
                             regression::Equation& numbers, std::vector<Candidate const*>& kept) {
   for (regression::Term const& free : split.free)
     if (factors_of(out_.numbers.graph, free.expression).proportional(term.factors)) {
-      out_.left_out.push_back({LeftOutTerm::Why::same, term.written.text, "what `" + free.name + "` stands before", index});
+      out_.excluded.push_back({ExcludedTerm::Why::same, term.written.text, "what `" + free.name + "` stands before", index});
       return;
     }
   std::optional<Unit> coefficient;
@@ -104,7 +104,7 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
   }
   for (std::size_t j = split.free.size(); j < kept.size(); ++j) {
     if (!kept[j]->factors.proportional(term.factors)) continue;
-    out_.left_out.push_back({LeftOutTerm::Why::same, term.written.text, kept[j]->written.text, index});
+    out_.excluded.push_back({ExcludedTerm::Why::same, term.written.text, kept[j]->written.text, index});
     if (!equation.terms[j].coefficient.empty()) return;
     equation.terms[j].coefficient = term.written.coefficient;  // a name that is given later stays with the term
     equation.terms[j].unit = coefficient;
@@ -118,7 +118,7 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
 
 void DictionaryChecker::leave_out(int index, Candidate const& term, Unit const& unit) {
   std::string const text = scope_.units().words(unit);
-  out_.left_out.push_back({LeftOutTerm::Why::unit, term.written.text, text, index});
+  out_.excluded.push_back({ExcludedTerm::Why::unit, term.written.text, text, index});
   possible_.insert(text);
 }
 

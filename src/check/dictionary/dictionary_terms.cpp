@@ -21,7 +21,7 @@ void DictionaryChecker::targets() {
         diagnostics_.add(errors::target_twice(tree.span, before.tree->span, unparse(tree)));
         return;
       }
-    targets_.push_back({&tree, settled(*value)});
+    targets_.push_back({&tree, with_own_unit(*value)});
   });
   if (targets_.empty() && !failed()) diagnostics_.add(errors::no_target(tree_.name));
 }
@@ -34,7 +34,7 @@ void DictionaryChecker::terms() {
       auto made = candidate(std::move(written));
       if (!made) return;  // the next of the same family has the same mistake
       if (made->factors.constant == 0) {
-        out_.left_out.push_back({LeftOutTerm::Why::zero, made->written.text, {}});
+        out_.excluded.push_back({ExcludedTerm::Why::zero, made->written.text, {}});
         continue;
       }
       // One with a name before it and one without are told apart: the name asks for a unit.
@@ -42,7 +42,7 @@ void DictionaryChecker::terms() {
         return each.factors.proportional(made->factors) && each.written.coefficient == made->written.coefficient;
       });
       if (same != terms_.end()) {
-        out_.left_out.push_back({LeftOutTerm::Why::same, made->written.text, same->written.text});
+        out_.excluded.push_back({ExcludedTerm::Why::same, made->written.text, same->written.text});
       } else {
         terms_.push_back(std::move(*made));
       }
@@ -65,7 +65,7 @@ void DictionaryChecker::exclude() {
                                      [&](Candidate const& each) { return each.factors.proportional(made->factors); });
       if (same == terms_.end()) continue;
       any = true;
-      out_.left_out.push_back({LeftOutTerm::Why::excluded, same->written.text, {}});
+      out_.excluded.push_back({ExcludedTerm::Why::excluded, same->written.text, {}});
       terms_.erase(same);
     }
     if (any || failed()) return;
@@ -79,7 +79,7 @@ std::optional<DictionaryChecker::Candidate> DictionaryChecker::candidate(Written
   std::size_t const before = diagnostics_.all().size();
   auto value = scope_.expression(written.tree);
   if (!value || diagnostics_.has_errors(before)) return std::nullopt;
-  *value = settled(*value);
+  *value = with_own_unit(*value);
   Candidate made;
   made.node = with_values(value->node);
   if (out_.numbers.graph.depends(made.node, [](Node const& node) { return is_parameter(node); })) {

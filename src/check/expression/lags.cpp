@@ -32,7 +32,7 @@ NodeId lagged(Graph& graph, NodeId root, int lag) {
   });
 }
 
-bool Scope::is_past_call(ast::Call const& call) const {
+bool Scope::is_lag_call(ast::Call const& call) const {
   static constexpr std::string_view words[] = {"lag", "lags", "measured", "predicted", "residual", "since_last"};
   return std::find(std::begin(words), std::end(words), call.function.text) != std::end(words) &&
          !functions_.contains(call.function.text);
@@ -80,7 +80,7 @@ std::optional<Scope::Lags> Scope::lag_calls(ast::Call const& call) {
   }
   Lags lags{*first, {}};
   for (int k = *first; k <= *last; ++k) {
-    lags.values.push_back(settled(*value));
+    lags.values.push_back(with_own_unit(*value));
     lags.values.back().node = lagged(graph_, value->node, k);
     lags.values.back().span = call.span;
   }
@@ -132,7 +132,7 @@ std::optional<Typed> Scope::change_call(ast::Call const& call) {
   return value;
 }
 
-std::optional<Typed> Scope::past_call(ast::Call const& call) {
+std::optional<Typed> Scope::lag_call(ast::Call const& call) {
   std::string const& what = call.function.text;
   if (what == "since_last") return change_call(call);
   if (what != "lag" && what != "lags") return channel_call(call);

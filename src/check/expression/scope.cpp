@@ -101,7 +101,7 @@ std::optional<Typed> Scope::definition(ast::Definition const& definition) {
   } else if (value && value->kind == Typed::Kind::literal) {
     value->kind = Typed::Kind::unknown;  // a named number is no longer a literal that adapts
   }
-  if (value) *value = settled(*value);
+  if (value) *value = with_own_unit(*value);
   return resolved_[&definition] = value;
 }
 

@@ -134,8 +134,8 @@ class Scope {
   std::optional<Typed> choice(ast::Conditional const& conditional);
 
   // past.cpp
-  bool is_past_call(ast::Call const& call) const;
-  std::optional<Typed> past_call(ast::Call const& call);
+  bool is_lag_call(ast::Call const& call) const;
+  std::optional<Typed> lag_call(ast::Call const& call);
   struct Lags {
     int first;
     std::vector<Typed> values;  // first, first + 1, ...
@@ -161,8 +161,8 @@ class Scope {
   std::vector<ProcessName> processes_;
   std::map<ast::Definition const*, std::optional<Typed>> resolved_;
   std::vector<std::string> resolving_;
-  std::size_t looked_at_ = 0, depth_ = 0;  // expressions so far; those being looked at, one inside the other
-  bool too_large_ = false;                 // and said so
+  std::size_t expressions_ = 0, depth_ = 0;  // expressions so far; those being looked at, one inside the other
+  bool too_large_ = false;                   // and said so
   Arguments const* arguments_ = nullptr;
   UnitCheck units_;
   SampleNames samples_;

@@ -38,7 +38,7 @@ std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<UnitOpe
   } else {
     value = other_than_sum(tree);
     if (value) value->span = tree.span;
-    if (value) terms.push_back({settled(*value), &tree, side});
+    if (value) terms.push_back({with_own_unit(*value), &tree, side});
   }
   if (value) {
     value->span = tree.span;
@@ -114,7 +114,7 @@ std::optional<Typed> Scope::binary(ast::Binary const& binary) {
 
 Typed Scope::combined(ast::Binary const& binary, Typed const& left, Typed const& right) {
   std::string const& symbol = binary.symbol;
-  UnitOperand const a{settled(left), &*binary.left}, b{settled(right), &*binary.right};
+  UnitOperand const a{with_own_unit(left), &*binary.left}, b{with_own_unit(right), &*binary.right};
   if (symbol == "*") return multiply(graph_, left, right);
   if (symbol == "/") return divide(graph_, left, right);
   if (symbol == "^") {
@@ -139,7 +139,7 @@ Typed Scope::combined(ast::Binary const& binary, Typed const& left, Typed const&
 }
 
 std::optional<Typed> Scope::function_call(ast::Call const& call) {
-  if (is_past_call(call)) return past_call(call);
+  if (is_lag_call(call)) return lag_call(call);
   std::string const& name = call.function.text;
   for (std::size_t i = 0; i < processes_.size(); ++i)
     if (processes_[i].definition->name.text == name) return process_call(call, i);
@@ -172,13 +172,13 @@ Scope::CallArguments Scope::call_arguments(ast::Call const& call) {
   CallArguments result;
   for (ast::Argument const& argument : call.arguments) {
     if (auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
-        inner != nullptr && !argument.name && (*inner)->function.text == "lags" && is_past_call(**inner)) {
+        inner != nullptr && !argument.name && (*inner)->function.text == "lags" && is_lag_call(**inner)) {
       auto const lags = lag_calls(**inner);
       result.good = result.good && lags;
       result.counted = result.counted && lags;
       if (!lags) continue;
       result.count += lags->values.size();
-      for (Typed const& lag : lags->values) result.values.push_back({settled(lag), &argument.value});
+      for (Typed const& lag : lags->values) result.values.push_back({with_own_unit(lag), &argument.value});
       continue;
     }
     auto const* range = std::get_if<ast::Box<ast::Binary>>(&argument.value.node);
@@ -190,7 +190,7 @@ Scope::CallArguments Scope::call_arguments(ast::Call const& call) {
     }
     auto value = expression(argument.value);
     result.good = result.good && value;
-    if (value) result.values.push_back({settled(*value), &argument.value});
+    if (value) result.values.push_back({with_own_unit(*value), &argument.value});
   }
   return result;
 }
@@ -261,7 +261,7 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
 
 bool Scope::affordable(Span span) {
   if (diagnostics_.all().size() >= most_messages && diagnostics_.has_errors()) return false;
-  if (!too_large_ && ++looked_at_ <= most_expressions && depth_ <= deepest_tree) return true;
+  if (!too_large_ && ++expressions_ <= most_expressions && depth_ <= deepest_tree) return true;
   if (!too_large_) diagnostics_.add(errors::model_too_large(span));
   too_large_ = true;
   return false;
@@ -305,7 +305,7 @@ std::optional<Typed> Scope::choice(ast::Conditional const& conditional) {
   auto const then = expression(*conditional.then), otherwise = expression(*conditional.otherwise);
   bool const true_or_false = !condition || units_.condition({*condition, &*conditional.condition});
   if (!condition || !then || !otherwise) return std::nullopt;
-  UnitOperand const branches[] = {{settled(*then), &*conditional.then}, {settled(*otherwise), &*conditional.otherwise}};
+  UnitOperand const branches[] = {{with_own_unit(*then), &*conditional.then}, {with_own_unit(*otherwise), &*conditional.otherwise}};
   bool const agreed = units_.agree({Occasion::Kind::branches}, branches) && units_.one_zero(graph_, branches);
   Typed result = select(graph_, *condition, *then, *otherwise);
   if (!agreed || !true_or_false) result.kind = Typed::Kind::wrong;

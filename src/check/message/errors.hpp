@@ -92,7 +92,7 @@ Diagnostic own_sample(Span span, std::string const& channel);
 Diagnostic prediction_cycle(Span span, std::string const& channel);
 Diagnostic present_prediction(Span span, std::string const& channel);
 Diagnostic range_out_of_place(Span span);
-Diagnostic initial_past_missing(Span declaration, std::string const& state);
+Diagnostic initial_lag_missing(Span declaration, std::string const& state);
 Diagnostic implicit_in_discrete_time(Span equation, std::string const& state);
 
 // data blocks (E40; the file's own contents: data/errors.hpp)

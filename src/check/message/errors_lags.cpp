@@ -68,7 +68,7 @@ Diagnostic present_prediction(Span span, std::string const& channel) {
 Diagnostic range_out_of_place(Span span) {
   return error("E3112", span, "a range is not allowed here", "a range selects lags: `lags(y, 1..3)`");
 }
-Diagnostic initial_past_missing(Span declaration, std::string const& state) {
+Diagnostic initial_lag_missing(Span declaration, std::string const& state) {
   return about(
       {state},
       error("E3111", declaration, fmt::format("`{}` needs values before the first sample", state),

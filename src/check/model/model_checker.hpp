@@ -72,7 +72,7 @@ class ModelChecker {
 
   // --- model_initial.cpp
   // In discrete time one value stands for all samples before the first; it may be what a channel measured there.
-  void initial_pasts();
+  void initial_lags();
   void initial_values();
   // Where the search for an unknown's first value begins.
   void guess(ast::InitialValue const& initial, Unknown& unknown);
@@ -115,10 +115,10 @@ class ModelChecker {
   Scope scope_;
   std::vector<std::pair<std::string, StateInfo>> states_;
   std::vector<ast::ParameterDeclaration const*> parameter_trees_;
-  std::vector<NodeId> highest_;                       // solutions for the unknowns; none for an implicit model
-  std::vector<Invariant> constraints_;                // of every differentiation
-  bool orders_doubtful_ = false;                      // after a mistake in the units of an equation: a prime may be missing there
-  std::vector<std::optional<NodeId>> initial_pasts_;  // of each state of a discrete-time model
+  std::vector<NodeId> highest_;                      // solutions for the unknowns; none for an implicit model
+  std::vector<Invariant> constraints_;               // of every differentiation
+  bool orders_doubtful_ = false;                     // after a mistake in the units of an equation: a prime may be missing there
+  std::vector<std::optional<NodeId>> initial_lags_;  // of each state of a discrete-time model
 };
 
 }  // namespace sysid

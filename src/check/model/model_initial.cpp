@@ -8,8 +8,8 @@
 
 namespace sysid {
 
-void ModelChecker::initial_pasts() {
-  initial_pasts_.resize(states_.size());
+void ModelChecker::initial_lags() {
+  initial_lags_.resize(states_.size());
   std::map<std::string, Span> given;
   each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
     for (ast::InitialValue const& initial : declaration.values) {
@@ -38,14 +38,14 @@ void ModelChecker::initial_pasts() {
         diagnostics_.add(errors::initial_moves(initial.value.span));
         continue;
       }
-      initial_pasts_[static_cast<std::size_t>(place - states_.begin())] = adapt(model_.graph, *value, state.unit);
+      initial_lags_[static_cast<std::size_t>(place - states_.begin())] = adapt(model_.graph, *value, state.unit);
     }
   });
 }
 
 void ModelChecker::initial_values() {
   if (scope_.samples().discrete) {
-    initial_pasts();
+    initial_lags();
     return;
   }
   std::map<int, Span> given;

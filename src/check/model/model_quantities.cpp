@@ -124,7 +124,7 @@ std::optional<Unit> ModelChecker::location_unit(ast::Call const& noise) {
   Scope quiet = scope_.with(ignored);
   auto const value = quiet.expression(*location);
   if (!value || value->kind != Typed::Kind::known) return std::nullopt;
-  return settled(*value).unit;
+  return with_own_unit(*value).unit;
 }
 
 void ModelChecker::derived() {

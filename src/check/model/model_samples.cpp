@@ -5,7 +5,7 @@
 
 #include "check/message/errors.hpp"
 #include "check/units/units.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 
@@ -87,28 +87,28 @@ bool ModelChecker::reads_input_rate() const {
 }
 
 void ModelChecker::lay_out_lags(std::vector<NodeId> const& predicted) {
-  std::vector<std::optional<NodeId>> initial = initial_pasts_;
+  std::vector<std::optional<NodeId>> initial = initial_lags_;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     auto const& [name, info] = states_[i];
     auto const unit = scope_.find(name)->unit;
-    model_.pasts.push_back({{name, unit, info.declaration->name.span}, highest_[i], -1, {}});
+    model_.lagged_quantities.push_back({{name, unit, info.declaration->name.span}, highest_[i], -1, {}});
     model_.derived.push_back({{name, unit, info.declaration->name.span}, highest_[i], true});
   }
   for (std::size_t c = 0; c < model_.channels.size(); ++c) {
     Channel const& channel = model_.channels[c];
-    model_.pasts.push_back({{channel.name, channel.unit, channel.span}, predicted[c], static_cast<int>(c), {}});
+    model_.lagged_quantities.push_back({{channel.name, channel.unit, channel.span}, predicted[c], static_cast<int>(c), {}});
     initial.emplace_back();
   }
-  // What a channel predicts without processes: the white part, from which lagged residuals are taken.
+  // What a channel predicts without processes: the parametric part, from which lagged residuals are taken.
   for (std::size_t c = 0; c < model_.channels.size() && !model_.processes.empty(); ++c) {
     Channel const& channel = model_.channels[c];
-    std::string const name = "white part of predicted(" + channel.name + ")";
-    model_.pasts.push_back({{name, channel.unit, channel.span}, without_processes(model_.graph, predicted[c]), -1, {}});
+    std::string const name = "parametric part of predicted(" + channel.name + ")";
+    model_.lagged_quantities.push_back({{name, channel.unit, channel.span}, without_processes(model_.graph, predicted[c]), -1, {}});
     initial.push_back(model_.graph.leaf(LeafKind::measured, static_cast<int>(c)));
   }
-  if (auto const missing = lay_out_pasts(model_, initial)) {
-    Past const& past = model_.pasts[static_cast<std::size_t>(*missing)];
-    diagnostics_.add(errors::initial_past_missing(past.span, past.name));
+  if (auto const missing = sysid::lay_out_lags(model_, initial)) {
+    LaggedQuantity const& lagged = model_.lagged_quantities[static_cast<std::size_t>(*missing)];
+    diagnostics_.add(errors::initial_lag_missing(lagged.span, lagged.name));
   }
 }
 

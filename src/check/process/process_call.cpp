@@ -38,9 +38,9 @@ std::optional<ProcessArguments> Scope::process_declaration(ast::ProcessDefinitio
   auto calls = units_.suspend();
   HyperParametersGiven given;
   auto arguments = process_arguments(definition, {"zero_at", "flat_at", "within", "terms"}, diagnostics_);
-  if (arguments &&
-      !(read_covariance(*this, definition, *arguments->covariance, columns, process, given) &&
-        settle_units(*this, definition, given, units, process) && read_conditions(*this, definition, *arguments, columns, process)))
+  if (arguments && !(read_covariance(*this, definition, *arguments->covariance, columns, process, given) &&
+                     resolve_units(*this, definition, given, units, process) &&
+                     read_conditions(*this, definition, *arguments, columns, process)))
     arguments.reset();
   units_.resume(std::move(calls));
   arguments_ = outer;
@@ -76,13 +76,13 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
     std::vector<Typed> values;
     int lag = -1;
     auto const* inner = std::get_if<ast::Box<ast::Call>>(&argument.value.node);
-    if (inner != nullptr && (*inner)->function.text == "lags" && is_past_call(**inner)) {
+    if (inner != nullptr && (*inner)->function.text == "lags" && is_lag_call(**inner)) {
       if (auto lags = lag_calls(**inner)) {
         values = std::move(lags->values);
         lag = lags->first;
       }
     } else if (auto const value = expression(argument.value)) {
-      values.push_back(settled(*value));
+      values.push_back(with_own_unit(*value));
     }
     good = good && !values.empty();
     columns.emplace_back();

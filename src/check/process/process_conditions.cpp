@@ -69,7 +69,7 @@ class PointReader {
     if (value->kind == Typed::Kind::known && wanted)
       if (auto wrong = refuse_number(tree.span, "`" + name_ + "`", value->unit, *wanted)) return refuse(std::move(*wrong));
     Graph& graph = scope_.graph();
-    auto const number = graph.constant_value(adapt(graph, settled(*value), wanted));
+    auto const number = graph.constant_value(adapt(graph, with_own_unit(*value), wanted));
     if (!number) {
       std::string const what = moving_part(graph, value->node);
       return refuse(errors::condition_moves(tree.span, name_, what.empty() ? "a parameter" : what));

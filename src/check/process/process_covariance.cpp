@@ -142,7 +142,7 @@ class CovarianceReader {
       return refuse(errors::hyper_parameter_moves(tree.span, name, what));
     if (auto const number = graph.constant_value(value->node); number && !(*number > 0))
       return refuse(errors::hyper_parameter_not_positive(tree.span, name));
-    given_.back().push_back({&row, column, settled(*value)});
+    given_.back().push_back({&row, column, with_own_unit(*value)});
     given_.back().back().value.span = tree.span;
     given_.back().back().value.unit.offset = 0;  // a length along a scale of temperatures is a difference of two
     return true;

@@ -34,7 +34,7 @@ struct HyperParameterGiven {
 using HyperParametersGiven = std::vector<std::vector<HyperParameterGiven>>;
 
 /// Kernels with the columns that they read, and the expression that joins them, into `process`; hyper-parameters, whose units
-/// `settle_units` makes out, into `given`. columns: of each declared input, of an input that stands for several lags one for each.
+/// `resolve_units` makes out, into `given`. columns: of each declared input, of an input that stands for several lags one for each.
 /// False after a diagnostic.
 bool read_covariance(Scope& scope, ast::ProcessDefinition const& definition, ast::Expression const& covariance,
                      std::vector<std::vector<int>> const& columns, Process& process, HyperParametersGiven& given);

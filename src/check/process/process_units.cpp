@@ -61,8 +61,8 @@ std::optional<Unit> known_unit(Typed const& value) {
   return value.kind == Typed::Kind::known ? std::optional(value.unit) : std::nullopt;
 }
 
-bool settle_units(Scope& scope, ast::ProcessDefinition const& definition, HyperParametersGiven const& given,
-                  std::vector<std::optional<Unit>> const& columns, Process& process) {
+bool resolve_units(Scope& scope, ast::ProcessDefinition const& definition, HyperParametersGiven const& given,
+                   std::vector<std::optional<Unit>> const& columns, Process& process) {
   std::vector<std::optional<Unit>> outputs;
   for (std::size_t k = 0; k < given.size(); ++k) {
     KnownUnits known{columns, {}, {}};

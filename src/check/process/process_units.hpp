@@ -13,7 +13,7 @@ std::optional<Unit> known_unit(Typed const& value);
 
 /// Hyper-parameters of `process` in SI, and the unit of its values. columns: what is known of the unit of each input of it. False
 /// after a diagnostic.
-bool settle_units(Scope& scope, ast::ProcessDefinition const& definition, HyperParametersGiven const& given,
-                  std::vector<std::optional<Unit>> const& columns, Process& process);
+bool resolve_units(Scope& scope, ast::ProcessDefinition const& definition, HyperParametersGiven const& given,
+                   std::vector<std::optional<Unit>> const& columns, Process& process);
 
 }  // namespace sysid

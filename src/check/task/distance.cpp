@@ -213,7 +213,7 @@ class DistanceChecker {
       diagnostics_.add(errors::distance_may_be_negative(tree.span, unparse(tree)));
       return;
     }
-    auto const [place, fresh] = found_.emplace(*read.begin(), Item{&tree, settled(*value)});
+    auto const [place, fresh] = found_.emplace(*read.begin(), Item{&tree, with_own_unit(*value)});
     if (!fresh)
       diagnostics_.add(
           errors::stated_twice(tree.span, place->second.tree->span, "the distance of `" + rule_.channels[place->first] + "`"));

@@ -83,7 +83,7 @@ bool TaskChecker::simulation_option(ast::Option const& option, std::string const
   else if (key == "seed")
     options_.seed(option, task.seed);
   else
-    task.settle = !options_.solver(option, task.solver);
+    task.refine_solver = !options_.solver(option, task.solver);
   return true;
 }
 
@@ -136,7 +136,7 @@ void TaskChecker::suit(FitTask& task, Model const& model) {
   suit(task.start, model, tree_.options);
   if (model.integrated()) return;  // else there is nothing to solve
   task.solver = {};
-  task.settle = false;
+  task.refine_solver = false;
 }
 
 void TaskChecker::prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule) {

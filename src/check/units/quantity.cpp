@@ -157,14 +157,14 @@ Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> c
 
 }  // namespace
 
-Typed settled(Typed typed) {
+Typed with_own_unit(Typed typed) {
   if (typed.kind == Kind::known) typed.unit = turned(std::move(typed.unit), typed.turns);
   typed.turns = 0;
   return typed;
 }
 
 Typed add(Graph& graph, Typed a, Typed b, bool subtract) {
-  Typed operands[] = {settled(std::move(a)), settled(std::move(b))};
+  Typed operands[] = {with_own_unit(std::move(a)), with_own_unit(std::move(b))};
   auto const has_zero = [](Typed const& t) { return t.kind == Kind::known && t.unit.offset != 0; };
   bool const both = has_zero(operands[0]) && has_zero(operands[1]);
   // A temperature and a difference of temperatures: neither has a zero point to convert to the other's.
@@ -241,13 +241,13 @@ Zeros compare_zeros(Graph const& graph, Typed const& a, Typed const& b, bool add
 }
 
 Typed compare(Graph& graph, Operation operation, Typed a, Typed b) {
-  Typed operands[] = {settled(std::move(a)), settled(std::move(b))};
+  Typed operands[] = {with_own_unit(std::move(a)), with_own_unit(std::move(b))};
   unify(graph, operands);
   return {graph.binary(operation, operands[0].node, operands[1].node), Kind::known, {}, cover_all(operands)};
 }
 
 Typed select(Graph& graph, Typed const& condition, Typed a, Typed b) {
-  Typed operands[] = {settled(std::move(a)), settled(std::move(b))};
+  Typed operands[] = {with_own_unit(std::move(a)), with_own_unit(std::move(b))};
   auto const unit = unify(graph, operands);
   Typed result = shared(graph.select(condition.node, operands[0].node, operands[1].node), operands, unit);
   result.span = cover(condition.span, result.span);

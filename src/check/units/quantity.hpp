@@ -26,7 +26,7 @@ struct Typed {
 };
 
 /// The same where its product ends: 2*pi has made radians of cycles, 1/(2*pi) cycles of radians.
-Typed settled(Typed typed);
+Typed with_own_unit(Typed typed);
 
 Typed literal(Graph& graph, double value, Span span);
 /// A number tagged with a unit: SI inside, but a temperature stays in degrees above the zero of its unit.

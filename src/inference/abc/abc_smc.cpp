@@ -51,7 +51,7 @@ class Run {
 
   SelectionResult run() {
     if (!begin()) return std::move(result_);
-    while (!stop(end_after_population(state_, plan_)) && populate()) settle();
+    while (!stop(end_after_population(state_, plan_)) && populate()) finish_population();
     finish();
     return std::move(result_);
   }
@@ -200,7 +200,7 @@ class Run {
   }
 
   /// The population is whole: it becomes the last one.
-  void settle() {
+  void finish_population() {
     record_.threshold = next_.threshold;
     record_.ess = next_.ess();
     for (std::size_t m = 0; m < next_.models.size(); ++m) {
@@ -262,7 +262,7 @@ class Run {
     result_.threshold = last_.threshold;
     result_.next_threshold = next_.threshold;
     for (int m = 0; m < candidates_.size(); ++m) fill(m);
-    result_.findings = judge_populations(result_, plan_);
+    result_.findings = check_populations(result_, plan_);
   }
 
   void fill(int m) {

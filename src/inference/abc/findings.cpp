@@ -109,7 +109,7 @@ Finding no_population(PopulationRecord const& record, double threshold, int part
           help};
 }
 
-Findings judge_populations(SelectionResult const& result, Plan const& plan) {
+Findings check_populations(SelectionResult const& result, Plan const& plan) {
   Findings findings;
   add_deaths(result, findings);
   PopulationRecord const& last = result.populations.back();

@@ -13,6 +13,6 @@ Finding no_population(PopulationRecord const& record, double threshold, int part
 
 /// Models that died by chance, populations that stand on few particles, thresholds that cannot fall, failed simulations, budgets
 /// that ended the run, and what its spread means.
-Findings judge_populations(SelectionResult const& result, Plan const& plan);
+Findings check_populations(SelectionResult const& result, Plan const& plan);
 
 }  // namespace sysid::abc

@@ -15,7 +15,7 @@
 #include "result/finding.hpp"
 #include "result/mode.hpp"
 #include "result/summary.hpp"
-#include "search/aim.hpp"
+#include "search/objective_kind.hpp"
 #include "search/run_context.hpp"
 
 namespace sysid {
@@ -54,7 +54,7 @@ struct BackendRow {
   std::string_view name;
   std::string_view summary;
   Needs needs;
-  Aim aim;  // what its modes are modes of
+  ObjectiveKind objective_kind;  // what its modes are modes of
   std::span<SettingRow const> settings;
   /// Why values that are each allowed do not go together ("burn_in must be smaller than samples"); empty when they do.
   std::string (*refuse)(Settings const&);

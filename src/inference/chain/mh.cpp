@@ -123,7 +123,7 @@ std::vector<metropolis::Adaptation> make_groups(std::vector<Mode> const& modes, 
 std::vector<metropolis::Adaptation> make_prior_groups(Target const& target, int chains, std::uint64_t seed) {
   LaneArray draws(target.dimension(), 1000);
   target.sample_prior({seed, Purpose::start, 0, 0}, draws);
-  Objective const objective = make_objective(target, Aim::posterior, draws);
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, draws);
   Eigen::MatrixXd const covariance = objective.scale.cwiseAbs2().asDiagonal();
   std::vector<metropolis::Adaptation> groups;
   for (int c = 0; c < chains; ++c) groups.emplace_back(std::vector<int>{c}, covariance);
@@ -135,7 +135,7 @@ std::optional<State> begin(Target const& target, Plan const& plan, RunContext& c
   State state;
   LaneArray starts;
   if (plan.global) {
-    SearchResult found = context.modes.empty() ? search(target, Aim::posterior, context)
+    SearchResult found = context.modes.empty() ? search(target, ObjectiveKind::posterior, context)
                                                : SearchResult{context.modes, context.mode_findings, {}, false};
     result.interrupted = found.interrupted;
     result.failure = found.failure;
@@ -197,13 +197,13 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     std::uint64_t const after = state.next[static_cast<std::size_t>(chain)] - plan.burn_in;
     state.record.add(chain, state.chains, move, after % plan.stride == 0);
   };
-  auto const all_past = [&](std::uint64_t iterations) {
+  auto const all_lags = [&](std::uint64_t iterations) {
     return std::all_of(state.next.begin(), state.next.end(), [&](std::uint64_t n) { return n >= iterations; });
   };
 
   context.progress.begin("sampling", plan.samples);
   bool stopped = false;
-  while (!all_past(plan.burn_in) && !(stopped = context.stop_requested())) {
+  while (!all_lags(plan.burn_in) && !(stopped = context.stop_requested())) {
     metropolis::Info const info =
         metropolis::step(target, proposals, key.with_step(state.next.front()), state.chains, context.ledger);
     for (std::uint64_t& n : state.next) ++n;
@@ -213,7 +213,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
   }
   // The proposals are frozen: idle lanes may run ahead. How far must not depend on the machine, or the counts of solves would.
   int const ahead = std::clamp(lanes_worth_filling / plan.chains, 1, most_ahead);
-  while (!stopped && !all_past(plan.samples) && !(stopped = context.stop_requested())) {
+  while (!stopped && !all_lags(plan.samples) && !(stopped = context.stop_requested())) {
     metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
     watch.look(state);
   }

@@ -10,7 +10,7 @@
 #include "gaussian_process/concern.hpp"
 #include "gaussian_process/dense.hpp"
 #include "gaussian_process/regression.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 namespace {
@@ -42,7 +42,7 @@ struct ProcessForecast::FreeRun {
     UniformLeaf leaf;  // of data
   };
   std::vector<Input> inputs;
-  Kernel initial, arguments, outcome;    // states; inputs of all processes; centres, white parts and next states
+  Kernel initial, arguments, outcome;    // states; inputs of all processes; centres, parametric parts and next states
   std::vector<int> argument_of_process;  // first argument of each process
   int processes = 0, all_arguments = 0;
 
@@ -113,16 +113,16 @@ ProcessForecast::ProcessForecast(std::shared_ptr<ProcessTarget const> trained, s
 }
 
 bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count, StreamKey key,
-                              std::uint64_t first, Paths& values, Paths& noisy, Paths& white) const {
+                              std::uint64_t first, Paths& values, Paths& noisy, Paths& parametric) const {
   ProcessRecord::Records const records = record_.run(own);
   if (!records.outcome.front().ok) return false;
   std::vector<int> const rows = all_of(record_.samples());
   for (std::size_t c = 0; c < fitted.size(); ++c) {
     ProcessRows const here = record_.rows(records, static_cast<int>(c), 0, rows);
-    // A sample whose inputs or white part have no value is predicted by nothing; the others are as they are without it.
+    // A sample whose inputs or parametric part have no value is predicted by nothing; the others are as they are without it.
     std::vector<Eigen::Index> predicted;
-    for (Eigen::Index i = 0; i < here.white.size(); ++i)
-      if (here.inputs.row(i).allFinite() && std::isfinite(here.white[i])) predicted.push_back(i);
+    for (Eigen::Index i = 0; i < here.parametric.size(); ++i)
+      if (here.inputs.row(i).allFinite() && std::isfinite(here.parametric[i])) predicted.push_back(i);
     if (predicted.empty()) return false;
     auto const& covariance = model_->channels()[c].covariance;
     auto const count_of_places = static_cast<Eigen::Index>(predicted.size());
@@ -136,10 +136,10 @@ bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitt
       for (Eigen::Index i = 0; i < count_of_places; ++i) {
         Eigen::Index const sample = predicted[static_cast<std::size_t>(i)];
         auto const k = static_cast<std::size_t>(sample);
-        double const value = here.white[sample] + prediction.mean[i] + std::sqrt(prediction.variance[i]) * stream.normal();
+        double const value = here.parametric[sample] + prediction.mean[i] + std::sqrt(prediction.variance[i]) * stream.normal();
         values[c][static_cast<std::size_t>(d)][k] = value;
         noisy[c][static_cast<std::size_t>(d)][k] = value + sd * stream.normal();
-        white[c][static_cast<std::size_t>(d)][k] = here.white[sample];
+        parametric[c][static_cast<std::size_t>(d)][k] = here.parametric[sample];
       }
     }
   }
@@ -151,13 +151,13 @@ void ProcessForecast::run(ConstLanes fitted, ConstLanes own, int count, StreamKe
   std::vector<Channel> const& channels = model_->model().channels;
   std::size_t const samples = static_cast<std::size_t>(record_.samples());
   std::vector<double> const none(samples, std::nan(""));
-  Paths values(channels.size(), {static_cast<std::size_t>(count), none}), noisy = values, white = values;
+  Paths values(channels.size(), {static_cast<std::size_t>(count), none}), noisy = values, parametric = values;
   std::vector<ProcessTarget::Regression> regressions;
   for (int c = 0; c < static_cast<int>(channels.size()); ++c)
     if (auto regression = trained_->regression(fitted, c, false)) regressions.push_back(std::move(*regression));
   bool good = regressions.size() == channels.size();
   if (good && !free_run_) {
-    good = at_once(regressions, own, count, key, first, values, noisy, white);
+    good = at_once(regressions, own, count, key, first, values, noisy, parametric);
   } else if (good) {
     std::vector<DensePosterior> posteriors;
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -204,7 +204,7 @@ void ProcessForecast::run(ConstLanes fitted, ConstLanes own, int count, StreamKe
           double const value = outcome(static_cast<int>(c), d);
           values[c][k][static_cast<std::size_t>(i)] = value;
           noisy[c][k][static_cast<std::size_t>(i)] = value + regressions[c].parameters.back() * streams[k].normal();
-          white[c][k][static_cast<std::size_t>(i)] = outcome(static_cast<int>(channels.size() + c), d);
+          parametric[c][k][static_cast<std::size_t>(i)] = outcome(static_cast<int>(channels.size() + c), d);
         }
       for (int s = 0; s < states; ++s)
         for (int d = 0; d < count; ++d) state(s, d) = outcome(2 * static_cast<int>(channels.size()) + s, d);
@@ -223,7 +223,7 @@ void ProcessForecast::run(ConstLanes fitted, ConstLanes own, int count, StreamKe
         return path;
       };
       result.values[c].push_back(declared(std::move(values[c][d])));
-      result.values[channels.size() + c].push_back(declared(std::move(white[c][d])));
+      result.values[channels.size() + c].push_back(declared(std::move(parametric[c][d])));
       result.noisy[c].push_back(declared(std::move(noisy[c][d])));
     }
 }

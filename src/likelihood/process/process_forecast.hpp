@@ -16,7 +16,7 @@ class ProcessForecast {
   ProcessForecast(std::shared_ptr<ProcessTarget const> trained, std::shared_ptr<ProcessModel const> model,
                   Experiment const& experiment, SolverSettings const& solver, int start_rows, ExecutionOptions const& options);
 
-  /// Channels, then the white part of each.
+  /// Channels, then the parametric part of each.
   std::vector<TrajectoryQuantity> const& quantities() const { return quantities_; }
 
   /// One vector of parameters: fitted [parameters x fitted experiments] and own [parameters x 1], of the model, SI. `count`
@@ -35,7 +35,7 @@ class ProcessForecast {
   struct FreeRun;
   using Paths = std::vector<std::vector<std::vector<double>>>;  // [channels][trajectories][samples], SI
   bool at_once(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count, StreamKey key, std::uint64_t first,
-               Paths& values, Paths& noisy, Paths& white) const;
+               Paths& values, Paths& noisy, Paths& parametric) const;
 
   std::shared_ptr<ProcessTarget const> trained_;
   std::shared_ptr<ProcessModel const> model_;

@@ -1,4 +1,4 @@
-// The white part, linear coefficients and covariances of a model with Gaussian processes.
+// The parametric part, linear coefficients and covariances of a model with Gaussian processes.
 #include "likelihood/process/process_model.hpp"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/text/diagnostic.hpp"
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 namespace {
@@ -130,15 +130,15 @@ void ProcessModel::find_coefficients(std::vector<std::vector<int>>& of_channel) 
 ProcessModel::ProcessModel(Model model, bool free_start, std::string const& method) : model_(std::move(model)), reduced_(model_) {
   std::vector<std::vector<int>> coefficients;
   find_coefficients(coefficients);
-  Model white = model_;
-  Graph& graph = white.graph;
-  white.derived.clear();
-  remove_processes(white);
+  Model parametric = model_;
+  Graph& graph = parametric.graph;
+  parametric.derived.clear();
+  remove_processes(parametric);
   std::vector<NodeId> outputs;
   std::vector<std::vector<int>> arguments(model_.channels.size()), slopes(model_.channels.size());  // among white.derived
   auto const record = [&](NodeId value) {
-    white.derived.push_back({{}, value, true});
-    return static_cast<int>(white.derived.size()) - 1;
+    parametric.derived.push_back({{}, value, true});
+    return static_cast<int>(parametric.derived.size()) - 1;
   };
   for (std::size_t c = 0; c < model_.channels.size(); ++c) {
     std::optional<gaussian_process::Covariance> covariance;
@@ -156,9 +156,9 @@ ProcessModel::ProcessModel(Model model, bool free_start, std::string const& meth
     }
     if (!covariance) throw InternalError("a channel without a process");
     channel.covariance = std::move(*covariance);
-    Channel& of_white = white.channels[c];
-    NodeId const centre = centre_of(graph, of_white);
-    for (NodeId const argument : of_white.noise.arguments)
+    Channel& of_parametric = parametric.channels[c];
+    NodeId const centre = centre_of(graph, of_parametric);
+    for (NodeId const argument : of_parametric.noise.arguments)
       if (argument != centre) {
         channel.noise_sd = static_cast<int>(outputs.size());
         outputs.push_back(argument);
@@ -167,7 +167,7 @@ ProcessModel::ProcessModel(Model model, bool free_start, std::string const& meth
       Parameter& fixed = reduced_.parameters[static_cast<std::size_t>(p)];
       auto const number = [&](std::size_t i) { return graph.constant_value(fixed.prior->arguments[i]).value(); };
       channel.coefficients.push_back({p, number(0), number(1)});
-      slopes[c].push_back(record(graph.differentiate(centre_of(graph, of_white), graph.leaf(LeafKind::parameter, p))));
+      slopes[c].push_back(record(graph.differentiate(centre_of(graph, of_parametric), graph.leaf(LeafKind::parameter, p))));
       fixed.value = fixed.prior->arguments[0];
       fixed.prior.reset();
     }
@@ -184,9 +184,9 @@ ProcessModel::ProcessModel(Model model, bool free_start, std::string const& meth
       return parameter.per_experiment ? std::nullopt : parameter.value;
     });
   covariance_parameters_ = compile_kernel(graph, leaves, outputs);
-  white_ = compile(std::move(white), free_start, method);
-  for (int r = 0; r < static_cast<int>(white_->records.size()); ++r) {
-    CompiledModel::Record const& one = white_->records[static_cast<std::size_t>(r)];
+  parametric_ = compile(std::move(parametric), free_start, method);
+  for (int r = 0; r < static_cast<int>(parametric_->records.size()); ++r) {
+    CompiledModel::Record const& one = parametric_->records[static_cast<std::size_t>(r)];
     if (one.kind == CompiledModel::Record::Kind::centre) channels_[static_cast<std::size_t>(one.index)].centre = r;
     if (one.kind != CompiledModel::Record::Kind::derived) continue;
     for (std::size_t c = 0; c < channels_.size(); ++c) {

@@ -42,8 +42,8 @@ class ProcessModel {
   Model const& model() const { return model_; }
   /// The model as the likelihood has it: coefficients that are integrated out are fixed at the mean of their prior.
   Model const& reduced() const { return reduced_; }
-  /// The white part: the model with every process at zero.
-  std::shared_ptr<CompiledModel const> const& white() const { return white_; }
+  /// The parametric part: the model with every process at zero.
+  std::shared_ptr<CompiledModel const> const& parametric() const { return parametric_; }
   std::vector<ProcessChannel> const& channels() const { return channels_; }
   /// Names of what is integrated out, in the order of the model.
   std::vector<std::string> marginalised() const;
@@ -55,7 +55,7 @@ class ProcessModel {
   void find_coefficients(std::vector<std::vector<int>>& of_channel) const;
 
   Model model_, reduced_;
-  std::shared_ptr<CompiledModel const> white_;
+  std::shared_ptr<CompiledModel const> parametric_;
   std::vector<ProcessChannel> channels_;
   Kernel covariance_parameters_;
 };

@@ -1,4 +1,4 @@
-// The rows that a Gaussian process sees of an experiment: its inputs, the white part, and the slopes of linear coefficients.
+// The rows that a Gaussian process sees of an experiment: its inputs, the parametric part, and the slopes of linear coefficients.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -11,12 +11,12 @@ namespace sysid {
 
 /// Of one channel, SI.
 struct ProcessRows {
-  Eigen::MatrixXd inputs;  // [N x D]
-  Eigen::VectorXd white;   // F [N]
-  Eigen::MatrixXd slopes;  // dF/d(coefficients) [N x p]
+  Eigen::MatrixXd inputs;      // [N x D]
+  Eigen::VectorXd parametric;  // F [N]
+  Eigen::MatrixXd slopes;      // dF/d(coefficients) [N x p]
 };
 
-/// One experiment through the white part of a model.
+/// One experiment through the parametric part of a model.
 class ProcessRecord {
  public:
   ProcessRecord(std::shared_ptr<ProcessModel const> model, Experiment const& experiment, SolverSettings const& solver,

@@ -1,4 +1,4 @@
-// Batches of parameter vectors through the white part, then one regression per vector and channel.
+// Batches of parameter vectors through the parametric part, then one regression per vector and channel.
 #include "likelihood/process/process_target.hpp"
 
 #include <algorithm>
@@ -16,15 +16,15 @@ namespace {
 
 using gaussian_process::Marginal;
 
-/// Coordinates are of order one: the white part of a step this long loses a third of its digits, no more. Of a solver that chooses
-/// its steps a value is known to some parts of `roughness`, and the step is as much longer.
+/// Coordinates are of order one: the parametric part of a step this long loses a third of its digits, no more. Of a solver that
+/// chooses its steps a value is known to some parts of `roughness`, and the step is as much longer.
 double step_of(double roughness) { return std::clamp(0.1 * std::sqrt(roughness), 1e-5, 1e-3); }
 /// Where a sum of squares begins: only that it is fixed matters.
 double offset(int count) { return 100.0 * count + 1000.0; }
 
 }  // namespace
 
-/// The white part at a batch of vectors.
+/// The parametric part at a batch of vectors.
 struct ProcessTarget::Batch {
   LaneArray covariance;                         // hyper-parameters and noise, SI
   std::vector<ProcessRecord::Records> records;  // by experiment
@@ -95,9 +95,9 @@ std::optional<ProcessTarget::Regression> ProcessTarget::regression(Batch const& 
   Eigen::Index next = 0;
   for (std::size_t e = 0; e < records_.size(); ++e) {
     ProcessRows const own = records_[e].rows(batch.records[e], channel, lane, records_[e].fitted(channel));
-    Eigen::Index const size = own.white.size();
+    Eigen::Index const size = own.parametric.size();
     observations.inputs.middleRows(next, size) = own.inputs;
-    observations.values.segment(next, size) -= own.white;
+    observations.values.segment(next, size) -= own.parametric;
     if (p > 0) {  // F was computed with the coefficients at the mean of their prior
       observations.columns.middleRows(next, size) = own.slopes;
       observations.values.segment(next, size) += own.slopes * observations.prior_mean;

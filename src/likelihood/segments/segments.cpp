@@ -61,7 +61,7 @@ Experiment rows_of(Experiment const& experiment, int first, int count) {
   cut(part.time);
   cut(part.scored);
   for (auto& channel : part.measured) cut(channel);
-  for (auto& past : part.has_past) cut(past);
+  for (auto& lagged : part.has_lags) cut(lagged);
   for (InputSignal& input : part.inputs) input = input.view(first, count);
   part.first_row += first;
   return part;

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "repl/work/work.hpp"
+#include "repl/work/workspace.hpp"
 
 namespace sysid::repl {
 

@@ -146,7 +146,7 @@ Figure trace_figure(Draws const& draws) {
       "Draws of each chain (one colour each) in order. Converged chains look alike, like noise around one level; a drift, steps or "
       "separate levels show that they have not converged.";
   if (stride > 1) out.caption += fmt::format(" One draw in {} is shown.", stride);
-  out.caption += multiples_left_out(draws.names.size());
+  out.caption += multiples_excluded(draws.names.size());
   return out;
 }
 
@@ -164,7 +164,7 @@ Figure rank_figure(Draws const& draws) {
       "inside the band, which holds for independent draws; a slope or a hump shows a chain at another level or with another spread "
       "otherwise "
       "than the rest." +
-      multiples_left_out(draws.names.size());
+      multiples_excluded(draws.names.size());
   return out;
 }
 

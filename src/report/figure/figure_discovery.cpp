@@ -126,7 +126,7 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
   out.caption = fmt::format(
       "Posterior densities of the coefficients in {} given exactly these terms; the darker part holds 90 %, the "
       "numbers above are mean ± sd, in the unit of the axis.{}",
-      discovery.equations[equation].target, multiples_left_out(terms.size()));
+      discovery.equations[equation].target, multiples_excluded(terms.size()));
   return out;
 }
 

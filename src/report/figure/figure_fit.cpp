@@ -140,7 +140,7 @@ std::string caption_of(Excerpt const& of, std::string const& name) {
                     : "a single trajectory has no band.");
 }
 
-std::string samples_left_out(Prediction const& prediction, Window w) {
+std::string samples_excluded(Prediction const& prediction, Window w) {
   if (w.whole) return "";
   auto const begin = prediction.scored.begin() + static_cast<std::ptrdiff_t>(w.first);
   return fmt::format(" Shown are the first {} of {} scored samples.",
@@ -172,7 +172,7 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
     drawing.plots.push_back(residual_plot(of, quantity.unit, std::move(below)));
   }
   return {drawing.name, fmt::format("{} on {}", quantity.name, prediction.experiment),
-          caption_of(of, quantity.name) + samples_left_out(prediction, w), script(drawing), Topic::fit};
+          caption_of(of, quantity.name) + samples_excluded(prediction, w), script(drawing), Topic::fit};
 }
 
 }  // namespace sysid

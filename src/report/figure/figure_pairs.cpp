@@ -172,12 +172,12 @@ std::string caption_of(Draws const& draws, std::size_t count) {
   std::string out =
       "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination that the "
       "data determine where the two alone are not; separate clouds are several modes.";
-  if (std::size_t const left_out = draws.names.size() - count; left_out > 0)
+  if (std::size_t const hidden = draws.names.size() - count; hidden > 0)
     out += fmt::format(" Shown are {} of {}, {}; {} {} left out.", count, draws.names.size(),
                        static_cast<std::size_t>(draws.parameter_count) > count
                            ? "those with the strongest correlations among the parameters"
                            : "the first",
-                       left_out, left_out == 1 ? "is" : "are");
+                       hidden, hidden == 1 ? "is" : "are");
   return out;
 }
 

@@ -29,10 +29,10 @@ std::vector<double> finite_draws(Draws const& draws, std::size_t parameter) {
 }
 
 /// What the heads of all records say of a parameter; nothing when they say different things.
-std::optional<double> truth_of(std::vector<DataInfo> const& data, std::string const& name) {
+std::optional<double> true_value_of(std::vector<DataInfo> const& data, std::string const& name) {
   std::optional<double> out;
   for (DataInfo const& each : data)
-    for (TrueValue const& stated : each.truth) {
+    for (TrueValue const& stated : each.true_parameters) {
       if (stated.name != name) continue;
       if (out && *out != stated.value) return std::nullopt;
       out = stated.value;
@@ -43,11 +43,11 @@ std::optional<double> truth_of(std::vector<DataInfo> const& data, std::string co
 /// One parameter: its draws and what they are compared with.
 struct Marginal {
   Summary const& summary;
-  std::vector<double> draws;    // finite, sorted
-  PriorInfo const* prior;       // null: has no density
-  std::optional<double> truth;  // of made data
-  double low = 0, high = 1;     // of the draws that are shown
-  bool truth_is_near = false;   // to what is shown
+  std::vector<double> draws;         // finite, sorted
+  PriorInfo const* prior;            // null: has no density
+  std::optional<double> true_value;  // of made data
+  double low = 0, high = 1;          // of the draws that are shown
+  bool true_value_is_near = false;   // to what is shown
 
   bool tails_cut() const { return draws.front() < low || draws.back() > high; }
 };
@@ -57,7 +57,7 @@ Marginal marginal_of(Report const& report, std::size_t column) {
   auto const prior =
       std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& info) { return info.name == summary.name; });
   Marginal out{summary, finite_draws(report.draws, column), prior != report.priors.end() && prior->density ? &*prior : nullptr,
-               truth_of(report.data, summary.name)};
+               true_value_of(report.data, summary.name)};
   if (out.draws.empty()) return out;
   std::tie(out.low, out.high) = shown_range(out.draws);
   if (out.low == out.high) {  // a bar that can be seen
@@ -66,7 +66,7 @@ Marginal marginal_of(Report const& report, std::size_t column) {
     out.high += half;
   }
   double const extent = out.high - out.low;
-  out.truth_is_near = out.truth && *out.truth > out.low - extent && *out.truth < out.high + extent;
+  out.true_value_is_near = out.true_value && *out.true_value > out.low - extent && *out.true_value < out.high + extent;
   return out;
 }
 
@@ -114,7 +114,7 @@ Plot plot_without_draws(Summary const& summary, Panel panel) {
 /// Axes, label and title of a panel; the ordinate holds the histogram.
 Panel marginal_panel(Marginal const& of, Panel panel) {
   std::pair<double, double> extent(of.low, of.high);
-  if (of.truth_is_near) extent = cover(extent, {*of.truth, *of.truth});
+  if (of.true_value_is_near) extent = cover(extent, {*of.true_value, *of.true_value});
   panel.x = axis(extent.first, extent.second, 4, 0.06);
   panel.x.clear_edges(0.03);
   panel.y = {0, 1.08, 0, {}};
@@ -129,7 +129,7 @@ Panel marginal_panel(Marginal const& of, Panel panel) {
 
 /// `kinds` collects which curves the figure has, for its legend and caption.
 struct Kinds {
-  bool density = false, prior = false, truth = false;
+  bool density = false, prior = false, true_value = false;
 };
 
 Plot marginal_plot(Marginal const& of, std::size_t index, Panel const& at, Kinds& kinds) {
@@ -156,9 +156,9 @@ Plot marginal_plot(Marginal const& of, std::size_t index, Panel const& at, Kinds
     out.panel.y.high = std::max(out.panel.y.high, 1.08 * *std::max_element(density.begin(), density.end()) / peak);
     add("density", std::move(rows), [](std::string const& table) { return line(table, 2, 1.6, model); });
   }
-  if (of.truth_is_near) {
-    kinds.truth = true;
-    add("truth", {{x.scaled(*of.truth), 0}, {x.scaled(*of.truth), out.panel.y.high}},
+  if (of.true_value_is_near) {
+    kinds.true_value = true;
+    add("truth", {{x.scaled(*of.true_value), 0}, {x.scaled(*of.true_value), out.panel.y.high}},
         [](std::string const& table) { return line(table, 2, 1.4, ink); });
   }
   return out;
@@ -168,7 +168,7 @@ std::vector<Key> keys_of(Kinds const& kinds) {
   std::vector<Key> keys = {{Key::area, response_band, "90 % of the draws"}};
   if (kinds.density) keys.push_back({Key::line, model, "density"});
   if (kinds.prior) keys.push_back({Key::dashes, contrast, "prior"});
-  if (kinds.truth) keys.push_back({Key::line, ink, "truth"});
+  if (kinds.true_value) keys.push_back({Key::line, ink, "truth"});
   return keys;
 }
 
@@ -181,10 +181,10 @@ std::string caption_of(Kinds const& kinds, std::string const& far, std::string c
     out +=
         " Dashed: the prior density. Where the posterior equals the prior, the data contain no information; where it ends at an "
         "edge, it is truncated by the prior.";
-  if (kinds.truth) out += " The vertical line is the value with which the data were generated.";
+  if (kinds.true_value) out += " The vertical line is the value with which the data were generated.";
   if (!far.empty()) out += fmt::format(" Generated with values outside the shown range: {}.", far);
   if (!cut.empty()) out += fmt::format(" Of {} the central 98 % are shown: the tails extend much further.", cut);
-  out += multiples_left_out(parameters);
+  out += multiples_excluded(parameters);
   return out;
 }
 
@@ -211,8 +211,8 @@ Figure posterior_figure(Report const& report) {
     }
     drawing.plots.push_back(marginal_plot(of, i, at, kinds));
     if (of.tails_cut()) add_name(cut, of.summary.name);
-    if (of.truth && !of.truth_is_near)
-      add_name(far, fmt::format("{} ({})", of.summary.name, pretty_number(significant(*of.truth, 4))));
+    if (of.true_value && !of.true_value_is_near)
+      add_name(far, fmt::format("{} ({})", of.summary.name, pretty_number(significant(*of.true_value, 4))));
   }
   drawing.legend = Legend{keys_of(kinds), 12, 9};
   return {"posterior", "Posterior and prior", caption_of(kinds, far, cut, columns.size()), script(drawing)};

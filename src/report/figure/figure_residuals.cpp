@@ -40,7 +40,7 @@ struct Correlations {
 /// Correlations with inputs: those shown, and how many are not, for their number or because the input does not vary.
 struct Crossed {
   std::vector<Correlations> shown;
-  std::size_t left_out = 0, constant = 0;
+  std::size_t hidden = 0, constant = 0;
 };
 
 Crossed crossed_with_inputs(Prediction const& prediction, std::vector<double> const& residuals, int lags) {
@@ -56,7 +56,7 @@ Crossed crossed_with_inputs(Prediction const& prediction, std::vector<double> co
       ++out.constant;
   }
   if (out.shown.size() <= most_crossed) return out;
-  out.left_out = out.shown.size() - most_crossed;
+  out.hidden = out.shown.size() - most_crossed;
   out.shown.resize(most_crossed);
   return out;
 }
@@ -124,8 +124,8 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
         " Residuals are relative to the mean of the draws; the checks of a fit use those of its best mode, divided by the sd of "
         "the noise.";
   if (!crossed.shown.empty()) out.caption += " Bars outside the lower band show effects of the input that the model misses.";
-  if (crossed.left_out > 0)
-    out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + crossed.left_out);
+  if (crossed.hidden > 0)
+    out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + crossed.hidden);
   if (crossed.constant > 0) out.caption += " A constant input has no correlation.";
   return out;
 }

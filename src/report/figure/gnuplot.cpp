@@ -122,7 +122,7 @@ std::string to_tenths(std::string_view svg) {
 }
 
 /// Removes what gnuplot writes for features that are not used, and makes its identifiers unique within a page.
-void polish(std::string& svg, std::string const& name) {
+void finish_svg(std::string& svg, std::string const& name) {
   svg = to_tenths(join_points(svg));
   std::size_t const begin = svg.find("<defs>"), end = svg.find("</defs>");
   if (begin != std::string::npos && end != std::string::npos && svg.find("<use", end) == std::string::npos)
@@ -211,7 +211,7 @@ std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format,
     if (format == FigureFormat::pdf && !picture.starts_with("%PDF")) return std::nullopt;
     if (format != FigureFormat::svg) return picture;
     if (picture.find("</svg>") == std::string::npos) return std::nullopt;
-    polish(picture, plot::identifier(figure.name));
+    finish_svg(picture, plot::identifier(figure.name));
     return picture;
   } catch (IoError const&) {
     return std::nullopt;  // a figure is worth no failed run; the report says what is missing

@@ -7,7 +7,7 @@
 
 namespace sysid::plot {
 
-std::string multiples_left_out(std::size_t count) {
+std::string multiples_excluded(std::size_t count) {
   return count > shown_multiples ? fmt::format(" Shown are the first {} of {}.", shown_multiples, count) : "";
 }
 

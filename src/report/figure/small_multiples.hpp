@@ -11,7 +11,7 @@ namespace sysid::plot {
 inline constexpr std::size_t shown_multiples = 18;
 
 /// " Shown are the first 18 of 40."; empty when all are shown.
-std::string multiples_left_out(std::size_t count);
+std::string multiples_excluded(std::size_t count);
 
 /// Pixels from the edges of a small multiple to its panel: room for numbers and labels.
 struct Margins {

@@ -72,13 +72,13 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     tables.push_back(term_table(discovery, equation));
     if (equation.supports.size() > 1) tables.push_back(support_table(equation));
   }
-  if (!discovery.left_out.empty()) {
-    ReportTable left_out{"not offered", "Left out of the dictionary before the record was used.", {"term", ""}, {}};
-    for (DiscoveryReport::LeftOut const& each : discovery.left_out) left_out.rows.push_back({each.term, each.reason});
-    tables.push_back(std::move(left_out));
+  if (!discovery.excluded.empty()) {
+    ReportTable excluded{"not offered", "Left out of the dictionary before the record was used.", {"term", ""}, {}};
+    for (DiscoveryReport::Excluded const& each : discovery.excluded) excluded.rows.push_back({each.term, each.reason});
+    tables.push_back(std::move(excluded));
   }
-  if (discovery.judged)
-    for (ReportTable& table : judged_tables(*discovery.judged)) tables.push_back(std::move(table));
+  if (discovery.validation)
+    for (ReportTable& table : validation_tables(*discovery.validation)) tables.push_back(std::move(table));
   return tables;
 }
 
@@ -89,7 +89,7 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
               {"left_out", Json::array()}};
   for (DiscoveryReport::Noise const& noise : discovery.noise)
     out["noise"][noise.channel] = {{"unit", noise.unit}, {"sd", noise.sd}, {"given", noise.given}};
-  for (DiscoveryReport::LeftOut const& each : discovery.left_out)
+  for (DiscoveryReport::Excluded const& each : discovery.excluded)
     out["left_out"].push_back({{"term", each.term}, {"reason", each.reason}});
   for (DiscoveredEquation const& equation : discovery.equations) {
     Json terms = Json::array(), supports = Json::array();
@@ -119,7 +119,7 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
                                 {"terms", std::move(terms)},
                                 {"supports", std::move(supports)}});
   }
-  if (discovery.judged) out["judged"] = judged_json(*discovery.judged);
+  if (discovery.validation) out["judged"] = validation_json(*discovery.validation);
   return out;
 }
 
@@ -134,8 +134,8 @@ std::vector<std::pair<std::string, std::string>> discovery_files(Report const& r
                            shortest(term.sd), shortest(term.measure), shortest(term.mean), shortest(term.mean_sd),
                            shortest(term.contribution), shortest(term.inflation));
   std::vector<std::pair<std::string, std::string>> files = {{"terms.csv", std::move(terms)}};
-  if (discovery.judged)
-    for (auto& file : judged_files(report, *discovery.judged)) files.push_back(std::move(file));
+  if (discovery.validation)
+    for (auto& file : validation_files(report, *discovery.validation)) files.push_back(std::move(file));
   if (!discovery.source.empty()) files.emplace_back("found.sysid", discovery.source);
   return files;
 }

@@ -13,7 +13,7 @@ struct ReportTable;
 
 std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery);
 nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery);
-/// File names and contents: terms.csv, found.sysid, and those of `judged_files`.
+/// File names and contents: terms.csv, found.sysid, and those of `validation_files`.
 std::vector<std::pair<std::string, std::string>> discovery_files(Report const& report);
 
 }  // namespace sysid

@@ -71,7 +71,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorInfo, name, unit, text, numbers, q5, q95
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FixedValue, name, value, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, inputs_sha256, notes,
-                                   truth)
+                                   true_parameters)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
@@ -149,11 +149,11 @@ void from_json(json const& stored, Chain& chain) {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Draws, names, units, chains, parameter_count)
 
 void to_json(json& out, Band const& band) {
-  out = {{"draws", band.draws}, {"left_out", band.left_out}, {"length", band.mean.size()}};
+  out = {{"draws", band.draws}, {"left_out", band.excluded}, {"length", band.mean.size()}};
 }
 void from_json(json const& stored, Band& band) {
   stored.at("draws").get_to(band.draws);
-  stored.at("left_out").get_to(band.left_out);
+  stored.at("left_out").get_to(band.excluded);
   for (auto* column : {&band.mean, &band.sd, &band.lower, &band.upper}) *column = column_of(stored.at("length"));
 }
 
@@ -214,26 +214,26 @@ void from_json(json const& stored, SelectedModel& model) {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionResult, models, populations, threshold, next_threshold, stopped_by, ran_out)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LikelihoodCheck, log_evidence, probability, solver, given_up)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport::Unmoved, name, unit, prior, why)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport, result, distance, likelihoods, polished, polished_draws, floor, floor_words,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport, result, distance, likelihoods, refined, refined_draws, floor, floor_words,
                                    shared, shared_unmoved, resampling_seed)
 
 // --- discoveries
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedChannel, channel, unit, sd, residual, noise, one_step, horizon, free_run)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedCoefficient, target, term, name, unit, regression, regression_sd, value, sd, of_target)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedStructure, terms, equations, of_regression, failure, given_up, log_evidence, log_prior,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedChannel, channel, unit, sd, residual, noise, one_step, horizon, free_run)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedCoefficient, target, term, name, unit, regression, regression_sd, value, sd, of_target)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedStructure, terms, equations, of_regression, failure, given_up, log_evidence, log_prior,
                                    probability, residual_over_noise, draws, bounded, follows, coefficients, channels)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedReport, structures, segments, shortest, longest, whole, step, horizon, horizon_rows,
-                                   window_rows, aside, aside_seen, solver)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidationReport, structures, segments, shortest, longest, whole, step, horizon, horizon_rows,
+                                   window_rows, held_out, held_out_seen, solver)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredTerm, text, unit, name, fate, kept, coefficient, sd, measure, mean, mean_sd,
                                    contribution, inflation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredSupport, terms, probability, log_evidence)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredEquation, target, equation, terms, supports, explained, noise_ratio, own_noise, unit,
                                    rows, exact, converged)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Noise, channel, unit, sd, given)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::LeftOut, term, reason)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, equations, left_out,
-                                   judged, source)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Excluded, term, reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, equations, excluded,
+                                   validation, source)
 
 // --- the whole
 

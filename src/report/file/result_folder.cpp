@@ -156,7 +156,7 @@ std::string function_file(FunctionReport const& function) {
 
 std::string particles_file(std::string const& model) { return fmt::format("particles_{}.csv", model_file_name(model)); }
 
-std::string polished_file(std::string const& model, std::size_t chain) {
+std::string refined_file(std::string const& model, std::size_t chain) {
   return fmt::format("polished_{}_{}.csv", model_file_name(model), chain + 1);
 }
 

@@ -45,6 +45,6 @@ std::vector<std::string> prediction_files(Report const& report);
 std::string function_file(FunctionReport const& function);
 /// Of a candidate model.
 std::string particles_file(std::string const& model);
-std::string polished_file(std::string const& model, std::size_t chain);
+std::string refined_file(std::string const& model, std::size_t chain);
 
 }  // namespace sysid

@@ -66,22 +66,22 @@ void add_row(ReportTable& table, Summary const& s, std::string const& from) {
   if (!from.empty()) table.rows.back().push_back(from);
 }
 
-bool is_polished(SelectionReport const& selection, std::size_t m) {
-  return m < selection.polished.size() && !selection.polished[m].empty();
+bool is_refined(SelectionReport const& selection, std::size_t m) {
+  return m < selection.refined.size() && !selection.refined[m].empty();
 }
 
 ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
   SelectedModel const& model = selection.result.models[m];
-  bool const polished = is_polished(selection, m);
+  bool const refined = is_refined(selection, m);
   ReportTable table{"parameters of " + model.name,
                     "The sd of the particles depends on the threshold and is not that of the posterior.",
                     {"", "unit", "mean", "sd", "q5", "median", "q95"},
                     {}};
-  if (polished) table.header.push_back("from");
+  if (refined) table.header.push_back("from");
   for (WeightedSummary const& s : model.summaries)
-    add_row(table, as_summary(s, effective_particles(model.weight)), polished ? "particles" : "");
-  if (polished)
-    for (Summary const& s : selection.polished[m]) add_row(table, s, "likelihood");
+    add_row(table, as_summary(s, effective_particles(model.weight)), refined ? "particles" : "");
+  if (refined)
+    for (Summary const& s : selection.refined[m]) add_row(table, s, "likelihood");
   return table;
 }
 
@@ -145,7 +145,7 @@ std::string model_file_name(std::string const& model) {
 std::vector<ReportTable> selection_tables(SelectionReport const& selection) {
   std::vector<ReportTable> tables = {model_table(selection), population_table(selection)};
   for (std::size_t m = 0; m < selection.result.models.size(); ++m)
-    if (selection.result.models[m].died_in == 0 && (!selection.result.models[m].summaries.empty() || is_polished(selection, m)))
+    if (selection.result.models[m].died_in == 0 && (!selection.result.models[m].summaries.empty() || is_refined(selection, m)))
       tables.push_back(parameter_table(selection, m));
   if (!selection.shared.empty()) tables.push_back(shared_table(selection));
   if (!selection.shared_unmoved.empty()) {
@@ -175,8 +175,8 @@ nlohmann::ordered_json models_json(SelectionReport const& selection) {
     entry["parameters"] = Json::object();
     if (model.died_in > 0) continue;
     for (WeightedSummary const& s : model.summaries) entry["parameters"][s.name] = weighted_json(s);
-    if (!is_polished(selection, m)) continue;
-    for (Summary const& s : selection.polished[m])
+    if (!is_refined(selection, m)) continue;
+    for (Summary const& s : selection.refined[m])
       entry["polished"][s.name] = {
           {"unit", s.unit}, {"mean", s.mean},         {"median", s.median},    {"sd", s.sd}, {"q5", s.q5}, {"q95", s.q95},
           {"rhat", s.rhat}, {"ess_bulk", s.ess_bulk}, {"ess_tail", s.ess_tail}};
@@ -222,10 +222,10 @@ std::vector<std::pair<std::string, std::string>> selection_files(Report const& r
     of_model.data = report.data;
     of_model.draws = resampled_draws(model, selection.resampling_seed);
     files.emplace_back(fmt::format("draws_{}.csv", name), draws_csv(of_model, 0));
-    if (m >= selection.polished_draws.size()) continue;
-    of_model.draws = selection.polished_draws[m];
+    if (m >= selection.refined_draws.size()) continue;
+    of_model.draws = selection.refined_draws[m];
     for (std::size_t c = 0; c < of_model.draws.chains.size(); ++c)
-      files.emplace_back(polished_file(model.name, c), draws_csv(of_model, static_cast<int>(c)));
+      files.emplace_back(refined_file(model.name, c), draws_csv(of_model, static_cast<int>(c)));
   }
   return files;
 }

@@ -28,38 +28,40 @@ std::string percent_text(std::optional<double> percent) {
 
 std::string seconds(double value) { return significant(value, 3) + " s"; }
 
-ReportTable structure_table(JudgedReport const& judged) {
-  std::string const segments = judged.segments == 1
-                                   ? fmt::format("one run of {}", seconds(judged.longest))
-                                   : fmt::format("{} runs of {}, each with its own start", judged.segments,
-                                                 judged.longest - judged.shortest > judged.step
-                                                     ? fmt::format("{} to {}", seconds(judged.shortest), seconds(judged.longest))
-                                                     : seconds(judged.longest));
+ReportTable structure_table(ValidationReport const& validation) {
+  std::string const segments =
+      validation.segments == 1
+          ? fmt::format("one run of {}", seconds(validation.longest))
+          : fmt::format("{} runs of {}, each with its own start", validation.segments,
+                        validation.longest - validation.shortest > validation.step
+                            ? fmt::format("{} to {}", seconds(validation.shortest), seconds(validation.longest))
+                            : seconds(validation.longest));
   ReportTable table{fmt::format("structures by simulation: {}", segments),
                     "Log odds: of a structure relative to the first, by evidence and number of terms.",
                     {"terms", "log odds", "probability", "residual/noise"},
                     {}};
-  bool const scored = !judged.aside.empty();
+  bool const scored = !validation.held_out.empty();
   if (scored) {
     table.caption += fmt::format(
         " Errors: root mean square in percent of the sd, the worst channel, on {}{}; {} rows ahead are {}; starts from {} rows "
         "before.",
-        judged.aside,
-        judged.aside_seen ? ", which were not used to estimate the coefficients of these scores, but were used to choose the terms"
-                          : "",
-        judged.horizon_rows, seconds(judged.horizon), judged.window_rows);
-    table.header.insert(table.header.end(), {"1 row ahead %", fmt::format("{} rows %", judged.horizon_rows), "free run %"});
+        validation.held_out,
+        validation.held_out_seen
+            ? ", which were not used to estimate the coefficients of these scores, but were used to choose the terms"
+            : "",
+        validation.horizon_rows, seconds(validation.horizon), validation.window_rows);
+    table.header.insert(table.header.end(), {"1 row ahead %", fmt::format("{} rows %", validation.horizon_rows), "free run %"});
   }
   table.header.push_back("draws bounded");
-  auto const weight = [](JudgedStructure const& each) { return each.log_evidence + each.log_prior; };
-  double const best = judged.structures.empty() ? 0 : weight(judged.structures.front());
-  for (JudgedStructure const& each : judged.structures) {
+  auto const weight = [](ValidatedStructure const& each) { return each.log_evidence + each.log_prior; };
+  double const best = validation.structures.empty() ? 0 : weight(validation.structures.front());
+  for (ValidatedStructure const& each : validation.structures) {
     if (!each.failure.empty()) continue;
     std::vector<std::string> row = {each.terms};
     row.insert(row.end(), {significant(weight(each) - best, 4), probability_text(each.probability),
                            each.residual_over_noise > 0 ? significant(each.residual_over_noise, 3) : ""});
     if (scored)
-      for (auto const error : {&JudgedChannel::one_step, &JudgedChannel::horizon, &JudgedChannel::free_run})
+      for (auto const error : {&ValidatedChannel::one_step, &ValidatedChannel::horizon, &ValidatedChannel::free_run})
         row.push_back(percent_text(each.percent(error)));
     row.push_back(each.draws > 0 ? fmt::format("{} of {}", each.bounded, each.draws) : "");
     table.rows.push_back(std::move(row));
@@ -67,21 +69,21 @@ ReportTable structure_table(JudgedReport const& judged) {
   return table;
 }
 
-ReportTable failure_table(JudgedReport const& judged) {
+ReportTable failure_table(ValidationReport const& validation) {
   ReportTable table{"structures that could not be checked by simulation", "", {"terms", "why"}, {}};
-  for (JudgedStructure const& each : judged.structures)
+  for (ValidatedStructure const& each : validation.structures)
     if (!each.failure.empty()) table.rows.push_back({each.terms, each.failure});
   return table;
 }
 
-ReportTable coefficient_table(JudgedStructure const& best) {
+ReportTable coefficient_table(ValidatedStructure const& best) {
   bool const several = best.equations.size() > 1;
   ReportTable table{"coefficients by simulation",
                     "Compared with those of the regression on the same terms.",
                     {"term", "coefficient", "sd", "regression", "sd", "unit"},
                     {}};
   if (several) table.header.insert(table.header.begin(), "equation");
-  for (JudgedCoefficient const& each : best.coefficients) {
+  for (ValidatedCoefficient const& each : best.coefficients) {
     auto const [value, sd] = coefficient_text(each.value, each.sd);
     auto const [before, before_sd] = coefficient_text(each.regression, each.regression_sd);
     std::vector<std::string> row = {each.term, value, sd, before, before_sd, each.unit};
@@ -91,13 +93,13 @@ ReportTable coefficient_table(JudgedStructure const& best) {
   return table;
 }
 
-ReportTable channel_table(JudgedReport const& judged, JudgedStructure const& best) {
+ReportTable channel_table(ValidationReport const& validation, ValidatedStructure const& best) {
   ReportTable table{
-      fmt::format("errors of the first structure on {}", judged.aside),
+      fmt::format("errors of the first structure on {}", validation.held_out),
       "Root mean square, in the channel's unit; the residual is that of the refit.",
-      {"channel", "unit", "sd", "noise", "residual", "1 row ahead", fmt::format("{} rows", judged.horizon_rows), "free run"},
+      {"channel", "unit", "sd", "noise", "residual", "1 row ahead", fmt::format("{} rows", validation.horizon_rows), "free run"},
       {}};
-  for (JudgedChannel const& each : best.channels) {
+  for (ValidatedChannel const& each : best.channels) {
     auto const shown = [&](std::optional<double> value) {
       if (value && each.sd > 0 && !(*value <= lost_sds * each.sd)) return fmt::format("> {} sd", lost_sds);
       return value ? significant(*value, 3) : std::string();
@@ -112,31 +114,31 @@ Json number_or_null(std::optional<double> value) { return value && std::isfinite
 
 }  // namespace
 
-std::vector<ReportTable> judged_tables(JudgedReport const& judged) {
-  bool const any = !judged.structures.empty() && judged.structures.front().failure.empty();
+std::vector<ReportTable> validation_tables(ValidationReport const& validation) {
+  bool const any = !validation.structures.empty() && validation.structures.front().failure.empty();
   std::vector<ReportTable> tables;
-  if (any) tables.push_back(structure_table(judged));
-  if (ReportTable failed = failure_table(judged); !failed.rows.empty()) tables.push_back(std::move(failed));
+  if (any) tables.push_back(structure_table(validation));
+  if (ReportTable failed = failure_table(validation); !failed.rows.empty()) tables.push_back(std::move(failed));
   if (!any) return tables;
-  JudgedStructure const& best = judged.structures.front();
+  ValidatedStructure const& best = validation.structures.front();
   tables.push_back(coefficient_table(best));
-  if (!judged.aside.empty()) tables.push_back(channel_table(judged, best));
+  if (!validation.held_out.empty()) tables.push_back(channel_table(validation, best));
   return tables;
 }
 
-nlohmann::ordered_json judged_json(JudgedReport const& judged) {
-  Json out = {{"segments", judged.segments},
-              {"shortest_segment", judged.shortest},
-              {"longest_segment", judged.longest},
-              {"whole", judged.whole},
-              {"solver", judged.solver},
-              {"kept_aside", judged.aside},
-              {"kept_aside_seen_by_choice", judged.aside_seen},
-              {"horizon", judged.horizon},
-              {"horizon_rows", judged.horizon_rows},
-              {"start_rows", judged.window_rows},
+nlohmann::ordered_json validation_json(ValidationReport const& validation) {
+  Json out = {{"segments", validation.segments},
+              {"shortest_segment", validation.shortest},
+              {"longest_segment", validation.longest},
+              {"whole", validation.whole},
+              {"solver", validation.solver},
+              {"kept_aside", validation.held_out},
+              {"kept_aside_seen_by_choice", validation.held_out_seen},
+              {"horizon", validation.horizon},
+              {"horizon_rows", validation.horizon_rows},
+              {"start_rows", validation.window_rows},
               {"structures", Json::array()}};
-  for (JudgedStructure const& each : judged.structures) {
+  for (ValidatedStructure const& each : validation.structures) {
     Json structure = {{"terms", each.terms}, {"rank_by_regression", each.of_regression}};
     if (!each.failure.empty()) {
       structure["failure"] = each.failure;
@@ -144,7 +146,7 @@ nlohmann::ordered_json judged_json(JudgedReport const& judged) {
       continue;
     }
     Json coefficients = Json::array(), channels = Json::array();
-    for (JudgedCoefficient const& one : each.coefficients)
+    for (ValidatedCoefficient const& one : each.coefficients)
       coefficients.push_back({{"target", one.target},
                               {"term", one.term},
                               {"name", one.name},
@@ -153,7 +155,7 @@ nlohmann::ordered_json judged_json(JudgedReport const& judged) {
                               {"sd", number_or_null(one.sd)},
                               {"regression", one.regression},
                               {"regression_sd", one.regression_sd}});
-    for (JudgedChannel const& one : each.channels)
+    for (ValidatedChannel const& one : each.channels)
       channels.push_back({{"channel", one.channel},
                           {"unit", one.unit},
                           {"sd", one.sd},
@@ -177,14 +179,14 @@ nlohmann::ordered_json judged_json(JudgedReport const& judged) {
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> judged_files(Report const& report, JudgedReport const& judged) {
+std::vector<std::pair<std::string, std::string>> validation_files(Report const& report, ValidationReport const& validation) {
   std::string structures =
       csv_head(report) +
       "rank,rank_by_regression,terms,failure,log_evidence,log_prior,probability,residual_over_noise,one_step_percent,"
       "horizon_percent,free_run_percent,follows_for,draws,draws_bounded\n";
   std::string refit = csv_head(report) + "rank,equation,term,name,unit,coefficient,sd,regression,regression_sd\n";
   int rank = 0;
-  for (JudgedStructure const& each : judged.structures) {
+  for (ValidatedStructure const& each : validation.structures) {
     auto const percent = [&](auto error) {
       auto const value = each.percent(error);
       return value ? shortest(*value) : std::string();
@@ -194,10 +196,11 @@ std::vector<std::pair<std::string, std::string>> judged_files(Report const& repo
         each.failure.empty()
             ? fmt::format("{},{},{},,{},{},{},{},{},{},{},{},{},{}\n", rank, each.of_regression, csv_field(each.terms),
                           shortest(each.log_evidence), shortest(each.log_prior), shortest(each.probability),
-                          shortest(each.residual_over_noise), percent(&JudgedChannel::one_step), percent(&JudgedChannel::horizon),
-                          percent(&JudgedChannel::free_run), shortest(each.follows), each.draws, each.bounded)
+                          shortest(each.residual_over_noise), percent(&ValidatedChannel::one_step),
+                          percent(&ValidatedChannel::horizon), percent(&ValidatedChannel::free_run), shortest(each.follows),
+                          each.draws, each.bounded)
             : fmt::format("{},{},{},{},,,,,,,,,,\n", rank, each.of_regression, csv_field(each.terms), csv_field(each.failure));
-    for (JudgedCoefficient const& one : each.coefficients)
+    for (ValidatedCoefficient const& one : each.coefficients)
       refit += fmt::format("{},{},{},{},{},{},{},{},{}\n", rank, csv_field(one.target), csv_field(one.term), csv_field(one.name),
                            csv_field(one.unit), shortest(one.value), shortest(one.sd), shortest(one.regression),
                            shortest(one.regression_sd));

@@ -7,13 +7,13 @@
 
 namespace sysid {
 
-struct JudgedReport;
+struct ValidationReport;
 struct Report;
 struct ReportTable;
 
-std::vector<ReportTable> judged_tables(JudgedReport const& judged);
-nlohmann::ordered_json judged_json(JudgedReport const& judged);
+std::vector<ReportTable> validation_tables(ValidationReport const& validation);
+nlohmann::ordered_json validation_json(ValidationReport const& validation);
 /// structures.csv and refit.csv.
-std::vector<std::pair<std::string, std::string>> judged_files(Report const& report, JudgedReport const& judged);
+std::vector<std::pair<std::string, std::string>> validation_files(Report const& report, ValidationReport const& validation);
 
 }  // namespace sysid

@@ -141,11 +141,11 @@ Report read_result(fs::path const& folder) {
   SelectionReport& selection = *report.selection;
   for (SelectedModel& model : selection.result.models)
     if (!model.weight.empty()) read_particles(folder / particles_file(model.name), model);
-  for (std::size_t m = 0; m < selection.polished_draws.size(); ++m) {
+  for (std::size_t m = 0; m < selection.refined_draws.size(); ++m) {
     if (selection.result.models[m].died_in > 0 || selection.result.models[m].weight.empty()) continue;  // they have no files
-    Draws& draws = selection.polished_draws[m];
+    Draws& draws = selection.refined_draws[m];
     for (std::size_t c = 0; c < draws.chains.size(); ++c)
-      read_chain(folder / polished_file(selection.result.models[m].name, c), draws, draws.chains[c]);
+      read_chain(folder / refined_file(selection.result.models[m].name, c), draws, draws.chains[c]);
   }
   return report;
 }

@@ -37,7 +37,7 @@ Json dictionary_object(DictionaryPage const& dictionary) {
           {"states", lines(dictionary.states)},
           {"inputs", lines(dictionary.inputs)},
           {"equations", std::move(equations)},
-          {"left_out", dictionary.left_out}};
+          {"left_out", dictionary.excluded}};
 }
 
 Json coverage_object(CoveragePage const& data) {
@@ -132,12 +132,12 @@ Json process_object(ProcessPage const& page) {
           {"priors", lines}};
 }
 
-void add_outlook(Outlook const& outlook, Json& out) {
-  out["prior"] = outlook.prior ? prior_object(*outlook.prior) : Json(nullptr);
-  out["information"] = outlook.information ? information_object(*outlook.information) : Json(nullptr);
+void add_preflight(PreflightPage const& preflight, Json& out) {
+  out["prior"] = preflight.prior ? prior_object(*preflight.prior) : Json(nullptr);
+  out["information"] = preflight.information ? information_object(*preflight.information) : Json(nullptr);
   out["processes"] = Json::array();
-  for (ProcessPage const& process : outlook.processes) out["processes"].push_back(process_object(process));
-  out["left_out"] = outlook.left_out;
+  for (ProcessPage const& process : preflight.processes) out["processes"].push_back(process_object(process));
+  out["left_out"] = preflight.not_examined;
 }
 
 // A fit has its outlook in the object of the task, a selection one for each candidate in `candidates`.
@@ -146,19 +146,19 @@ Json task_object(TaskPage const& task) {
   for (CoveragePage const& coverage : task.coverage) data.push_back(coverage_object(coverage));
   Json out = {{"name", task.name}, {"what", task.what}, {"data", data}};
   Findings findings = task.findings;
-  Outlook own;
-  for (Outlook const& outlook : task.outlooks) {
-    if (outlook.candidate.empty()) {
-      own = outlook;
+  PreflightPage own;
+  for (PreflightPage const& preflight : task.preflights) {
+    if (preflight.candidate.empty()) {
+      own = preflight;
       findings = task.all_findings();
       continue;
     }
-    Json candidate = {{"name", outlook.candidate}};
-    add_outlook(outlook, candidate);
-    candidate["findings"] = findings_array(outlook.findings);
+    Json candidate = {{"name", preflight.candidate}};
+    add_preflight(preflight, candidate);
+    candidate["findings"] = findings_array(preflight.findings);
     candidates.push_back(std::move(candidate));
   }
-  add_outlook(own, out);
+  add_preflight(own, out);
   out["findings"] = findings_array(findings);
   out["candidates"] = std::move(candidates);
   return out;

@@ -198,13 +198,13 @@ std::string task_text(TaskPage const& task) {
   std::string out = fmt::format("task {}: {}\n", task.name, task.what);
   for (CoveragePage const& data : task.coverage) out += coverage_text(data);
   out += findings_text(task.findings);
-  for (Outlook const& outlook : task.outlooks) {
-    if (!outlook.candidate.empty()) out += fmt::format(" candidate {}\n", outlook.candidate);
-    if (outlook.prior) out += prior_text(*outlook.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
-    if (outlook.information) out += information_text(*outlook.information);
-    for (ProcessPage const& process : outlook.processes) out += process_text(process);
-    if (!outlook.left_out.empty()) out += entry("skipped", {outlook.left_out});
-    out += findings_text(outlook.findings);
+  for (PreflightPage const& preflight : task.preflights) {
+    if (!preflight.candidate.empty()) out += fmt::format(" candidate {}\n", preflight.candidate);
+    if (preflight.prior) out += prior_text(*preflight.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
+    if (preflight.information) out += information_text(*preflight.information);
+    for (ProcessPage const& process : preflight.processes) out += process_text(process);
+    if (!preflight.not_examined.empty()) out += entry("skipped", {preflight.not_examined});
+    out += findings_text(preflight.findings);
   }
   return out;
 }
@@ -216,7 +216,7 @@ std::string dictionary_text(DictionaryPage const& page) {
   out += table(plural("state", page.states.size()), rows_of(page.states), 3);
   out += table(plural("input", page.inputs.size()), rows_of(page.inputs), 3);
   for (DictionaryPage::Equation const& equation : page.equations) out += equation_text(equation, page.equations.size() == 1);
-  return out + entry("left out", page.left_out);
+  return out + entry("left out", page.excluded);
 }
 
 std::string check_text(CheckPage const& page) {
@@ -237,7 +237,8 @@ std::string check_text(CheckPage const& page) {
   if (serious > 0) found.push_back(counted(serious, "serious finding"));
   if (warnings > 0) found.push_back(counted(warnings, "warning"));
   bool const all = std::all_of(page.tasks.begin(), page.tasks.end(), [](TaskPage const& task) {
-    return std::all_of(task.outlooks.begin(), task.outlooks.end(), [](Outlook const& each) { return each.left_out.empty(); });
+    return std::all_of(task.preflights.begin(), task.preflights.end(),
+                       [](PreflightPage const& each) { return each.not_examined.empty(); });
   });
   out += fmt::format("{}\n", found.empty() ? all ? "nothing found" : "nothing found in the parts that were checked"
                                            : fmt::format("{}", fmt::join(found, ", ")));

@@ -51,7 +51,7 @@ std::string parameters(Report const& report) {
     if (known && prior->q5 && prior->q95)
       row[1] += fmt::format("<br/><span class=\"unit\">{} to {}</span>", pretty_number(significant(*prior->q5, 3)),
                             pretty_number(significant(*prior->q95, 3)));
-    if (auto const ratio = known ? narrowing(*prior, s) : std::nullopt) {
+    if (auto const ratio = known ? contraction(*prior, s) : std::nullopt) {
       auto const [low, high] = interval_90(s);
       row[2] = range_chart(*prior->q5, *prior->q95, low, high, s.mean,
                            fmt::format("{} from {} to {}, prior from {} to {}", s.name, significant(low, 3), significant(high, 3),

@@ -68,23 +68,23 @@ class Pictures {
   Pictures(std::vector<DrawnFigure> const& figures, std::string const& prefix) : figures_(figures), prefix_(prefix) {}
 
   std::string of(plot::Topic topic) {
-    std::string shown, left_out;
+    std::string shown, excluded;
     for (DrawnFigure const& drawn : figures_) {
       if (drawn.figure.topic != topic) continue;
       if (drawn.svg) {
         ++number_;
         shown += figure_html(drawn, fmt::format("{}figure-{}", prefix_, number_), number_);
       } else {
-        left_out += fmt::format("<li>{} ({})</li>\n", escape(drawn.figure.title),
+        excluded += fmt::format("<li>{} ({})</li>\n", escape(drawn.figure.title),
                                 code(fmt::format("figures/{}.gnuplot", drawn.figure.name)));
       }
     }
-    if (left_out.empty()) return shown;
+    if (excluded.empty()) return shown;
     return shown + fmt::format(
                        "<div class=\"missing\"><p>Not drawn, because figures were not requested, or gnuplot is not installed or "
                        "failed. Install it (<code>apt-get install gnuplot-nox</code>) and write this page again with <code>sysid "
                        "report</code>, or run the scripts in the folder of this page:</p>\n<ul>\n{}</ul></div>\n",
-                       left_out);
+                       excluded);
   }
 
  private:

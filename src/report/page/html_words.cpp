@@ -92,7 +92,7 @@ std::string verdict_words(Report const& report) {
   std::string missing;
   for (DiscoveredEquation const& each : report.discovery->equations)
     if (each.equation.empty()) missing += fmt::format("{}`{}`", missing.empty() ? "nothing found for " : ", ", each.target);
-  std::string const judged = judge(report.findings).text;
+  std::string const judged = verdict_of(report.findings).text;
   return missing + (missing.empty() ? "" : "; ") + judged.substr(0, judged.find('\n'));
 }
 
@@ -156,30 +156,30 @@ std::vector<ChainWords> chain_words(Report const& report) {
   if (!has_chains(report)) return out;
   if (auto const rhat = extreme(
           report, [](Summary const& s) { return s.rhat; }, true)) {
-    bool const good = rhat->value <= rhat_bar;
+    bool const good = rhat->value <= rhat_threshold;
     out.push_back({"R-hat",
                    fmt::format("{:.3f} at most ({}): {} below {}.", rhat->value, rhat->name,
-                               good                      ? "the chains agree; the value is"
-                               : rhat->value > rhat_loud ? "the chains disagree; the value should be"
-                                                         : "the chains do not fully agree; the value should be",
-                               rhat_bar),
+                               good                           ? "the chains agree; the value is"
+                               : rhat->value > rhat_far_above ? "the chains disagree; the value should be"
+                                                              : "the chains do not fully agree; the value should be",
+                               rhat_threshold),
                    good});
   }
   for (auto const& [name, what, of] :
        {std::tuple("bulk ESS", "means", std::function([](Summary const& s) { return s.ess_bulk; })),
         std::tuple("tail ESS", "5 and 95 % limits", std::function([](Summary const& s) { return s.ess_tail; }))})
     if (auto const ess = extreme(report, of, false)) {
-      bool const good = ess->value >= ess_bar;
+      bool const good = ess->value >= ess_threshold;
       out.push_back(
           {name,
            fmt::format("{:.0f} at least ({}): the draws are equivalent to this many independent draws for {}, {}.", ess->value,
-                       ess->name, what, good ? "enough" : fmt::format("fewer than the {} that are needed", ess_bar)),
+                       ess->name, what, good ? "enough" : fmt::format("fewer than the {} that are needed", ess_threshold)),
            good});
     }
   if (auto const error = extreme(
           report, [](Summary const& s) { return s.sd > 0 ? s.mcse_mean / s.sd : std::nan(""); }, true)) {
     // Of as many independent draws as are asked for.
-    bool const good = error->value <= 1 / std::sqrt(ess_bar) + 1e-12;
+    bool const good = error->value <= 1 / std::sqrt(ess_threshold) + 1e-12;
     out.push_back({"Monte Carlo error",
                    fmt::format("{} % of an sd at most ({}): another seed changes a mean by about this much.",
                                number(100 * error->value, 2), error->name),
@@ -248,7 +248,7 @@ std::string learning_words(Report const& report) {
     if (summary.coefficient) continue;
     for (PriorInfo const& prior : report.priors) {
       if (prior.name != summary.name) continue;
-      auto const ratio = narrowing(prior, summary);
+      auto const ratio = contraction(prior, summary);
       if (!ratio) continue;
       ++known;
       if (*ratio >= hardly_narrower) continue;

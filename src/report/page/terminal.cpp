@@ -93,7 +93,7 @@ std::string terminal_summary(Report const& report) {
   facts += evidence_line(report) + ledger_text(report);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report)) {
-    std::string const judged = judge(report.findings).text;
+    std::string const judged = verdict_of(report.findings).text;
     std::string const list = judged.substr(std::min(judged.find('\n'), judged.size()));
     out += fmt::format("\nverdict: {}{}\n", verdict_headline(report), list);
   }

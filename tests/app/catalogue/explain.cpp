@@ -74,12 +74,6 @@ TEST_CASE("the sections about findings stand in the order of the table, which fi
   CHECK_FALSE(finding_code("no_such_finding"));
 }
 
-TEST_CASE("a finding has a severity of its row") {
-  CHECK_NOTHROW(Finding(FindingCode::explains_little, Severity::error, {}, "m", ""));
-  CHECK_NOTHROW(Finding(FindingCode::explains_little, Severity::warning, {}, "m", ""));
-  CHECK_THROWS_AS(Finding(FindingCode::explains_little, Severity::note, {}, "m", ""), InternalError);
-}
-
 TEST_CASE("the page about the verdict names every finding") {
   std::string const methods = content(std::filesystem::path(SYSID_SOURCE_DIR) / "docs" / "methods" / "verdict.md");
   std::size_t const begin = methods.find("## Findings and exit codes");

@@ -69,7 +69,7 @@ posterior = fit loop to bench with mh(), seed = 1
 }  // namespace
 
 TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior it looks at") {
-  int count = 0, dictionaries = 0, outlooks = 0;
+  int count = 0, dictionaries = 0, preflights = 0;
   for (auto const& entry : std::filesystem::recursive_directory_iterator(models)) {
     if (entry.path().extension() != ".sysid") continue;
     ++count;
@@ -83,8 +83,8 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
       if (!seed) dictionaries += static_cast<int>(result.page.dictionaries.size());
       for (TaskPage const& page : result.page.tasks) {
         for (Finding const& finding : page.findings) FAIL_CHECK(page.name << ": " << finding.message);
-        for (Outlook const& each : page.outlooks) {
-          ++outlooks;
+        for (PreflightPage const& each : page.preflights) {
+          ++preflights;
           for (Finding const& finding : each.findings) {
             // True of rivals, told as notes: with n = 4 and a negative beta the slope of z grows as its fourth power, so a fifth of
             // the prior is beyond what can be simulated; with n = 1 beta is small beside A/z, so little of it shows.
@@ -93,12 +93,12 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
             if (!true_of_rival || finding.severity != Severity::note)
               FAIL_CHECK(page.name << " " << each.candidate << ": " << finding.message);
           }
-          if (each.left_out.find("has a Gaussian process") != std::string::npos) continue;
+          if (each.not_examined.find("has a Gaussian process") != std::string::npos) continue;
           if (entry.path().filename() == "grey.sysid") {  // 43 parameters: more than a check has time for, and it says so
-            CHECK(each.left_out.find("43 parameters") != std::string::npos);
+            CHECK(each.not_examined.find("43 parameters") != std::string::npos);
             continue;
           }
-          CHECK(each.left_out == "");
+          CHECK(each.not_examined == "");
           REQUIRE(each.prior);
           CHECK(each.prior->draws == 128);
           // Within ten: a unit a thousand times too large or too small lies beyond the bar of a hundred, whichever model has it.
@@ -110,13 +110,13 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
     }
   }
   CHECK(count >= 4);
-  CHECK(outlooks >= 3 * (count - dictionaries + 5));  // five candidates and two beside the fits; a discovery has none
+  CHECK(preflights >= 3 * (count - dictionaries + 5));  // five candidates and two beside the fits; a discovery has none
 }
 
 TEST_CASE("steps too long for a prior's fast end are not a failing model; stated, they are a finding") {
   // Weekly rows, and rates of which most are above 1/day.
   CheckResult const chosen = checked(models / "sir/sir.sysid", shipped("sir/sir.sysid"));
-  PriorPage const& prior = *outlook(chosen, "posterior").prior;
+  PriorPage const& prior = *preflight(chosen, "posterior").prior;
   CHECK(prior.failed_as_stated > 64);
   CHECK(prior.failed < 26);
   CHECK(check_text(chosen.page).find("because its steps are too long") != std::string::npos);
@@ -142,7 +142,7 @@ TEST_CASE("a vague prior that the data do not narrow is named, a narrow one is k
 
 TEST_CASE("a ridge along which both parameters are narrowed is told, not warned of") {
   CheckResult const result = checked(models / "robertson/robertson.sysid", shipped("robertson/robertson.sysid"));
-  InformationPage const& information = *outlook(result, "estimate").information;
+  InformationPage const& information = *preflight(result, "estimate").information;
   REQUIRE(information.ridges.size() == 1);
   CHECK(information.ridges[0].find("k1 and k3 are nearly confounded, but both are narrower than their priors") == 0);
 }
@@ -240,7 +240,7 @@ TEST_CASE("a parameter that nothing reads is told by the checker alone, one that
   CheckResult const unread = checked(models / "duffing/idle.sysid", text);
   CHECK(messages(unread, "not_identifiable").empty());
   std::string instead;
-  for (InformationPage::Line const& line : outlook(unread, "posterior").information->lines)
+  for (InformationPage::Line const& line : preflight(unread, "posterior").information->lines)
     if (line.name == "idle") instead = line.instead;
   CHECK(instead == "not used");
   CheckResult const derived =
@@ -274,7 +274,7 @@ data bench { file "map.csv"; time t [s]; input x = x; measure o = o }
 found = fit map to bench with map
 )";
   CheckResult const result = checked(folder.path() / "map.sysid", text);
-  InformationPage const& information = *outlook(result, "found").information;
+  InformationPage const& information = *preflight(result, "found").information;
   CHECK(information.moves.empty());
   TaskPage const& page = task(result, "found");
   CHECK(page.all_findings().empty());
@@ -309,7 +309,7 @@ ahead = fit decay to bench with map
 free = fit decay to bench with map, prediction = free_run
 )";
   CheckResult const result = checked(folder.path() / "decay.sysid", text);
-  auto const expected = [&](std::string const& name) { return outlook(result, name).information->lines.at(0); };
+  auto const expected = [&](std::string const& name) { return preflight(result, name).information->lines.at(0); };
   double const ahead = 0.001 / std::sqrt(1 / (1 - 0.25));
   CHECK(expected("ahead").low == doctest::Approx(ahead).epsilon(0.01));
   CHECK(expected("ahead").high == doctest::Approx(ahead).epsilon(0.01));
@@ -339,8 +339,8 @@ model wave {
 data bench { file "gap.csv"; time t [s]; measure o = o }
 best = fit wave to bench with map
 )");
-  Outlook const& page = outlook(result, "best");
-  CHECK(page.left_out == "");
+  PreflightPage const& page = preflight(result, "best");
+  CHECK(page.not_examined == "");
   REQUIRE(page.information);
   CHECK(page.information->lines.at(0).low == doctest::Approx(0.1 / std::sqrt(square)).epsilon(1e-3));
 }
@@ -371,7 +371,7 @@ TEST_CASE("a prior of both signs over decades too many is seen, though its middl
   REQUIRE(said.size() == 1);
   CHECK(said[0].find("% of the prior draws predict a range of displacement more than 100 times larger or smaller") !=
         std::string::npos);
-  PriorPage::Channel const& channel = outlook(result, "posterior").prior->channels.at(0);
+  PriorPage::Channel const& channel = preflight(result, "posterior").prior->channels.at(0);
   CHECK(channel.middle / channel.measured < 100);
 }
 
@@ -382,13 +382,13 @@ TEST_CASE("failed draws are counted as draws, once each, however many solves the
     return all;
   };
   PriorPage const two =
-      *outlook(checked(models / "silverbox/two_stretches.sysid", shipped("silverbox/two_stretches.sysid")), "posterior").prior;
+      *preflight(checked(models / "silverbox/two_stretches.sysid", shipped("silverbox/two_stretches.sysid")), "posterior").prior;
   CHECK(two.failed > 0);
   CHECK(sum(two) == two.failed);
   std::string const text =
       with(with(shipped("duffing/duffing.sysid"), "log_uniform(5e8, 5e10)", "uniform(-1e12, 1e11)"), truth_task(), "");
   CheckResult const result = checked(models / "duffing/softening.sysid", text);
-  PriorPage const& many = *outlook(result, "posterior").prior;
+  PriorPage const& many = *preflight(result, "posterior").prior;
   CHECK(many.failed > 8);
   CHECK(many.untraced == many.failed - 8);
   CHECK(sum(many) == many.failed);
@@ -420,12 +420,12 @@ TEST_CASE("of a large model less is looked at, and what is left out is said") {
                                                  springs + equations + "  observe last ~ normal(q199, sd = sigma)\n}\n" +
                                                  "data bench { file \"chain.csv\"; time t [s]; input x = x hold linear; measure "
                                                  "last = last }\nbest = fit chain to bench with map\n");
-  Outlook const& page = outlook(result, "best");
+  PreflightPage const& page = preflight(result, "best");
   REQUIRE(page.prior);
   CHECK(page.prior->draws < 64);
   CHECK(page.prior->draws >= 16);
   CHECK_FALSE(page.information);
-  CHECK(page.left_out.find("derivatives with respect to 202 parameters would take too long for a model of this size") !=
+  CHECK(page.not_examined.find("derivatives with respect to 202 parameters would take too long for a model of this size") !=
         std::string::npos);
   CHECK(check_text(result.page).find("nothing found in the parts that were checked") != std::string::npos);
 }
@@ -435,14 +435,14 @@ TEST_CASE("a prior that reaches where the model diverges is said with the term t
       with(with(shipped("duffing/duffing.sysid"), "log_uniform(5e8, 5e10)", "uniform(-5e12, -5e11)"), truth_task(), "");
   CheckResult const result = checked(models / "duffing/softening.sysid", text);
   REQUIRE(messages(result, "prior_fails").size() == 1);
-  CHECK(outlook(result, "posterior").prior->failures.front().where.find("y^3") != std::string::npos);
+  CHECK(preflight(result, "posterior").prior->failures.front().where.find("y^3") != std::string::npos);
 }
 
 TEST_CASE("steps that the file states too coarse raise a warning with a number that would do") {
   std::string const text = with(shipped("silverbox/silverbox.sysid"), "thin = 4)", "thin = 4), substeps = 1");
   CheckResult const result = checked(models / "silverbox/coarse.sysid", text);
   REQUIRE(messages(result, "integration_step").size() == 1);
-  InformationPage const& information = *outlook(result, "posterior").information;
+  InformationPage const& information = *preflight(result, "posterior").information;
   CHECK(information.moves.size() > 1);
   CHECK_FALSE(information.advised.empty());
 }
@@ -453,7 +453,7 @@ TEST_CASE("what is wrong with the data of several tasks is said at once, and the
   REQUIRE(result.diagnostics.all().size() == 1);
   CHECK(result.diagnostics.all().front().code == "E4016");
   CHECK_FALSE(result.unreadable);
-  CHECK(outlook(result, "posterior").information);
+  CHECK(preflight(result, "posterior").information);
   CHECK(task(result, "forecast").coverage.empty());
 }
 
@@ -464,7 +464,7 @@ TEST_CASE("data that a task of the file will make are said to be made by it") {
   CheckResult const result = checked(folder.path() / "loop.sysid", bouc_wen, options);
   CHECK(result.diagnostics.all().empty());
   CHECK(task(result, "posterior").coverage.at(0).made_by == "truth");
-  CHECK(task(result, "posterior").outlooks.empty());
+  CHECK(task(result, "posterior").preflights.empty());
 }
 
 TEST_CASE("missing samples are counted per channel, and where the power of an input lies") {

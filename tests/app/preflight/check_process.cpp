@@ -40,10 +40,10 @@ best = fit wave to points with map, seed = 1
 
 TEST_CASE("priors that suit the data are shown beside them, without a finding") {
   CheckResult const result = look("half_normal(sd = 3)", "log_uniform(0.2, 10)", "half_normal(sd = 1)");
-  Outlook const& outlook = sysid::outlook(result, "best");
-  CHECK(outlook.findings.empty());
-  REQUIRE(outlook.processes.size() == 1);
-  ProcessPage const& page = outlook.processes.front();
+  PreflightPage const& preflight = sysid::preflight(result, "best");
+  CHECK(preflight.findings.empty());
+  REQUIRE(preflight.processes.size() == 1);
+  ProcessPage const& page = preflight.processes.front();
   CHECK(page.rows == 62);
   CHECK(page.repeated == 1);
   CHECK(page.failed == 0);

@@ -13,8 +13,8 @@ using namespace sysid;
 
 namespace {
 
-Finding const* find(Outlook const& outlook, std::string_view code) {
-  for (Finding const& each : outlook.findings)
+Finding const* find(PreflightPage const& preflight, std::string_view code) {
+  for (Finding const& each : preflight.findings)
     if (word(each.code) == code) return &each;
   return nullptr;
 }
@@ -31,14 +31,14 @@ std::string duffing_selection(std::string const& model, std::string const& task)
 TEST_CASE("each candidate has its own part of the page, in text and JSON") {
   CheckResult const result = checked(models / "bouc_wen/bouc_wen.sysid", shipped("bouc_wen/bouc_wen.sysid"));
   TaskPage const& page = task(result, "selection");
-  REQUIRE(page.outlooks.size() == 5);
+  REQUIRE(page.preflights.size() == 5);
   std::string const shown = check_text(result.page);
   nlohmann::json const object = nlohmann::json::parse(check_json(result.page, ""));
   nlohmann::json const& said = object.at("tasks").at(1).at("candidates");
   REQUIRE(said.size() == 5);
   std::size_t at = 0;
   for (std::size_t k = 0; k < 5; ++k) {
-    Outlook const& each = page.outlooks[k];
+    PreflightPage const& each = page.preflights[k];
     CHECK(each.candidate == (k == 0 ? "linear" : "bouc_wen(n = " + std::to_string(k) + ")"));
     at = shown.find(" candidate " + each.candidate + "\n", at);
     CHECK(at != std::string::npos);
@@ -50,8 +50,8 @@ TEST_CASE("each candidate has its own part of the page, in text and JSON") {
   }
   CHECK(object.at("tasks").at(0).at("candidates").empty());
   // What the finer steps show grows with the power in the equation, and stays below what noise of 1 % leaves: 0.01 nmse.
-  CHECK(*page.outlooks[1].information->response_move < *page.outlooks[4].information->response_move);
-  CHECK(100 * std::pow(*page.outlooks[4].information->response_move, 2) < 0.01);
+  CHECK(*page.preflights[1].information->response_move < *page.preflights[4].information->response_move);
+  CHECK(100 * std::pow(*page.preflights[4].information->response_move, 2) < 0.01);
 }
 
 TEST_CASE("a candidate that leaves a direction open is warned of, a rival in order beside it is not") {
@@ -72,8 +72,8 @@ candidates both { duffing; scaled }
 )";
   CheckResult const result = checked(models / "duffing/both.sysid",
                                      duffing_selection(rival, "which = select both to bench.train with abc_smc(), seed = 1\n"));
-  CHECK(outlook(result, "which", "duffing").findings.empty());
-  Outlook const& scaled = outlook(result, "which", "scaled");
+  CHECK(preflight(result, "which", "duffing").findings.empty());
+  PreflightPage const& scaled = preflight(result, "which", "scaled");
   Finding const* const found = find(scaled, "not_identifiable");
   REQUIRE(found != nullptr);
   CHECK(found->severity == Severity::warning);
@@ -83,21 +83,22 @@ candidates both { duffing; scaled }
 
 TEST_CASE("the integrator of a selection is judged by what it does to distances") {
   std::string const task = "which = select duffing to bench.train with abc_smc(), seed = 1";
-  Outlook const rk4 = outlook(checked(models / "duffing/one.sysid", duffing_selection("", task + "\n")), "which", "duffing");
+  PreflightPage const rk4 =
+      preflight(checked(models / "duffing/one.sysid", duffing_selection("", task + "\n")), "which", "duffing");
   CHECK(rk4.findings.empty());
   // Parameters would move by more than a tenth of an sd, which a fit that states its steps is warned of.
   CHECK(rk4.information->moves.front().second > 0.1);
   // Some ten samples to a period.
   std::string const fast =
       with(duffing_selection("", task + ", solver = heun\n"), "log_uniform(1e3, 1e5)", "log_uniform(2e5, 1e6)");
-  Outlook const heun = outlook(checked(models / "duffing/one.sysid", fast), "which", "duffing");
+  PreflightPage const heun = preflight(checked(models / "duffing/one.sysid", fast), "which", "duffing");
   REQUIRE_FALSE(heun.findings.empty());
   CHECK(heun.findings.back().code == FindingCode::integration_step);
   CHECK(heun.findings.back().message.find("with heun(substeps = 1) the solver changes the distances") == 0);
   // Noise that is stated says where distances end: an sd of 1e-8 m is far below what half a step changes.
   std::string const quiet =
       with(duffing_selection("", task + "\n"), "beta [1/m^2] ~ log_uniform(1e8, 1e13)", "beta [1/m^2] = 1e16");
-  Outlook const exact = outlook(checked(models / "duffing/one.sysid", quiet), "which", "duffing");
+  PreflightPage const exact = preflight(checked(models / "duffing/one.sysid", quiet), "which", "duffing");
   REQUIRE(find(exact, "integration_step") != nullptr);
   CHECK(find(exact, "integration_step")->message.find("of what the stated noise leaves") != std::string::npos);
 }
@@ -106,7 +107,7 @@ TEST_CASE("prior mass that cannot be simulated is a candidate's handicap: a note
   auto const severity_of = [](std::string const& low, std::string const& high) {
     std::string const text = with(duffing_selection("", "which = select duffing to bench.train with abc_smc(), seed = 1\n"),
                                   "log_uniform(5e8, 5e10)", "uniform(" + low + ", " + high + ")");
-    Outlook const page = outlook(checked(models / "duffing/soft.sysid", text), "which", "duffing");
+    PreflightPage const page = preflight(checked(models / "duffing/soft.sysid", text), "which", "duffing");
     Finding const* const found = find(page, "prior_fails");
     REQUIRE(found != nullptr);
     double const share = static_cast<double>(page.prior->failed) / page.prior->draws;
@@ -141,7 +142,7 @@ model slider {
 data bench { file "ramp.csv"; time t [s]; input x = x hold linear; measure force = force }
 best = fit slider to bench with map
 )");
-  Outlook const& page = outlook(result, "best");
+  PreflightPage const& page = preflight(result, "best");
   REQUIRE(page.information);
   CHECK(page.information->null_directions.empty());
   // Quantiles of 128 normal draws at one sd have an sd of 13 % of it; half the difference of two, a tenth.

@@ -112,7 +112,7 @@ data bench {
     CHECK(std::fabs(mean - truth) < 4 * sd);
     CHECK(sd < 0.1 * truth);
   }
-  // The function itself, where the record has been: what the forecast has beyond its white part.
+  // The function itself, where the record has been: what the forecast has beyond its parametric part.
   std::string const table = run.file("ahead_bent/predict.csv");
   std::vector<double> const mean = column(table, "reading_mean"), white = column(table, "white(reading)_mean");
   double most = 0;

@@ -145,5 +145,5 @@ best = fit toy to points with map, seed = 1
   for (std::string line; std::getline(predictions, line);)
     if (!line.starts_with("#")) lines.push_back(line);
   REQUIRE(lines.size() == 8);
-  for (std::size_t i = 1; i < lines.size(); ++i) CHECK((lines[i].find("nan") != std::string::npos) == (i == 7));
+  for (std::size_t i = 1; i < lines.size(); ++i) CHECK((lines[i].find("NaN") != std::string::npos) == (i == 7));
 }

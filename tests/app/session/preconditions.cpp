@@ -101,7 +101,8 @@ TEST_CASE("an improper prior of the noise is refused where the likelihood is ask
     std::ostringstream ignored;
     RunOptions const options;
     Session session(source, *file, options, progress, ignored, ignored);
-    return count(render(check_readiness(session, [](Task const&) { return true; }).diagnostics, source), "that of `level` is flat");
+    return count(render(check_preconditions(session, [](Task const&) { return true; }).diagnostics, source),
+                 "that of `level` is flat");
   };
   CHECK(refused("") == 1);
   CHECK(refused(", cross_check = no") == 0);

@@ -1,5 +1,5 @@
 // Statements of a file and the names that tie them together.
-#include "repl/work/work.hpp"
+#include "repl/work/workspace.hpp"
 
 #include <fmt/format.h>
 
@@ -115,32 +115,32 @@ ast::Item item_of(std::string const& text) {
   return std::move(tree->items.front());
 }
 
-std::string Work::text() const {
+std::string Workspace::text() const {
   std::string all;
   for (WorkItem const& item : items) all += item.lead + item.text + '\n';
   return all;
 }
 
-std::uint32_t Work::begin(std::size_t item) const {
+std::uint32_t Workspace::begin(std::size_t item) const {
   std::size_t at = 0;
   for (std::size_t i = 0; i < item; ++i) at += items[i].lead.size() + items[i].text.size() + 1;
   return static_cast<std::uint32_t>(at + items[item].lead.size());
 }
 
-std::size_t Work::find(ItemKind kind, std::string_view name) const {
+std::size_t Workspace::find(ItemKind kind, std::string_view name) const {
   return static_cast<std::size_t>(
       std::find_if(items.begin(), items.end(), [&](WorkItem const& each) { return each.kind == kind && each.name == name; }) -
       items.begin());
 }
 
-std::size_t Work::find(std::string_view name) const {
+std::size_t Workspace::find(std::string_view name) const {
   return static_cast<std::size_t>(
       std::find_if(items.begin(), items.end(),
                    [&](WorkItem const& each) { return each.kind != ItemKind::use && each.name == name; }) -
       items.begin());
 }
 
-std::vector<std::string> Work::put(WorkItem item, std::set<std::string> const& run) {
+std::vector<std::string> Workspace::put(WorkItem item, std::set<std::string> const& run) {
   std::size_t const place = find(item.kind, item.name);
   if (place == items.size()) {
     items.push_back(std::move(item));
@@ -172,7 +172,7 @@ std::vector<std::string> Work::put(WorkItem item, std::set<std::string> const& r
   return notices;
 }
 
-std::vector<std::string> Work::keep_earlier(std::size_t changed, std::set<std::string> const& run) {
+std::vector<std::string> Workspace::keep_earlier(std::size_t changed, std::set<std::string> const& run) {
   struct Node {
     std::vector<ItemReference> references;
     Span own;
@@ -236,7 +236,7 @@ std::vector<std::string> Work::keep_earlier(std::size_t changed, std::set<std::s
   return notices;
 }
 
-void Work::prune() {
+void Workspace::prune() {
   for (bool again = true; again;) {
     std::set<std::pair<ItemKind, std::string>> wanted;
     for (WorkItem const& item : items)
@@ -245,7 +245,7 @@ void Work::prune() {
   }
 }
 
-void Work::move_to(std::filesystem::path const& to) {
+void Workspace::move_to(std::filesystem::path const& to) {
   namespace fs = std::filesystem;
   fs::path const before = fs::absolute(path).parent_path(), after = fs::absolute(to).parent_path();
   path = to;

@@ -17,7 +17,9 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-DiscoveryAnswer run_judged(std::string const& text, Made const& record) { return run_with(text, {{"bench.csv", record.csv()}}); }
+DiscoveryAnswer run_validation(std::string const& text, Made const& record) {
+  return run_with(text, {{"bench.csv", record.csv()}});
+}
 
 json const& judged(DiscoveryAnswer const& answer) { return answer.summary.at("discovery").at("judged"); }
 json const& first(DiscoveryAnswer const& answer) { return judged(answer).at("structures").at(0); }
@@ -60,7 +62,7 @@ void check_errors(json const& channel, double noise, double most = 1.5) {
 
 TEST_CASE("a term that was kept and does nothing is called idle") {
   // A threshold that drops nothing: `y^2` and the constant stay, and no other structure is tried.
-  DiscoveryAnswer const answer = run_judged(file(oscillator, "threshold(share = 1e-9), top = 1, seed = 1"), Made(900));
+  DiscoveryAnswer const answer = run_validation(file(oscillator, "threshold(share = 1e-9), top = 1, seed = 1"), Made(900));
   CHECK(first(answer).at("terms") == "y', y, y^2, y^3, 1");
   json const finding = answer.finding("term_idle");
   REQUIRE_FALSE(finding.is_null());
@@ -72,7 +74,7 @@ TEST_CASE("a term that was kept and does nothing is called idle") {
 TEST_CASE("draws that run away are counted") {
   // A spring that softens and hardens again, y'' = u - 0.8 y' - 25 y + 60 y^3 - 45 y^5: the dictionary knows the softening alone.
   MadeSettings const settings{.force = 9, .acceleration = &softening_then_hardening};
-  DiscoveryAnswer const answer = run_judged(file(oscillator), Made(900, settings));
+  DiscoveryAnswer const answer = run_validation(file(oscillator), Made(900, settings));
   json const finding = answer.finding("draws_not_bounded");
   REQUIRE_FALSE(finding.is_null());
   CHECK(finding.at("severity") == "warning");
@@ -87,7 +89,7 @@ TEST_CASE("draws that run away are counted") {
   double const residual = first(answer).at("channels").at(0).at("residual");
   CHECK(high > 2 * residual);
   // With the term all draws stay.
-  DiscoveryAnswer const whole = run_judged(file(oscillator + ", y^5"), Made(900, settings));
+  DiscoveryAnswer const whole = run_validation(file(oscillator + ", y^5"), Made(900, settings));
   CHECK(first(whole).at("terms") == "y', y, y^3, y^5");
   CHECK(first(whole).at("draws_bounded") == draws);
   CHECK(whole.codes().empty());
@@ -97,7 +99,8 @@ TEST_CASE("a free run that escapes where the record did not go warns, one that a
   // The force grows from three to twelve; the term that holds the motion at large amplitude is not in the dictionary.
   std::string const text = with(with(file(oscillator), "= y [m] }", "= y [m]; split a = rows 1..600, b = rows 601..900 }"),
                                 "from bench", "from bench.a");
-  DiscoveryAnswer const escaped = run_judged(text, Made(900, {.force = 3, .growth = 3, .acceleration = &softening_then_hardening}));
+  DiscoveryAnswer const escaped =
+      run_validation(text, Made(900, {.force = 3, .growth = 3, .acceleration = &softening_then_hardening}));
   json const warning = escaped.finding("free_run_lost");
   REQUIRE_FALSE(warning.is_null());
   CHECK(warning.at("severity") == "warning");
@@ -121,7 +124,7 @@ TEST_CASE("a free run that escapes where the record did not go warns, one that a
 TEST_CASE("a record with a gap is refitted around it") {
   Made record(900);
   std::fill(record.y.begin() + 300, record.y.begin() + 380, missing);
-  DiscoveryAnswer const answer = run_judged(file(oscillator), record);
+  DiscoveryAnswer const answer = run_validation(file(oscillator), record);
   CHECK(answer.exit == 0);
   CHECK(answer.codes() == Texts{"windows_missing"});
   CHECK(judged(answer).at("whole") == true);
@@ -135,17 +138,17 @@ TEST_CASE("no forecast starts in a gap of the rows that are scored, and rows wit
                                 "from bench", "from bench.a");
   Made record(900);
   std::fill(record.y.begin() + 700, record.y.begin() + 790, missing);
-  DiscoveryAnswer const gap = run_judged(text, record);
+  DiscoveryAnswer const gap = run_validation(text, record);
   CHECK(judged(gap).at("kept_aside") == "bench.b");
   check_errors(first(gap).at("channels").at(0), 0.00175);
   // The free run begins behind a gap that the rows begin with.
   Made late(900);
   std::fill(late.y.begin() + 590, late.y.begin() + 690, missing);
-  check_errors(first(run_judged(text, late)).at("channels").at(0), 0.00175);
+  check_errors(first(run_validation(text, late)).at("channels").at(0), 0.00175);
   Made silent(900);
   std::fill(silent.y.begin() + 600, silent.y.end(), missing);
   // Rows that hold nothing are not scored; the last fifth of those that the task uses is.
-  DiscoveryAnswer const nothing = run_judged(text, silent);
+  DiscoveryAnswer const nothing = run_validation(text, silent);
   CHECK(judged(nothing).at("kept_aside") == "the last fifth of bench.a");
   // Ten origins in as many rows: chi^2 of 10 is below 36 but for one in 10,000, and their starts err alike.
   check_errors(first(nothing).at("channels").at(0), 0.00175, 2.1);
@@ -155,7 +158,7 @@ TEST_CASE("two channels of one state are fitted together, and noise that was tak
   std::string const text = with(with(file(oscillator), "y [m] = displacement", "y [m] = displacement, y' = speed"), "= y [m] }",
                                 "= y [m]; measure speed = v [m/s] }");
   Made const record(900);
-  DiscoveryAnswer const one = run_judged(file(oscillator), record), both = run_judged(text, record);
+  DiscoveryAnswer const one = run_validation(file(oscillator), record), both = run_validation(text, record);
   REQUIRE(first(both).at("channels").size() == 2);
   check_coefficients(first(both), {0.8, 25, 60}, 0.02);
   for (std::size_t j = 0; j < 3; ++j) {
@@ -174,7 +177,7 @@ TEST_CASE("two channels of one state are fitted together, and noise that was tak
   REQUIRE(help.starts_with(begin + "noise(speed = 0.00"));
   // The advice taken, there is nothing left to say, and the regression's residual is its noise.
   std::string const said = help.substr(begin.size(), help.size() - begin.size() - 1);
-  DiscoveryAnswer const told = run_judged(with(text, "with seed", "with " + said + ", seed"), record);
+  DiscoveryAnswer const told = run_validation(with(text, "with seed", "with " + said + ", seed"), record);
   CHECK(told.codes().empty());
   CHECK(told.summary.at("discovery").at("equations").at(0).at("noise_ratio").get<double>() == doctest::Approx(1).epsilon(0.15));
 }
@@ -187,7 +190,7 @@ TEST_CASE("two experiments share coefficients, have starts of their own, and one
   auto const run_both = [&](int rows) {
     return run_with(text, {{"bench.csv", Made(900).csv()}, {"other.csv", Made(rows, {.offset = 0, .force = 5, .seed = 9}).csv()}});
   };
-  DiscoveryAnswer const both = run_both(500), alone = run_judged(file(oscillator), Made(900));
+  DiscoveryAnswer const both = run_both(500), alone = run_validation(file(oscillator), Made(900));
   CHECK(both.exit == 0);
   CHECK(both.codes().empty());
   CHECK(judged(both).at("segments") == 2);
@@ -207,7 +210,7 @@ TEST_CASE("two experiments share coefficients, have starts of their own, and one
 
 TEST_CASE("an implicit equation that the regression misses is found by simulation, which then has the last word") {
   DiscoveryAnswer const answer =
-      run_judged(file("target = u\nterms = y'', y''^3, y', y", "top = 2, seed = 1"), Made(200, {.acceleration = &implicit}));
+      run_validation(file("target = u\nterms = y'', y''^3, y', y", "top = 2, seed = 1"), Made(200, {.acceleration = &implicit}));
   CHECK(first(answer).at("terms") == "y'', y''^3, y', y");
   check_coefficients(first(answer), {1, 0.02, 0.8, 25}, 0.1);
   CHECK(first(answer).at("rank_by_regression") == 2);
@@ -224,7 +227,7 @@ TEST_CASE("an implicit equation that the regression misses is found by simulatio
 TEST_CASE("implicit equations that would cost too much are given up at once, and said to be") {
   Made const record(2000, {.acceleration = &implicit});
   DiscoveryAnswer const answer =
-      run_judged(file("parameter e [kg s^4/m^2]\ntarget = u - e*y''^3\nterms = y'', y', y, y^2"), record);
+      run_validation(file("parameter e [kg s^4/m^2]\ntarget = u - e*y''^3\nterms = y'', y', y, y^2"), record);
   json const finding = answer.finding("not_refitted");
   REQUIRE_FALSE(finding.is_null());
   CHECK(finding.at("severity") == "warning");
@@ -240,7 +243,7 @@ TEST_CASE("implicit equations that would cost too much are given up at once, and
 TEST_CASE("structures that are no model are left out of the candidates with a word, and the rest is written") {
   for (char const* refit : {"yes", "no"}) {
     CAPTURE(refit);
-    DiscoveryAnswer const answer = run_judged(
+    DiscoveryAnswer const answer = run_validation(
         file("target = u\nterms = y'', sign(y''), y", fmt::format("top = 8, candidates = yes, refit = {}, seed = 1", refit)),
         Made(900));
     CHECK(answer.exit == 0);

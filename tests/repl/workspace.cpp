@@ -1,5 +1,5 @@
 // The statements of a session and the names between them.
-#include "repl/work/work.hpp"
+#include "repl/work/workspace.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,8 +13,8 @@ WorkItem item(std::string const& text) {
   return {kind_of(tree), name_of(tree), "", text};
 }
 
-Work work(std::vector<std::string> const& statements) {
-  Work work;
+Workspace work(std::vector<std::string> const& statements) {
+  Workspace work;
   for (std::string const& each : statements) work.put(item(each), {});
   return work;
 }
@@ -30,14 +30,14 @@ TEST_CASE("a file's statements keep the comments before and behind them") {
   CHECK(items[1].lead == "// next\n");
   CHECK(items[2].name == "fit_a");
   CHECK(items[2].text == "fit a to b with map # last");
-  Work all;
+  Workspace all;
   all.items = items;
   CHECK(all.text() == "# head\n\nuse damping  # behind\n// next\nmodel a { }\nfit a to b with map # last\n");
   CHECK(all.text().substr(all.begin(1), 7) == "model a");
 }
 
 TEST_CASE("a statement replaces that of its name; a task goes to the end while none refers to it") {
-  Work w = work({"model a { }", "f = fit a to b with map", "data b { }"});
+  Workspace w = work({"model a { }", "f = fit a to b with map", "data b { }"});
   w.put(item("model a { state y }"), {});
   CHECK(w.text() == "model a { state y }\nf = fit a to b with map\ndata b { }\n");
   w.put(item("f = fit a to b with ml"), {});
@@ -48,8 +48,8 @@ TEST_CASE("a statement replaces that of its name; a task goes to the end while n
 }
 
 TEST_CASE("what a task was run on stays with it when it changes, and goes when nothing refers to it any more") {
-  Work w = work({"model spring { }", "model rig { part s = spring() }", "candidates set { rig; spring }", "data b { }",
-                 "f = fit rig to b with map", "g = fit rig to b with ml", "s = select set to b with abc_smc"});
+  Workspace w = work({"model spring { }", "model rig { part s = spring() }", "candidates set { rig; spring }", "data b { }",
+                      "f = fit rig to b with map", "g = fit rig to b with ml", "s = select set to b with abc_smc"});
   auto const notices = w.put(item("model spring { state y }"), {"f"});
   CHECK(notices.size() == 1);
   CHECK(w.text() ==
@@ -64,7 +64,7 @@ TEST_CASE("what a task was run on stays with it when it changes, and goes when n
 }
 
 TEST_CASE("nothing is kept of what no task was run on, and nothing changes where the text is the same") {
-  Work w = work({"model a { }", "data b { }", "f = fit a to b with map"});
+  Workspace w = work({"model a { }", "data b { }", "f = fit a to b with map"});
   CHECK(w.put(item("model a { state y }"), {}).empty());
   CHECK(w.put(item("model a { state y }"), {"f"}).empty());
   CHECK(w.items.size() == 3);
@@ -73,7 +73,7 @@ TEST_CASE("nothing is kept of what no task was run on, and nothing changes where
 }
 
 TEST_CASE("paths of data go with the file") {
-  Work w = work({"data b { file \"../records/b.csv\"; rate 1 [Hz] }", "data c { file \"/tmp/c.csv\" }"});
+  Workspace w = work({"data b { file \"../records/b.csv\"; rate 1 [Hz] }", "data c { file \"/tmp/c.csv\" }"});
   w.path = "/home/a/models/duffing/work.sysid";
   w.move_to("/home/a/work.sysid");
   CHECK(w.items[0].text == "data b { file \"models/records/b.csv\"; rate 1 [Hz] }");

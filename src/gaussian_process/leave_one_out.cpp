@@ -1,5 +1,5 @@
 // The closed form by the inverse of the covariance.
-#include "gaussian_process/left_out.hpp"
+#include "gaussian_process/leave_one_out.hpp"
 
 #include "linear_algebra/lapack.hpp"
 

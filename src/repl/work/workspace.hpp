@@ -47,7 +47,7 @@ std::vector<ItemReference> references_of(ast::Item const& item);
 /// The one item of a text that parses.
 ast::Item item_of(std::string const& text);
 
-class Work {
+class Workspace {
  public:
   std::vector<WorkItem> items;
 

@@ -1,5 +1,5 @@
 // Registers for lagged values, and the substitutions between data and model that prediction rules are.
-#include "model/past.hpp"
+#include "model/lags.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ void each_root(Model& model, Visit const& visit) {
   for (Channel& channel : model.channels)
     for (NodeId& argument : channel.noise.arguments) visit(argument);
   for (Derived& derived : model.derived) visit(derived.value);
-  for (Past& past : model.pasts) visit(past.present);
+  for (LaggedQuantity& lagged : model.lagged_quantities) visit(lagged.present);
   for (Process& process : model.processes)
     for (NodeId& argument : process.arguments) visit(argument);
   for (Expansion& expansion : model.expansions)
@@ -40,13 +40,13 @@ NodeId at_lag(Graph& graph, NodeId root, int lag) {
   });
 }
 
-NodeId register_leaf(Model& model, Past const& past, int lag) {
-  return model.graph.leaf(LeafKind::state, past.registers[static_cast<std::size_t>(lag - 1)]);
+NodeId register_leaf(Model& model, LaggedQuantity const& lagged, int lag) {
+  return model.graph.leaf(LeafKind::state, lagged.registers[static_cast<std::size_t>(lag - 1)]);
 }
 
 /// Lags of `past` up to `lags` exist afterwards; new ones begin with `initial`, an expression at their own sample.
-void add_registers(Model& model, std::size_t past, int lags, NodeId initial) {
-  Past& what = model.pasts[past];
+void add_registers(Model& model, std::size_t lagged, int lags, NodeId initial) {
+  LaggedQuantity& what = model.lagged_quantities[lagged];
   while (static_cast<int>(what.registers.size()) < lags) {
     int const lag = static_cast<int>(what.registers.size()) + 1;
     State state;
@@ -64,10 +64,10 @@ void add_registers(Model& model, std::size_t past, int lags, NodeId initial) {
 NodeId measured_leaf(Model& model, int channel) { return model.graph.leaf(LeafKind::measured, channel); }
 
 /// The channel that measures a past: its own, or one that is centred on it.
-std::optional<int> channel_of(Model& model, Past const& past) {
-  if (past.channel >= 0) return past.channel;
+std::optional<int> channel_of(Model& model, LaggedQuantity const& lagged) {
+  if (lagged.channel >= 0) return lagged.channel;
   for (std::size_t c = 0; c < model.channels.size(); ++c)
-    if (model.channels[c].noise.row->centre(model.graph, model.channels[c].noise.arguments) == past.present)
+    if (model.channels[c].noise.row->centre(model.graph, model.channels[c].noise.arguments) == lagged.present)
       return static_cast<int>(c);
   return std::nullopt;
 }
@@ -98,11 +98,11 @@ void drop_unread_states(Model& model) {
   }
   model.states = std::move(states);
   // Each register reads the one before it, so what stays of a past are its first ones, in order.
-  for (Past& past : model.pasts) {
+  for (LaggedQuantity& lagged : model.lagged_quantities) {
     std::vector<int> registers;
-    for (int const index : past.registers)
+    for (int const index : lagged.registers)
       if (renumbered.contains(index)) registers.push_back(renumbered.at(index));
-    past.registers = std::move(registers);
+    lagged.registers = std::move(registers);
   }
   auto const renumber = [&](NodeId leaf) -> std::optional<NodeId> {
     Node const node = model.graph[leaf];
@@ -119,20 +119,20 @@ void free_run(Model& model) {
       if (is_leaf(model.graph[id], LeafKind::measured))
         most[model.graph[id].index] = std::max(most[model.graph[id].index], model.graph[id].lag);
   });
-  std::map<int, std::size_t> past_of;
+  std::map<int, std::size_t> lagged_of;
   for (auto const& each : most) {
     int const channel = each.first;
-    auto const found =
-        std::find_if(model.pasts.begin(), model.pasts.end(), [&](Past const& past) { return past.channel == channel; });
-    past_of[channel] = static_cast<std::size_t>(found - model.pasts.begin());
-    add_registers(model, past_of[channel], each.second, measured_leaf(model, channel));
+    auto const found = std::find_if(model.lagged_quantities.begin(), model.lagged_quantities.end(),
+                                    [&](LaggedQuantity const& lagged) { return lagged.channel == channel; });
+    lagged_of[channel] = static_cast<std::size_t>(found - model.lagged_quantities.begin());
+    add_registers(model, lagged_of[channel], each.second, measured_leaf(model, channel));
   }
   // A present sample of another channel is what the model predicts for it, which may read a further one.
   auto const predicted = [&](NodeId leaf) -> std::optional<NodeId> {
     Node const node = model.graph[leaf];
     if (node.leaf_kind != LeafKind::measured) return std::nullopt;
-    Past const& past = model.pasts[past_of.at(node.index)];
-    return node.lag == 0 ? past.present : register_leaf(model, past, node.lag);
+    LaggedQuantity const& lagged = model.lagged_quantities[lagged_of.at(node.index)];
+    return node.lag == 0 ? lagged.present : register_leaf(model, lagged, node.lag);
   };
   for (std::size_t i = 0; i <= model.channels.size(); ++i)
     each_root(model, [&](NodeId& root) { replace(model.graph, root, predicted); });
@@ -140,9 +140,10 @@ void free_run(Model& model) {
 
 bool one_step(Model& model) {
   std::map<int, std::pair<int, int>> sample_of;  // of a register: channel and lag
-  for (Past const& past : model.pasts)
-    if (auto const channel = channel_of(model, past))
-      for (std::size_t k = 0; k < past.registers.size(); ++k) sample_of[past.registers[k]] = {*channel, static_cast<int>(k) + 1};
+  for (LaggedQuantity const& lagged : model.lagged_quantities)
+    if (auto const channel = channel_of(model, lagged))
+      for (std::size_t k = 0; k < lagged.registers.size(); ++k)
+        sample_of[lagged.registers[k]] = {*channel, static_cast<int>(k) + 1};
   auto const has_measured = [&](Node const& node) { return is_leaf(node, LeafKind::measured) && node.lag > 0; };
   bool reads_data = false;
   each_root(model, [&](NodeId root) { reads_data = reads_data || model.graph.depends(root, has_measured); });
@@ -172,7 +173,7 @@ std::string_view prediction_name(PredictionRule rule) {
   return "?";
 }
 
-std::optional<int> lay_out_pasts(Model& model, std::vector<std::optional<NodeId>> const& initial) {
+std::optional<int> lay_out_lags(Model& model, std::vector<std::optional<NodeId>> const& initial) {
   std::map<int, int> most;
   each_root(model, [&](NodeId root) {
     for (NodeId const id : model.graph.reachable({&root, 1})) {
@@ -182,7 +183,7 @@ std::optional<int> lay_out_pasts(Model& model, std::vector<std::optional<NodeId>
   });
   for (auto const& [index, lags] : most) {
     auto const p = static_cast<std::size_t>(index);
-    int const channel = model.pasts[p].channel;
+    int const channel = model.lagged_quantities[p].channel;
     if (channel < 0 && !initial[p]) return index;
     add_registers(model, p, lags, channel < 0 ? *initial[p] : measured_leaf(model, channel));
   }
@@ -190,7 +191,7 @@ std::optional<int> lay_out_pasts(Model& model, std::vector<std::optional<NodeId>
     replace(model.graph, root, [&](NodeId leaf) -> std::optional<NodeId> {
       Node const node = model.graph[leaf];
       if (node.leaf_kind != LeafKind::previous) return std::nullopt;
-      return register_leaf(model, model.pasts[static_cast<std::size_t>(node.index)], node.lag);
+      return register_leaf(model, model.lagged_quantities[static_cast<std::size_t>(node.index)], node.lag);
     });
   });
   return std::nullopt;
@@ -235,7 +236,7 @@ int data_lag(Model const& model) {
   return most;
 }
 
-std::vector<PastSample> past_samples(Model const& model, int channel) {
+std::vector<PastSample> lagged_samples(Model const& model, int channel) {
   std::vector<NodeId> roots;
   if (channel >= 0) {
     roots = model.channels[static_cast<std::size_t>(channel)].noise.arguments;

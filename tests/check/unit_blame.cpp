@@ -14,7 +14,7 @@ int count(std::string const& text, std::string const& part) {
   return found;
 }
 
-std::string oscillator(std::string const& mass, std::string const& equation, std::string const& derived) {
+std::string oscillator_with(std::string const& mass, std::string const& equation, std::string const& derived) {
   return "model m {\n input x [N]\n state y [m]\n initial y = 0, y' = 0\n parameter m [" + mass +
          "] ~ log_uniform(0.1, 10)\n parameter k [N/m] ~ log_uniform(1, 100)\n " + equation + "\n " + derived +
          "\n observe d ~ normal(y, sd = 1e-6)\n}\n";
@@ -23,21 +23,21 @@ std::string oscillator(std::string const& mass, std::string const& equation, std
 }  // namespace
 
 TEST_CASE("two places that one declaration contradicts are told once, with the unit that mends both") {
-  std::string const said = messages(oscillator("N", "m*y'' + k*y = x", "derive omega [rad/s] = sqrt(k/m)"));
+  std::string const said = messages(oscillator_with("N", "m*y'' + k*y = x", "derive omega [rad/s] = sqrt(k/m)"));
   CHECK(count(said, "error[") == 1);
   CHECK(said.find("one more place conflicts with this unit") != std::string::npos);
   CHECK(said.find("declare `m` in [kg]: then both places agree") != std::string::npos);
 }
 
 TEST_CASE("two mistakes that no declaration explains are both told") {
-  std::string const said = messages(oscillator("kg", "m*y' + k*y = x", "derive omega [rad/s] = sqrt(k*m)"));
+  std::string const said = messages(oscillator_with("kg", "m*y' + k*y = x", "derive omega [rad/s] = sqrt(k*m)"));
   CHECK(count(said, "error[") == 2);
   CHECK(said.find("places") == std::string::npos);
 }
 
 TEST_CASE("a mistake beside those of a declaration keeps its message") {
   std::string const said =
-      messages(oscillator("N", "m*y'' + k*y = x", "derive omega [rad/s] = sqrt(k/m)\n derive work [J] = k*y^3"));
+      messages(oscillator_with("N", "m*y'' + k*y = x", "derive omega [rad/s] = sqrt(k/m)\n derive work [J] = k*y^3"));
   CHECK(count(said, "error[") == 2);
   CHECK(said.find("declare `m` in [kg]") != std::string::npos);
   CHECK(said.find("k*y^3") != std::string::npos);

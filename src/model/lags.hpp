@@ -20,7 +20,7 @@ std::string_view prediction_name(PredictionRule rule);
 /// derivative is their value at the next sample. Registers of a past p begin with initial[p]: an expression of parameters, and of
 /// measured samples as if it stood at the register's own sample; what a channel predicts begins with what it measured. Returns the
 /// first past that is read and has no initial value.
-std::optional<int> lay_out_pasts(Model& model, std::vector<std::optional<NodeId>> const& initial);
+std::optional<int> lay_out_lags(Model& model, std::vector<std::optional<NodeId>> const& initial);
 
 /// The model under a rule. Nothing when it asks for one-step prediction and no channel measures what is lagged.
 std::optional<Model> with_prediction(Model model, PredictionRule rule);
@@ -44,6 +44,6 @@ struct PastSample {
 };
 /// Read by the density of `channel`; by the map from sample to sample (channel = -1), where a missing one would spoil all that
 /// follows; before the first row alone (channel = -2).
-std::vector<PastSample> past_samples(Model const& model, int channel);
+std::vector<PastSample> lagged_samples(Model const& model, int channel);
 
 }  // namespace sysid
