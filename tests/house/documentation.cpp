@@ -179,7 +179,7 @@ TEST_CASE("quoted output is what the program prints") {
   each_block("text from ", [&](Page const& page, Fence const& block) {
     std::string const command = block.info.substr(10);
     std::vector<std::string> const words = words_of(command);
-    CAPTURE(page.name << ":" << block.line);
+    INFO(page.name, ":", block.line);
     REQUIRE_MESSAGE((words.size() == 3 && words[0] == "./sysid"), "cannot run `" << command << "` for its output");
     if (words[1] == "run") {  // compared where that model is run (tests/app/golden_run.cpp)
       CHECK((words[2].starts_with("models/") && fs::exists(root / words[2])));
