@@ -41,7 +41,7 @@ Words function_words() {
   }
   for (ArrayFunctionRow const& row : array_functions())
     all.push_back({WordKind::function, std::string(row.name), std::string(row.usage), std::string(row.summary)});
-  // Not in a table: they are leaves of the graph, not functions of values (check/past.cpp).
+  // Not in a table: they are leaves of the graph, not functions of values (check/expression/lags.cpp).
   for (auto const& [name, usage, summary] :
        {std::tuple{"lag", "lag(e, k)", "e at k samples before, in discrete time"},
         {"lags", "lags(e, 1..10)", "past samples, as inputs of an unknown function"},

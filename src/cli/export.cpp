@@ -12,9 +12,11 @@
 namespace sysid::cli {
 namespace {
 
+struct ExporterRow;
+
 struct ExportOptions {
   std::string what, model;
-  bool stan = false, latex = false;
+  ExporterRow const* exporter = nullptr;
   int draws = 200;
   std::optional<std::filesystem::path> output;
   RunOptions run;
@@ -33,8 +35,40 @@ ExitCode with_session(Messages const& messages, ExportOptions const& options, st
   });
 }
 
-ExitCode latex(Messages const& messages, std::string const& path) {
-  Source const source = read_source(path);
+/// The session of the model that results were made from.
+ExitCode with_model_of(Messages const& messages, ExportOptions const& options, ResultsFolder const& results,
+                       std::function<ExitCode(Session&)> const& work) {
+  std::string const model = options.model.empty() ? results.file.string() : options.model;
+  if (model.empty() || !std::filesystem::exists(model)) {
+    messages.complain(model.empty() ? fmt::format("`{}` does not record the file of its results", options.what)
+                                    : fmt::format("`{}`, the file of these results, does not exist", model),
+                      "give it with --model FILE, or export only what the results contain with --draws 0");
+    return model.empty() ? ExitCode::user_error : ExitCode::io;
+  }
+  return with_session(messages, options, model, results.run, work);
+}
+
+ExitCode refuse_output(Messages const& messages) {
+  messages.complain("the exports of results are written into their folders", "remove -o");
+  return ExitCode::usage;
+}
+
+ExitCode netcdf(Messages const& messages, ExportOptions const& options) {
+  if (options.output) return refuse_output(messages);
+  ResultsFolder const found = find_results(options.what);
+  require_exportable(found, options.run.force);
+  if (options.draws == 0) {
+    export_netcdf(found, nullptr, 0, std::cout);
+    return ExitCode::success;
+  }
+  return with_model_of(messages, options, found, [&](Session& session) {
+    export_netcdf(found, &session, options.draws, std::cout);
+    return ExitCode::success;
+  });
+}
+
+ExitCode latex(Messages const& messages, ExportOptions const& options) {
+  Source const source = read_source(options.what);
   Diagnostics diagnostics;
   auto const tree = parse(source, diagnostics);
   messages.show(diagnostics, source);
@@ -44,7 +78,7 @@ ExitCode latex(Messages const& messages, std::string const& path) {
 }
 
 /// Fits that cannot be written leave doubt where others were, and are the user's error where none was.
-ExitCode stan(Messages const& messages, Session& session, ResultsFolder const* results, bool force) {
+ExitCode stan_of(Messages const& messages, Session& session, ResultsFolder const* results, bool force) {
   std::ostringstream written;
   Diagnostics const omitted = export_stan(session, results, force, written);
   std::cout << written.str();
@@ -53,38 +87,31 @@ ExitCode stan(Messages const& messages, Session& session, ResultsFolder const* r
   return written.str().empty() ? ExitCode::user_error : ExitCode::doubtful;
 }
 
-/// Of results, with the model that they were made from where it is needed.
-ExitCode export_results(Messages const& messages, ExportOptions const& options) {
+/// Of the fits in results, with their draws, or of those in a .sysid file.
+ExitCode stan(Messages const& messages, ExportOptions const& options) {
+  if (!std::filesystem::is_directory(options.what))
+    return with_session(messages, options, options.what, options.output.value_or(options.run.output),
+                        [&](Session& session) { return stan_of(messages, session, nullptr, options.run.force); });
+  if (options.output) return refuse_output(messages);
   ResultsFolder const found = find_results(options.what);
-  if (!options.stan) require_exportable(found, options.run.force);
-  if (!options.stan && options.draws == 0) {
-    export_netcdf(found, nullptr, 0, std::cout);
-    return ExitCode::success;
-  }
-  std::string const model = options.model.empty() ? found.file.string() : options.model;
-  if (model.empty() || !std::filesystem::exists(model)) {
-    messages.complain(model.empty() ? fmt::format("`{}` does not record the file of its results", options.what)
-                                    : fmt::format("`{}`, the file of these results, does not exist", model),
-                      "give it with --model FILE, or export only what the results contain with --draws 0");
-    return model.empty() ? ExitCode::user_error : ExitCode::io;
-  }
-  return with_session(messages, options, model, found.run, [&](Session& session) {
-    if (options.stan) return stan(messages, session, &found, options.run.force);
-    export_netcdf(found, &session, options.draws, std::cout);
-    return ExitCode::success;
-  });
+  return with_model_of(messages, options, found,
+                       [&](Session& session) { return stan_of(messages, session, &found, options.run.force); });
 }
 
-ExitCode work(Messages const& messages, ExportOptions const& options) {
-  if (options.latex) return latex(messages, options.what);
-  if (!options.stan || std::filesystem::is_directory(options.what)) {
-    if (!options.output) return export_results(messages, options);
-    messages.complain("the exports of results are written into their folders", "remove -o");
-    return ExitCode::usage;
-  }
-  return with_session(messages, options, options.what, options.output.value_or(options.run.output),
-                      [&](Session& session) { return stan(messages, session, nullptr, options.run.force); });
-}
+/// A form to export to.
+struct ExporterRow {
+  char const* flag;  // null: the one without a flag
+  char const* help;
+  bool simulates;      // likelihoods and predictions at `--draws` draws
+  bool into_a_folder;  // of the user's choice, `-o`
+  ExitCode (*work)(Messages const&, ExportOptions const&);
+};
+
+constexpr ExporterRow exporters[] = {
+    {nullptr, "", true, false, &netcdf},
+    {"--stan", "write fits as Stan programs with their data", false, true, &stan},
+    {"--latex", "print the models of a .sysid file as LaTeX for amsmath", false, false, &latex},
+};
 
 }  // namespace
 
@@ -93,22 +120,32 @@ Work declare_export(CLI::App& verb) {
   options->run.execution.threads = 0;
   verb.add_option("WHAT", options->what, "folder of a fit or selection, or of a whole run; with --stan or --latex a .sysid file")
       ->required();
-  CLI::Option* const stan = verb.add_flag("--stan", options->stan, "write fits as Stan programs with their data");
-  CLI::Option* const latex = verb.add_flag("--latex", options->latex, "print the models of a .sysid file as LaTeX for amsmath");
-  latex->excludes(stan);
-  verb.add_option("-o,--output", options->output, "folder for the programs of a .sysid file, each in its task's folder")
-      ->type_name("FOLDER")
-      ->default_str(options->run.output.string())
-      ->needs(stan);
+  options->exporter = &exporters[0];
+  std::vector<std::pair<CLI::Option*, ExporterRow const*>> flags;
+  for (ExporterRow const& row : exporters) {
+    if (row.flag == nullptr) continue;
+    CLI::Option* const flag = verb.add_flag_callback(
+        row.flag, [options, &row] { options->exporter = &row; }, row.help);
+    for (auto const& [other, of_other] : flags) flag->excludes(other);
+    flags.emplace_back(flag, &row);
+  }
+  CLI::Option* const output =
+      verb.add_option("-o,--output", options->output, "folder for the programs of a .sysid file, each in its task's folder")
+          ->type_name("FOLDER")
+          ->default_str(options->run.output.string());
   verb.add_option("--model", options->model, "the .sysid file of the results (default: the one they were made from)")
       ->type_name("FILE");
-  verb.add_option("--draws", options->draws, "number of draws to simulate for likelihoods and predictions; 0: only what is stored")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str()
-      ->excludes(stan, latex);
+  CLI::Option* const draws = verb.add_option("--draws", options->draws,
+                                             "number of draws to simulate for likelihoods and predictions; 0: only what is stored")
+                                 ->type_name("N")
+                                 ->check(CLI::Range(0, 1000000))
+                                 ->capture_default_str();
+  for (auto const& [flag, row] : flags) {
+    if (!row->simulates) draws->excludes(flag);
+    if (row->into_a_folder) output->needs(flag);
+  }
   verb.add_flag("--force", options->run.force, "replace existing files");
-  return [options](Messages const& messages) { return work(messages, *options); };
+  return [options](Messages const& messages) { return options->exporter->work(messages, *options); };
 }
 
 }  // namespace sysid::cli

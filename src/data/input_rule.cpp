@@ -2,7 +2,7 @@
 #include "data/input_rule.hpp"
 
 #include "core/setting/table.hpp"
-#include "data/spline.hpp"
+#include "data/interpolation.hpp"
 
 namespace sysid {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/text/diagnostic.hpp"
-#include "data/errors.hpp"
 #include "data/experiment.hpp"
+#include "data/file_errors.hpp"
 
 namespace sysid {
 namespace {

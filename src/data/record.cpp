@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "data/errors.hpp"
+#include "data/file_errors.hpp"
 #include "data/table.hpp"
 
 namespace sysid {

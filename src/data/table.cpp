@@ -10,7 +10,7 @@
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "core/text/words.hpp"
-#include "data/errors.hpp"
+#include "data/file_errors.hpp"
 
 namespace sysid {
 namespace {

@@ -201,7 +201,9 @@ double ess_mean(ChainValues const& draws) { return basic_ess(split(draws), fouri
 double mcse_mean(ChainValues const& draws) { return std::sqrt(corrected_variance(pooled(draws)) / ess_mean(draws)); }
 
 Summary summarise(std::string name, std::string unit, ChainValues const& draws) {
-  Summary summary{std::move(name), std::move(unit), nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
+  Summary summary;
+  summary.name = std::move(name);
+  summary.unit = std::move(unit);
   std::vector<double> all = pooled(draws);
   if (all.empty() || std::any_of(all.begin(), all.end(), [](double v) { return !std::isfinite(v); })) return summary;
   summary.mean = corrected_mean(all);

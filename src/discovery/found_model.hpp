@@ -8,7 +8,7 @@
 
 namespace sysid {
 
-struct FoundSource;  // app/found_source.hpp
+struct FoundSource;  // discovery/found_source.hpp
 
 struct FoundModel {
   std::string text;

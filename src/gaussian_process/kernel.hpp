@@ -1,5 +1,5 @@
 // A covariance function as a row of data: values, derivatives and, where they exist, a state-space form and a spectral density. One
-// file and one row (gaussian_process/table.cpp) adds another.
+// file and one row (gaussian_process/list.hpp) adds another.
 #pragma once
 #include <span>
 #include <string_view>

@@ -8,6 +8,7 @@
 #include "app/catalogue/explain.hpp"
 #include "app/catalogue/lists.hpp"
 #include "app/catalogue/module_page.hpp"
+#include "check/task/task_options.hpp"
 #include "core/text/wrapped.hpp"
 #include "data/input_rule.hpp"
 #include "repl/statistics.hpp"
@@ -78,8 +79,7 @@ constexpr KeywordRow keyword_rows[] = {
     {"split", "split train = rows 1..500, test = rows 501..1500",
      "named ranges of rows, for example to fit and to test, from 1, both ends included"},
     {"rows", "split train = rows 1..500", "rows of the file, from 1, both ends included"},
-    {"hold", "input x = force [N] hold zero_order",
-     "the rule for an input between samples: zero_order, linear, cubic or band_limited"},
+    {"hold", "input x = force [N] hold zero_order", "the rule for an input between samples"},
     // candidates and dictionaries
     {"shared", "shared m, c", "parameters that have the same meaning in every candidate"},
     {"probability", "linear probability 0.5",
@@ -88,34 +88,19 @@ constexpr KeywordRow keyword_rows[] = {
     {"terms", "terms = polynomial(y, y', degree = 3), sign(y')", "the candidate terms of the equation"},
     {"exclude", "exclude = y*y'", "terms of a family that are not used"},
     {"coefficients", "coefficients = [N/m], [N/m^3]", "the units that coefficients may have"},
-    // options of tasks
-    {"start", "start = estimated(rows = 50)", "how a simulation starts: record, rest or estimated from a number of rows"},
+    // words in options of tasks
     {"record", "start = record", "from the first row of the file, in the model's initial values"},
     {"rest", "start = rest", "at the first scored row, in the model's initial values"},
     {"estimated", "start = estimated(rows = 50)", "in the state that best fits the first rows"},
-    {"search", "search = near(posterior)", "where a fit looks for modes: everywhere, or near an earlier fit"},
     {"near", "search = near(posterior)", "from where an earlier fit ended: fast, but finds no other modes"},
     {"everywhere", "search = everywhere", "from draws of the prior"},
-    {"solver", "solver = cvode(relative = 1e-8)", "the integration method of the equations (`list solvers`)"},
-    {"substeps", "substeps = 4", "steps of the fixed-step solver between two samples; if not given, the fit chooses it"},
-    {"prediction", "prediction = free_run", "the source of lagged samples: as_written, one_step or free_run"},
     {"as_written", "prediction = as_written", "lagged samples are measured or predicted as written in the model"},
     {"one_step", "prediction = one_step", "lagged samples are the measured ones"},
     {"free_run", "prediction = free_run", "lagged samples are the predicted ones"},
-    {"seed", "seed = 1", "seed of all random numbers of a task; at the prompt one is written into a task that has none"},
-    {"draws", "predict posterior on bench with draws(200)", "number of posterior draws that a prediction uses"},
-    {"redraw", "redraw = step", "whether a prediction draws parameters once per trajectory or at every step"},
-    {"distance", "distance = nmse", "the distance between a simulation and the record, in a selection"},
-    {"weights", "weights(displacement = 1)", "weights of channels in a distance"},
-    {"values", "values(m = 1, c = 20)", "values of the parameters of a simulation"},
-    {"noise", "noise = 1 [percent]", "noise of a simulation; in a discovery the sd of channels, noise(displacement = 0.1 [mm])"},
-    {"samples", "samples = 500", "number of rows of a simulation"},
     {"gaussian", "input x = gaussian(sd = 10)", "a random input for a simulation"},
     {"sine", "input x = sine(amplitude = 1, frequency = 10 [Hz])", "an input of one frequency"},
     {"multisine", "input x = multisine(sd = 1, lowest = 1 [Hz], highest = 100 [Hz])", "an input of many frequencies"},
     {"derivatives", "spike_slab(derivatives = weak)", "how a discovery computes derivatives from a record"},
-    {"top", "top = 5", "number of structures that a discovery shows"},
-    {"refit", "refit = no", "whether a discovery refits its structures by simulation"},
 };
 
 std::string entry_of(KeywordRow const& row) { return fmt::format("{}\n  {}\n", row.usage, row.summary); }
@@ -175,6 +160,11 @@ std::span<KeywordRow const> keywords() {
   static std::vector<KeywordRow> const rows = [] {
     std::vector<KeywordRow> all(std::begin(keyword_rows), std::end(keyword_rows));
     for (InputRuleRow const& rule : input_rules()) all.push_back({rule.name, rule.usage, rule.summary});
+    for (std::string_view const verb : words::verbs)
+      for (TaskOptionRow const& option : task_options(verb)) {
+        bool const known = std::any_of(all.begin(), all.end(), [&](KeywordRow const& row) { return row.usage == option.usage; });
+        if (!known) all.push_back({option.name, option.usage, option.summary});
+      }
     return all;
   }();
   return rows;

@@ -13,7 +13,7 @@
 #include "check/checked/task_kinds.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
-#include "report/file/result_folder.hpp"
+#include "report/file/task_folder.hpp"
 
 namespace sysid::repl {
 namespace {

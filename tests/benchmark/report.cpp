@@ -6,7 +6,7 @@
 
 #include "app/run/report_results.hpp"
 #include "report/example.hpp"
-#include "report/file/result_folder.hpp"
+#include "report/file/task_folder.hpp"
 #include "temporary_folder.hpp"
 
 namespace {

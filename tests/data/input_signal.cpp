@@ -13,7 +13,11 @@ using namespace sysid;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr InputRule all_rules[] = {InputRule::zero_order, InputRule::linear, InputRule::cubic, InputRule::band_limited};
+std::vector<InputRule> const all_rules = [] {
+  std::vector<InputRule> rules;
+  for (InputRuleRow const& row : input_rules()) rules.push_back(row.rule);
+  return rules;
+}();
 
 std::vector<double> grid(int n, double step) {
   std::vector<double> time;

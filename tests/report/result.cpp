@@ -1,5 +1,5 @@
 // The result folder: complete, never overwritten unasked, the same bytes twice.
-#include "report/file/result_folder.hpp"
+#include "report/file/task_folder.hpp"
 
 #include <doctest/doctest.h>
 

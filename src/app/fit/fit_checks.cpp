@@ -7,7 +7,7 @@
 
 #include "app/session/fit_end.hpp"
 #include "diagnostics/bound_check.hpp"
-#include "diagnostics/fit_checks.hpp"
+#include "diagnostics/model_checks.hpp"
 #include "diagnostics/tolerance.hpp"
 
 namespace sysid {

@@ -14,8 +14,8 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "experiment/prior_density.hpp"
-#include "report/file/result_folder.hpp"
 #include "report/file/stored_report.hpp"
+#include "report/file/task_folder.hpp"
 #include "report/page/comparison.hpp"
 #include "report/page/html.hpp"
 

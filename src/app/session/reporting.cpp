@@ -13,7 +13,7 @@
 #include "core/system/files.hpp"
 #include "experiment/experiments.hpp"
 #include "experiment/prior_density.hpp"
-#include "report/file/result_folder.hpp"
+#include "report/file/task_folder.hpp"
 #include "report/page/terminal.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"

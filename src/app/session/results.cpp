@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/system/files.hpp"
-#include "report/file/result_folder.hpp"
+#include "report/file/task_folder.hpp"
 
 namespace sysid {
 

@@ -19,7 +19,7 @@
 #include "diagnostics/function_ranges.hpp"
 #include "experiment/experiments.hpp"
 #include "likelihood/trajectory.hpp"
-#include "report/file/made_record.hpp"
+#include "report/file/simulated_csv.hpp"
 
 namespace sysid {
 namespace {

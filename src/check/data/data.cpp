@@ -10,7 +10,7 @@
 #include "check/expression/scope.hpp"
 #include "check/message/errors.hpp"
 #include "check/units/units.hpp"
-#include "data/errors.hpp"
+#include "data/file_errors.hpp"
 
 namespace sysid {
 namespace {

@@ -1,4 +1,4 @@
-// Messages about reuse: vectors and matrices, models inside models, modules. The other messages: check/errors.hpp.
+// Messages about reuse: vectors and matrices, models inside models, modules. The other messages: check/message/errors.hpp.
 #pragma once
 #include <span>
 #include <string>

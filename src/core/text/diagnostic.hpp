@@ -1,6 +1,6 @@
 // What is wrong with the user's text or data, as a value: collected by the stages, rendered once at the end.
-// Wording lives in the file that owns the stage's messages (check/errors_*.cpp, data/errors.cpp, grammar/errors.cpp), never at the
-// place of detection.
+// The front end's wording lives in the files that own a stage's messages (check/message/errors_*.cpp, data/file_errors.cpp,
+// grammar/errors.cpp), never at the place of detection; tasks word their few beside what they do.
 #pragma once
 #include <functional>
 #include <optional>

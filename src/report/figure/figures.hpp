@@ -1,4 +1,4 @@
-// The figures of a report, as scripts; report/gnuplot draws them.
+// The figures of a report, as scripts; report/figure/gnuplot draws them.
 #pragma once
 #include <vector>
 

@@ -1,5 +1,5 @@
 // Script text for gnuplot 5. Every choice that gnuplot would make from the data (ranges, ticks, notation) is made here and in
-// report/axis.
+// report/figure/axis.
 #include "report/figure/plot.hpp"
 
 #include <fmt/format.h>

@@ -10,7 +10,7 @@
 #include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
 #include "report/file/csv.hpp"
-#include "report/file/result_folder.hpp"
+#include "report/file/task_folder.hpp"
 #include "report/text/summary_text.hpp"
 #include "result/report.hpp"
 

@@ -7,8 +7,8 @@
 #include "core/text/diagnostic.hpp"
 #include "report/file/csv.hpp"
 #include "report/file/number_table.hpp"
-#include "report/file/record.hpp"
-#include "report/file/result_folder.hpp"
+#include "report/file/report_cbor.hpp"
+#include "report/file/task_folder.hpp"
 
 namespace sysid {
 

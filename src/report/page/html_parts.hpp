@@ -1,4 +1,4 @@
-// The bodies of a page's sections, by subject; report/html_sections puts them in order. Empty where there is no content.
+// The bodies of a page's sections, by subject; report/page/html_sections puts them in order. Empty where there is no content.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace sysid {
 
-// What was found: report/html_result.
+// What was found: report/page/html_result.
 
 /// Parameters from prior to posterior, the evidence, and the tables of this kind of task.
 std::string result_html(Report const& report);
@@ -18,18 +18,18 @@ enum class TitleBegins { with_a_word, with_a_name };
 /// words: how many of the first columns are words and not numbers.
 std::string table_html(ReportTable const& table, std::size_t words = 1, TitleBegins title = TitleBegins::with_a_word);
 
-// How well it fits: report/html_scores.
+// How well it fits: report/page/html_scores.
 
 /// Of one channel with what each score says; of several as a table, and what the worst of each score says behind it.
 std::string scores_html(Report const& report);
 
-// Whether the computation can be believed: report/html_computation.
+// Whether the computation can be believed: report/page/html_computation.
 
 std::string chains_html(Report const& report);
 /// How many simulations there were, and each kind of failure with its place.
 std::string simulations_html(Report const& report);
 
-// Where it comes from: report/html_provenance.
+// Where it comes from: report/page/html_provenance.
 
 /// The records, each under a heading of this level.
 std::string data_html(Report const& report, int level);

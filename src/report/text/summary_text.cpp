@@ -55,8 +55,11 @@ std::string mean_and_sd(Summary const& summary) {
 }
 
 std::pair<std::string, std::string> coefficient_text(double value, double sd) {
-  double const none = std::numeric_limits<double>::quiet_NaN();
-  SummaryText const text = format_summary({"", "", value, value, sd, none, value, value, none, none, none, sd / 10});
+  Summary coefficient;
+  coefficient.mean = coefficient.median = coefficient.q5 = coefficient.q95 = value;
+  coefficient.sd = sd;
+  coefficient.mcse_mean = sd / 10;
+  SummaryText const text = format_summary(coefficient);
   return {text.mean, text.sd};
 }
 

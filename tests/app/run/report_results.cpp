@@ -11,7 +11,7 @@
 #include "app/session/reporting.hpp"
 #include "app/stored_pages.hpp"
 #include "report/figure/gnuplot.hpp"
-#include "report/file/record.hpp"
+#include "report/file/report_cbor.hpp"
 
 using namespace sysid;
 using namespace sysid::test;

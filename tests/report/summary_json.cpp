@@ -1,5 +1,5 @@
 // summary.json: complete, strict and the same twice.
-#include "report/file/json.hpp"
+#include "report/file/summary_json.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Result folders.
-#include "report/file/result_folder.hpp"
+#include "report/file/task_folder.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@
 #include "report/file/csv.hpp"
 #include "report/file/discovery.hpp"
 #include "report/file/function.hpp"
-#include "report/file/json.hpp"
-#include "report/file/record.hpp"
+#include "report/file/report_cbor.hpp"
 #include "report/file/selection.hpp"
+#include "report/file/summary_json.hpp"
 #include "report/page/html.hpp"
 
 namespace sysid {

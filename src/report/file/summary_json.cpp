@@ -1,5 +1,5 @@
 // JSON by nlohmann's ordered objects: order of insertion, round-trip decimals.
-#include "report/file/json.hpp"
+#include "report/file/summary_json.hpp"
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"

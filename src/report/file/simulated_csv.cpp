@@ -1,5 +1,5 @@
 // Columns side by side.
-#include "report/file/made_record.hpp"
+#include "report/file/simulated_csv.hpp"
 
 #include "core/text/number.hpp"
 #include "report/file/csv.hpp"

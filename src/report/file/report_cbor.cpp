@@ -1,5 +1,5 @@
 // One list of members for each type serves writing and reading: what is written is what is read.
-#include "report/file/record.hpp"
+#include "report/file/report_cbor.hpp"
 
 #include <fmt/format.h>
 

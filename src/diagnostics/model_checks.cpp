@@ -1,5 +1,5 @@
 // Populations, parameters without use, and the timing of the inputs.
-#include "diagnostics/fit_checks.hpp"
+#include "diagnostics/model_checks.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Piecewise polynomials from samples. Order of operations is fixed: inputs enter results that are promised bit for bit.
-#include "data/spline.hpp"
+#include "data/interpolation.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The wording of data errors. Messages are lower case without a full stop; `help` states what to do.
-#include "data/errors.hpp"
+#include "data/file_errors.hpp"
 
 #include <fmt/format.h>
 
