@@ -101,7 +101,7 @@ Diagnostic unknown_item(Token const& word) {
   std::vector<std::string> known = words::list(words::items);
   for (std::string_view const verb : words::verbs) known.emplace_back(verb);
   return error(
-      "E1110", word.span, fmt::format("nothing in a file begins with `{}`", word.text),
+      "E1110", word.span, fmt::format("no declaration or task begins with `{}`", word.text),
       guess_or(word.text, known,
                fmt::format("a declaration begins with {}; a task begins with {}", choice(words::items), choice(words::verbs))));
 }
@@ -131,8 +131,9 @@ Diagnostic stray_byte(Span where, unsigned char byte) {
     return error("E1115", where, fmt::format("the byte 0x{:02x} is not valid UTF-8", byte), "save the file as UTF-8");
   std::string const name =
       byte > 0x20U && byte < 0x7FU ? fmt::format("`{}`", static_cast<char>(byte)) : fmt::format("0x{:02x}", byte);
-  std::string_view const help = byte == '|'    ? "an absolute value is written `abs(y)`; arguments are separated by commas"
-                                : byte == '?'  ? "a choice is written `if condition then value else value`"
+  std::string_view const help = byte == '|' ? "an absolute value is written `abs(y)`; arguments are separated by commas"
+                                : byte == '?'
+                                    ? "a value that depends on a condition is written `if condition then value else value`"
                                 : byte == ':'  ? "a range is written `1..500`, a definition `let a = b`"
                                 : byte == '\\' ? "formulas are plain text: `y''` for a second derivative, `sqrt(a)` for a root"
                                                : "remove it";
@@ -155,9 +156,9 @@ Diagnostic list_in_brackets(Span where) {
 }
 
 Diagnostic bracket_out_of_place(Span where) {
-  return error(
-      "E1118", where, "a unit is not allowed here",
-      "`[` opens a unit after a number, a declared name or a data column; elsewhere multiply by a number with a unit: `1 [m]`");
+  return error("E1118", where, "a unit is not allowed here",
+               "a unit is allowed only after a number, a declared name or a data column; elsewhere multiply by a number with a "
+               "unit: `1 [m]`");
 }
 
 Diagnostic reserved_word(Token const& word) {
@@ -174,7 +175,8 @@ Diagnostic prime_apart(Span where) {
 }
 
 Diagnostic nesting_too_deep(Span where, int most) {
-  return error("E1122", where, fmt::format("the expression is nested more than {} deep", most), "name parts of it with `let`");
+  return error("E1122", where, fmt::format("the expression has more than {} levels of nesting", most),
+               "name parts of it with `let`");
 }
 
 Diagnostic statement_too_long(Span where, int most) {
@@ -197,7 +199,7 @@ Diagnostic unknown_escape(Span where, std::string_view escape) {
 
 Diagnostic statement_incomplete(Token const& last, Token const& next) {
   Diagnostic out = error("E1125", last.span, fmt::format("the line ends in `{}`, so the next line continues it", last.text),
-                         "complete the statement, or remove the end of its line");
+                         "complete the statement, or remove the operator or comma at the end of the line");
   out.secondary.push_back({next.span, "a statement begins here"});
   return out;
 }

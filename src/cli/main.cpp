@@ -12,17 +12,19 @@ constexpr char const *tasks = "Tasks of a file", *files = "Files", *results = "R
 constexpr Command commands[] = {
     {"run", tasks, "run all tasks of a file", &declare_tasks,
      "sysid run duffing.sysid\nsysid run duffing.sysid -o results/second --seed 2\nsysid run duffing.sysid --resume"},
-    {"simulate", tasks, "run its simulate tasks: generate data", &declare_tasks, "sysid simulate duffing.sysid"},
-    {"fit", tasks, "run its fit tasks", &declare_tasks, "sysid fit duffing.sysid --force\nsysid fit duffing.sysid --dump model"},
-    {"select", tasks, "run its select tasks: choose among candidate models", &declare_tasks, "sysid select bouc_wen.sysid --quiet"},
-    {"discover", tasks, "run its discover tasks: find equations from the terms of a dictionary", &declare_tasks,
+    {"simulate", tasks, "run the simulate tasks of a file: generate data", &declare_tasks, "sysid simulate duffing.sysid"},
+    {"fit", tasks, "run the fit tasks of a file", &declare_tasks,
+     "sysid fit duffing.sysid --force\nsysid fit duffing.sysid --dump model"},
+    {"select", tasks, "run the select tasks of a file: choose among candidate models", &declare_tasks,
+     "sysid select bouc_wen.sysid --quiet"},
+    {"discover", tasks, "run the discover tasks of a file: find equations from the terms of a dictionary", &declare_tasks,
      "sysid discover lorenz.sysid"},
-    {"predict", tasks, "run its predict tasks, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force"},
+    {"predict", tasks, "run the predict tasks of a file, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force"},
     {"check", files, "check a file and what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
     {"fmt", files, "rewrite files in canonical layout", &declare_format,
      "sysid fmt duffing.sysid\nsysid fmt --check models/*.sysid"},
-    {"repl", files, "interactive prompt: statements of the language, tasks, expressions over results", &declare_repl,
+    {"repl", files, "interactive prompt: enter statements, run tasks, compute with results", &declare_repl,
      "sysid repl\nsysid repl duffing.sysid --seed 1"},
     {"lsp", files, "serve an editor on standard input and output: the language server protocol", &declare_lsp, ""},
     {"compare", results, "compare fits and predictions: evidence and errors", &declare_compare,
@@ -55,7 +57,7 @@ ExitCode main(int argument_count, char** arguments) {
     messages.complain("this processor lacks AVX2 and FMA (x86-64-v3), which sysid needs");
     return ExitCode::internal;
   }
-  CLI::App app{"sysid: Bayesian identification of nonlinear systems, from the equation as printed"};
+  CLI::App app{"sysid: Bayesian identification of nonlinear systems, from equations written as on paper"};
   app.formatter(std::make_shared<HelpPages>());
   app.set_help_flag("-h,--help", "print this page");
   app.require_subcommand(1)->fallthrough()->footer("sysid run models/duffing/duffing.sysid\nsysid report results");

@@ -65,7 +65,7 @@ Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int
   return error(
       "E4005", mention,
       fmt::format("{} has {}, but the header names {}", place(file, row, line), counted(cells, "cell"), counted(columns, "column")),
-      "a missing value is an empty cell between separators; a decimal comma needs another separator than the comma");
+      "a missing value is an empty cell between separators; numbers with a decimal comma need a separator other than the comma");
 }
 
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention) {
@@ -146,11 +146,11 @@ Diagnostic rows_outside(std::string const& file, std::string const& what, int fi
 
 Diagnostic cycles_against_radians(std::string const& column, std::string const& column_unit, std::string const& declared_unit,
                                   Mention mention) {
-  return error(
-      "E4017", mention,
-      fmt::format("column `{}` is in [{}], but the declared unit is [{}]: one counts cycles, the other radians, a factor of 2 pi",
-                  column, column_unit, declared_unit),
-      "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
+  return error("E4017", mention,
+               fmt::format("column `{}` is in [{}], but the declared unit is [{}]: one counts cycles, the other radians, so they "
+                           "differ by a factor of 2 pi",
+                           column, column_unit, declared_unit),
+               "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
 }
 
 }  // namespace sysid::data_errors

@@ -64,7 +64,7 @@ void check_motion(ChainReport const& report, Findings& findings) {
                                     : stuck.size() == 1 ? percent(most)
                                                         : "at most " + percent(most),
                                     report.adaptive ? "" : ", because the fixed proposal does not fit the posterior"),
-                        report.adaptive ? "let it adapt longer (burn_in), and check the counted failures"
+                        report.adaptive ? "use a longer burn-in (burn_in), and check the counts of failed simulations"
                                         : "use proposal = adaptive, which adapts its size and shape during burn-in"});
   }
   if (!poor.empty()) {

@@ -47,7 +47,7 @@ std::string prediction_verdict(Report const& report, bool missed) {
   if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
   if (report.ledger.failed() > 0) return "use with care: some trajectories do not stay finite";
   if (has(FindingCode::worse_than_the_mean, Severity::warning)) return "use with care: the mean of the record predicts better";
-  if (missed) return "use with care: the data lie outside their bands";
+  if (missed) return "use with care: too many samples lie outside the bands";
   if (has(FindingCode::from_doubtful_fit, Severity::warning)) return "use with care: the fit whose draws are used has warnings";
   auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
                                       [](Finding const& each) { return each.severity == Severity::warning; });
@@ -72,9 +72,8 @@ bool add_coverage(Report& report, bool fed_back) {
            Severity::warning,
            {line.channel, line.experiment},
            fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
-           fed_back ? "a free run does not carry the noise of earlier samples forward: its bands include only the parameters and "
-                      "the noise "
-                      "of each sample"
+           fed_back ? "a free run does not propagate the noise of earlier samples: its bands include only the uncertainty of the "
+                      "parameters and the noise of each sample"
                     : "the model or its noise does not describe these data: check the residuals, and inputs outside the range "
                       "that was fitted"});
     }

@@ -42,7 +42,7 @@ std::string scaling(NullDirection const& direction, Words parameters, std::strin
   }
   std::vector<std::string> texts;
   for (auto const& [exponent, members] : groups) texts.push_back(fmt::format("{} by {}", listed(members), power(exponent)));
-  return fmt::format("scaling {} leaves {} unchanged, whatever s", listed(texts), output);
+  return fmt::format("scaling {} leaves {} unchanged for any s", listed(texts), output);
 }
 
 std::string sum(NullDirection const& direction, Words parameters, std::string const& output) {
@@ -58,7 +58,7 @@ std::string sum(NullDirection const& direction, Words parameters, std::string co
         .push_back(equal(size, 1) ? name(parameters, part) : fmt::format("{} ({:.4g} times)", name(parameters, part), size));
   }
   return fmt::format("adding the same amount to {}{} leaves {} unchanged", listed(up),
-                     down.empty() ? std::string() : " and taking it from " + listed(down), output);
+                     down.empty() ? std::string() : " and subtracting it from " + listed(down), output);
 }
 
 std::string general(NullDirection const& direction, Words parameters, std::string const& output) {

@@ -62,9 +62,10 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
            fmt::format(
                "the spread of `{}` is estimated: the posterior is narrow where the spread is small, and chains mix slowly there",
                member->name),
-           fmt::format("write `{}` by standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
-                       "spread*z` (docs/methods/several_experiments.md)",
-                       member->name, member->name)}};
+           fmt::format(
+               "write `{}` in terms of standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
+               "spread*z` (docs/methods/several_experiments.md)",
+               member->name, member->name)}};
 }
 
 Findings check_use(Model const& model, StartRule const& start) {
@@ -80,17 +81,18 @@ Findings check_use(Model const& model, StartRule const& start) {
     if (!model.parameters[p].prior || model.parameters[p].coefficient || !idle) continue;
     std::string const& name = model.parameters[p].name;
     if (roles_elsewhere[p] == ParameterRole::response)
-      findings.push_back({FindingCode::unused_parameter,
-                          Severity::warning,
-                          {name},
-                          fmt::format("{} enters initial values alone, which `start = {}` replaces: its posterior is its prior",
-                                      name, start_text(start)),
-                          "use `start = record`, which starts from the initial values, or remove the parameter"});
+      findings.push_back(
+          {FindingCode::unused_parameter,
+           Severity::warning,
+           {name},
+           fmt::format("{} is used only in initial values, which `start = {}` replaces: its posterior equals its prior", name,
+                       start_text(start)),
+           "use `start = record`, which starts from the initial values, or remove the parameter"});
     else
       findings.push_back({FindingCode::unused_parameter,
                           Severity::warning,
                           {name},
-                          fmt::format("{} enters no equation, no channel and no prior: its posterior is its prior", name),
+                          fmt::format("{} is used in no equation, no channel and no prior: its posterior equals its prior", name),
                           "remove it, or use it in an equation"});
   }
   return findings;

@@ -36,7 +36,7 @@ constexpr Row rows[] = {
     {Kind::nearly_collinear, Severity::warning, FindingCode::terms_nearly_collinear,
      "their coefficients are nearly confounded: exclude one, or use a record with another kind of motion"},
     {Kind::interchangeable, Severity::warning, FindingCode::terms_interchangeable,
-     "`candidates = yes` writes a model for each; a record of other amplitude may distinguish them"},
+     "`candidates = yes` writes a model for each; a record of another amplitude may distinguish them"},
     {Kind::unexplained, Severity::warning, FindingCode::unexplained_residual,
      "look for an input that was not recorded, a state that is missing, or add terms"},
     {Kind::correlated, Severity::warning, FindingCode::residual_correlated,

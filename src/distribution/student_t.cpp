@@ -101,7 +101,7 @@ DistributionRow student_t_distribution() {
           .draw = &draw,
           .quantile = &quantile,
           .refuse = &refuse,
-          .summary = "Student's t, by scale, sd, variance or precision: noise with outliers"};
+          .summary = "Student's t, by scale, sd, variance or precision: heavy tails, for data with outliers"};
 }
 
 }  // namespace sysid

@@ -69,8 +69,8 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
           fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
                       data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit, plural("row", rows.size()),
                       first_listed(rows, most_named)),
-          input ? "an input acts at every row: interpolate what was not measured, or begin the rows behind it; a pulse that "
-                  "saturated the recorder is larger than that"
+          input ? "an input acts at every row: interpolate the missing samples, or begin after them; if a pulse saturated the "
+                  "recorder, the true values are larger"
                 : "leave the cell empty or write `NA`: the row is then not scored"};
 }
 

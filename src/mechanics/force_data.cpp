@@ -207,7 +207,7 @@ void add_data(ForceModel const& link, std::vector<MeasuredMotion> const& motions
   };
   out.why_no_data = held.size() == 1 && !link.link().other
                         ? "no channel measures the displacement alone, and none the acceleration"
-                        : "the displacements that they would follow from are not all measured, each by a channel alone";
+                        : "they need several displacements, which are not all measured, each by its own channel";
   for (Link::Held const& each : held) {
     if (motions[each.mass].displacement.empty()) return;
     samples.held.push_back(motions[each.mass].displacement);

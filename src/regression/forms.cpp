@@ -8,8 +8,8 @@ namespace sysid::regression {
 namespace {
 
 Form const form_rows[] = {
-    {"weak", "integrals with test functions, which take the derivatives; the noise covariance is known", weak::settings(),
-     &weak::refuse, &weak::project},
+    {"weak", "integrals with test functions, which are differentiated in place of the data; the noise covariance is known",
+     weak::settings(), &weak::refuse, &weak::project},
     {"savitzky_golay", "local polynomials, inputs filtered in the same way", savitzky_golay::settings(), &savitzky_golay::refuse,
      &savitzky_golay::project},
     {"smoothing_spline", "a spline through each channel, inputs filtered in the same way", smoothing_spline::settings(),

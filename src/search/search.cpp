@@ -120,7 +120,7 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
         "fix an amplitude or a length, or measure a quantity that distinguishes the functions"};
   return Finding{FindingCode::flat_direction, Severity::warning, names,
                  fmt::format("the data do not determine a combination of {}: moving {} together leaves the fit nearly unchanged, "
-                             "and the posterior is as wide there as the prior",
+                             "and along this combination the posterior is as wide as the prior",
                              listed(names), listed(moves)),
                  "fix one of them, give them narrower priors, or measure a quantity that distinguishes them"};
 }
@@ -334,12 +334,13 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
 
 Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
   std::string const places = failed_places(ledger);
-  return {FindingCode::no_finite_start,
-          Severity::error,
-          {},
-          fmt::format("the likelihood is finite at none of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
-          "check this part of the equations, narrow the priors towards values for which the model can be solved, or let the "
-          "solver choose its steps: `solver = dopri5`, or `solver = cvode` if the model is stiff"};
+  return {
+      FindingCode::no_finite_start,
+      Severity::error,
+      {},
+      fmt::format("the likelihood is not finite at any of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
+      "check this part of the equations, narrow the priors towards values for which the model can be solved, or let the "
+      "solver choose its steps: `solver = dopri5`, or `solver = cvode` if the model is stiff"};
 }
 
 }  // namespace sysid

@@ -166,16 +166,17 @@ TEST_CASE("what agrees passes: numbers adapt, prefixes and pure numbers do not m
 }
 
 TEST_CASE("the help names what is missing") {
-  CHECK(with_equation("m*y'' + c*y' + k + k3*y^3 = x").help == "multiply it by a length; `y` is one");
-  CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help == "divide it by a length; `y` is one");
+  CHECK(with_equation("m*y'' + c*y' + k + k3*y^3 = x").help == "multiply it by a length, such as `y`");
+  CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help == "divide it by a length, such as `y`");
   CHECK(with_equation("m*y'' + 20*y' + k*y = x").help == "a number as a factor has no unit: write `20 [N s/m]`");
   CHECK(with_equation("m*y'' + c*y' + 100*y = x").help == "a number as a factor has no unit: write `100 [N/m]`");
   CHECK(said_of("model a {\nstate y [m]\nparameter c [N s/m] = 1\nparameter k [N/m] = 1\ninput x [N]\ninitial y = 0\nc*y' + c*y + "
                 "k*y = x\n"
                 "observe d ~ normal(y, sd = 1)\n}\n")
-            .help == "did you mean `y'` for `y`, or `c [N/m]`?");
-  CHECK(with_equation("m*y'' + c*y + k*y = x").help == "did you mean `y'` for `y`, or `c [N/m]`?");  // and not a rate, which `w` is
-  CHECK(with("let a = k*t + x").help.find("t'") == std::string::npos);                               // time has no primes
+            .help == "did you mean `y'` instead of `y`, or `c [N/m]`?");
+  CHECK(with_equation("m*y'' + c*y + k*y = x").help ==
+        "did you mean `y'` instead of `y`, or `c [N/m]`?");             // and not a rate, which `w` is
+  CHECK(with("let a = k*t + x").help.find("t'") == std::string::npos);  // time has no primes
   CHECK(with("let a = exp(y)").help == "divide it by a length");
   CHECK(with("let a = abs(y)^n").help == "make the base a pure number: divide `abs(y)` by a reference value in [m]");
   CHECK(with("let a = if y then 1 else 2").help == "compare it: `y > 0`");

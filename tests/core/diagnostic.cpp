@@ -30,7 +30,7 @@ TEST_CASE("a diagnostic shows the place, the line, both spans with their units, 
                               "this term cannot be added to the ones before it",
                               Label{find(source, "k +"), "[N/m]"},
                               {Label{find(source, "m*y'' + c*y'"), "[N]"}},
-                              "multiply it by a length; `y` is one"};
+                              "multiply it by a length, such as `y`"};
   Diagnostic shorter = diagnostic;
   shorter.primary->span.end = shorter.primary->span.begin + 1;
   CHECK(render(shorter, source) ==
@@ -38,7 +38,7 @@ TEST_CASE("a diagnostic shows the place, the line, both spans with their units, 
         "   9 |   m*y'' + c*y' + k + k3*y^3 = x\n"
         "     |   ------------   ^ [N/m]\n"
         "     |   [N]\n"
-        "help: multiply it by a length; `y` is one\n"
+        "help: multiply it by a length, such as `y`\n"
         "more: sysid explain E2103\n");
 }
 

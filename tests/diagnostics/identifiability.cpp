@@ -133,7 +133,7 @@ TEST_CASE("a group that scales together is named with its exponents") {
     return Matrix(value.cwiseProduct(exponents));
   }));
   REQUIRE(powers.directions.size() == 1);
-  CHECK(said(powers) == "scaling m, c and k by s, k3 by s^(-2) and b by s^(3/2) leaves displacement unchanged, whatever s");
+  CHECK(said(powers) == "scaling m, c and k by s, k3 by s^(-2) and b by s^(3/2) leaves displacement unchanged for any s");
 }
 
 TEST_CASE("two parameters that enter as a product or ratio are named so") {

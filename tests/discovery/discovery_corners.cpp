@@ -74,7 +74,7 @@ TEST_CASE("terms that are one on this record are named, and the first stays") {
   DiscoveryAnswer const sum =
       run(file("let angle = y/1 [m]\ntarget = u - 1 [kg]*y''\nterms = y', y, y^3, sin(angle)^2, 1, cos(angle)^2"));
   CHECK(sum.exit == 0);
-  CHECK(contains(sum.finding("terms_collinear").at("message"), "`cos(angle)^2` is a sum of `sin(angle)^2` and `1`"));
+  CHECK(contains(sum.finding("terms_collinear").at("message"), "`cos(angle)^2` is a linear combination of `sin(angle)^2` and `1`"));
   CHECK(sum.finding("terms_collinear").at("severity") == "warning");
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("missing samples cost windows, missing forces are an error") {
   DiscoveryAnswer const none = run(file(oscillator), csv);
   CHECK(none.exit == 1);
   CHECK_FALSE(none.finding("too_few_rows").is_null());
-  CHECK(contains(none.finding("windows_missing").at("message"), "100 % of the windows touch a missing sample"));
+  CHECK(contains(none.finding("windows_missing").at("message"), "100 % of the windows contain a missing sample"));
 }
 
 TEST_CASE("unequal steps are named") {

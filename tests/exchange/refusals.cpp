@@ -47,13 +47,13 @@ TEST_CASE("an export refuses folders without draws, files that are there and res
   std::string const bytes = read_file(results / "posterior/posterior.nc");
   CHECK(refusal<UserError>([&] {
           export_netcdf(find_results(results), &session, 200, out);
-        }).ends_with("are of another text of model `deck`"));
+        }).ends_with("were computed with another text of model `deck`"));
   CHECK(read_file(results / "posterior/posterior.nc") == bytes);
 
   std::filesystem::rename(results / "posterior", results / "renamed");
   CHECK(refusal<UserError>([&] {
           export_netcdf(find_results(results / "renamed"), &session, 200, out);
-        }).ends_with("are of another text of model `deck`"));
+        }).ends_with("were computed with another text of model `deck`"));
   auto older = nlohmann::ordered_json::parse(read_file(results / "renamed/summary.json"));
   older.erase("verb");
   write_file(results / "renamed/summary.json", older.dump(2));

@@ -54,7 +54,7 @@ TEST_CASE("zero, infinite, repeated and summed columns are named and left out") 
   CHECK(usable.concerns[1].value == 1);
   CHECK(usable.concerns[2].kind == Concern::Kind::repeats);
   CHECK(usable.concerns[2].terms == std::vector<int>{1, 4});
-  CHECK(usable.concerns[2].clause == "`twice` is a multiple of `b` on these data and left out");
+  CHECK(usable.concerns[2].clause == "`twice` is a multiple of `b` on these data and is left out");
   CHECK(usable.concerns[3].kind == Concern::Kind::collinear);
   CHECK(usable.concerns[3].terms == std::vector<int>{5, 0, 1});
 }

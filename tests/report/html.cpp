@@ -144,7 +144,7 @@ TEST_CASE("figures stand with the numbers that they belong to") {
     return page.substr(begin, page.find("</section>", begin) - begin);
   };
   CHECK(section("result").find("Marginal posteriors") != std::string::npos);
-  CHECK(section("result").find("Draws of each two parameters") != std::string::npos);
+  CHECK(section("result").find("Draws of each pair of parameters") != std::string::npos);
   CHECK(section("fit").find("Measured and modelled displacement") != std::string::npos);
   CHECK(section("fit").find("Autocorrelation of the residuals") != std::string::npos);
   CHECK(section("diagnostics").find("Draws of each chain") != std::string::npos);

@@ -71,7 +71,7 @@ Findings solver_accuracy(FinishedFit& fit) {
 }
 
 std::string without_finite_sums(FinishedFit const& fit) {
-  return fit.likelihood.model().expansions.empty() ? "the model has no unknown function that stands as a finite sum" : "";
+  return fit.likelihood.model().expansions.empty() ? "the model has no unknown function that is approximated by a finite sum" : "";
 }
 
 Findings functions(FinishedFit& fit) { return fit.likelihood.check_functions(fit.result); }

@@ -49,7 +49,7 @@ void check_bands(TaskPage& page) {
             {FindingCode::input_band,
              Severity::warning,
              {input.name, coverage.name},
-             fmt::format("{} of {} carries power up to {:.3g} Hz, {:.2f} of the sampling rate: `{}` is exact only up to {}",
+             fmt::format("{} of {} has power up to {:.3g} Hz, {:.2f} of the sampling rate, but `{}` is exact only up to {} of it",
                          input.name, coverage.name, input.high, input.high / coverage.rate, input.rule, row_of(*rule).band),
              "check whether it was held between the samples, or sampled without an anti-aliasing filter"});
 }

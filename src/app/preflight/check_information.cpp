@@ -128,7 +128,7 @@ class Description {
     if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
     if (coordinate.role == ParameterRole::none) return "not used";  // the checker has warned of it
     add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},
-        fmt::format("only derived quantities depend on {}: the data do not inform it", coordinate.words.name),
+        fmt::format("only derived quantities depend on {}: the data contain no information on it", coordinate.words.name),
         "fix it to a value (`=` in place of `~`), or use it in an equation");
     return "used in derived quantities only";
   }

@@ -53,7 +53,7 @@ void check_failures(Preflight const& preflight) {
   if (!preflight.refines_solver() && lost > many_failures)
     preflight.add(
         FindingCode::integration_step, Severity::warning, {},
-        fmt::format("with {} {:.0f} % of the prior draws overflow, which adaptive steps do not", preflight.what.solver.text(),
+        fmt::format("with {} {:.0f} % of the prior draws overflow, but not with adaptive steps", preflight.what.solver.text(),
                     100 * lost),
         fmt::format("{}: use shorter steps, or `solver = dopri5` or `cvode`",
                     preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations"));

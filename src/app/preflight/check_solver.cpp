@@ -48,10 +48,12 @@ void describe_distances(Preflight const& preflight, PriorDraws const& prior, dou
                               std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than 100 %"),
                   help);
   else if (prior.noise.empty() && shift > visible_shift)
-    preflight.add(FindingCode::integration_step, Severity::warning, {},
-                  fmt::format("with {} the solver changes the distances: {} moves them by {:.2g} of what the stated noise leaves",
-                              preflight.what.solver.text(), preflight.what.solver.finer_words(), shift),
-                  help);
+    preflight.add(
+        FindingCode::integration_step, Severity::warning, {},
+        fmt::format(
+            "with {} the solver changes the distances: {} moves them by {:.2g} of the distance that the stated noise leaves",
+            preflight.what.solver.text(), preflight.what.solver.finer_words(), shift),
+        help);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ class ProcessPredict {
       report.findings.push_back({FindingCode::optimum_alone,
                                  Severity::note,
                                  {fit_task_.name},
-                                 fmt::format("`{}` is an optimum, not a posterior: the bands include the uncertainty of the "
+                                 fmt::format("`{}` gives an optimum, not a posterior: the bands include the uncertainty of the "
                                              "process, not that of its hyper-parameters",
                                              fit_task_.name),
                                  "fit with mh for bands that include both"});
@@ -84,8 +84,8 @@ class ProcessPredict {
           {FindingCode::far_outside,
            Severity::warning,
            {each.process, each.input},
-           fmt::format("`{}` of `{}` lies up to {:.2g} times the width of its fitted range outside it{}", each.input, each.process,
-                       each.widths, where),
+           fmt::format("the input `{}` of `{}` lies outside its fitted range by up to {:.2g} times the width of that range{}",
+                       each.input, each.process, each.widths, where),
            "there the process returns to zero, and its band follows from the prior of the kernel, not from data"});
   }
 

@@ -33,7 +33,7 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
         {FindingCode::duplicate_inputs,
          Severity::note,
          {target.model().model().channels[c].name},
-         fmt::format("{} of {} samples of {} have the inputs of another sample: differences between them are treated as noise",
+         fmt::format("{} of {} samples of {} have the same inputs as another sample: differences between them are treated as noise",
                      repeated, inputs.rows(), target.model().model().channels[c].name),
          ""});
   auto const hyper_parameters = layout.covariance.hyper_parameters();

@@ -36,10 +36,10 @@ class PredictSelection {
     if (what_.redraw_each_step)
       throw UserError({Severity::error,
                        "E6519",
-                       "parameters cannot be redrawn at each step where models differ",
+                       "parameters cannot be redrawn at each step if the trajectories belong to different models",
                        Label{task_.span, {}},
                        {},
-                       "leave `redraw = step` out"});
+                       "remove `redraw = step`"});
     std::size_t const lead = trajectories_.lead();
     Report report = begin_report(session_, task_, select_.fits[lead].model,
                                  fmt::format("predict {} on {} with draws({})", select_task_.name,

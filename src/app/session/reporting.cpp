@@ -196,8 +196,9 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   auto const folder = session.result_folder(task);
   auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
   auto const refuse = [&](std::string const& what) {
-    return Diagnostic{Severity::error, "E6208", fmt::format("the results in `{}` are of another {}", folder.string(), what),
-                      std::nullopt,    {},      "run the task again with --force, or write elsewhere with -o"};
+    return Diagnostic{
+        Severity::error, "E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
+        std::nullopt,    {},      "run the task again with --force, or write elsewhere with -o"};
   };
   if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
   if (summary["versions"].value("model_sha256", "") != task_digest(session, task))
@@ -214,7 +215,7 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   }
   if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");
   if (summary["versions"].value("statement_sha256", "") != statement_digest(session, task))
-    return refuse("statement, or of other rows");
+    return refuse("statement, or with other rows");
   return std::nullopt;
 }
 

@@ -18,12 +18,14 @@ Finding not_converged(RefinedSolver const& refined) {
             {},
             fmt::format("the result has not converged with {}", accuracy(refined.solver)),
             help};
-  return {FindingCode::step_not_settled,
-          Severity::error,
-          {},
-          fmt::format("the result has not converged with {}, and finer ones were not tried: with {} {}, hardly less than before",
-                      accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
-          help};
+  return {
+      FindingCode::step_not_settled,
+      Severity::error,
+      {},
+      fmt::format(
+          "the result has not converged with {}, and finer ones were not tried: with {} {}, hardly less than with the step before",
+          accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
+      help};
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   if (stored->at("who") != who())
     throw UserError({Severity::error,
                      "E6208",
-                     fmt::format("`{}` is of another text, data or seed", path_.string()),
+                     fmt::format("`{}` belongs to another text, data or seed", path_.string()),
                      std::nullopt,
                      {},
                      "restore the files of that run, or start again with --force"});

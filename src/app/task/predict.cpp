@@ -52,7 +52,7 @@ class Predict {
           {FindingCode::optimum_alone,
            Severity::note,
            {fit_task_.name},
-           fmt::format("`{}` is an optimum, not a posterior: the bands do not include the uncertainty of the parameters",
+           fmt::format("`{}` gives an optimum, not a posterior: the bands do not include the uncertainty of the parameters",
                        fit_task_.name),
            "fit with mh for bands that include it"});
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {

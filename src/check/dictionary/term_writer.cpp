@@ -106,7 +106,7 @@ std::vector<ast::Expression> TermWriter::family(ast::Call const& call, Generator
   }
   if (!good) return {};
   if (arguments.empty() || (option.needed && !given)) {
-    diagnostics_.add(errors::generator_arguments(call.function, arguments.empty() ? "what it is made of" : std::string(option.name),
+    diagnostics_.add(errors::generator_arguments(call.function, arguments.empty() ? "arguments" : std::string(option.name),
                                                  std::string(option.example)));
     return {};
   }

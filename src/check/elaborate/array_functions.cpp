@@ -112,12 +112,12 @@ std::optional<Array> unit_vector(ArrayAlgebra&, Arrays&, Sizes const& sizes, Spa
 }
 
 constexpr ArrayFunctionRow rows[] = {
-    {"sum", "sum(v)", "of all elements", &sum},
+    {"sum", "sum(v)", "sum of all elements", &sum},
     {"dot", "dot(a, b)", "sum of products of two vectors", &dot},
     {"norm", "norm(v)", "square root of the sum of squares", &norm},
     {"transpose", "transpose(A)", "rows to columns; a vector becomes a row", &transpose},
     {"diagonal", "diagonal(v) or diagonal(a, b, c)", "matrix with these on its diagonal", &diagonal},
-    {"tridiagonal", "tridiagonal(below, on, above)", "matrix with these beside its diagonal; `on` is a vector", &tridiagonal},
+    {"tridiagonal", "tridiagonal(below, on, above)", "matrix with these on its three diagonals; `on` is a vector", &tridiagonal},
     {"identity", "identity(n)", "identity matrix, n up to 100", &identity, true},
     {"differences", "differences(n)", "matrix D: (D*q)[1] = q[1], (D*q)[i] = q[i] - q[i-1]; n up to 100", &differences, true},
     {"zeros", "zeros(n) or zeros(n, m)", "vector or matrix of zeros", &zeros, true},

@@ -31,7 +31,7 @@ std::string guess_or(std::string const& text, Names const& known, std::string fa
 
 std::string choose(Names const& known, std::string const& what) {
   if (known.empty()) return fmt::format("there is no {} here", what);
-  return fmt::format("there {} {}", known.size() == 1 ? "is" : "are", quoted(known));
+  return fmt::format("available: {}", quoted(known));
 }
 
 std::string positive_prior(Names const& names) {

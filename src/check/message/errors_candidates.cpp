@@ -16,12 +16,13 @@ Diagnostic candidate_twice(Span second, Span first, std::string const& model) {
 
 Diagnostic probabilities(ast::Name const& set, double sum, int open, int models) {
   if (open > 0)
-    return error("E6502", set.span,
-                 fmt::format("the probabilities given here sum to {:.10g}: no probability remains for {}", sum,
-                             open == 1 ? std::string("the last model") : fmt::format("the {} models without one", open)),
-                 "a probability applies to each model of its candidate; models without one share the remaining probability");
+    return error(
+        "E6502", set.span,
+        fmt::format("the probabilities given here sum to {:.10g}: no probability remains for {}", sum,
+                    open == 1 ? std::string("the last model") : fmt::format("the {} models without one", open)),
+        "the probability of a candidate applies to each of its models; models without one share the remaining probability");
   return error("E6502", set.span, fmt::format("the probabilities of these {} models sum to {:.10g}, not to 1", models, sum),
-               "a probability applies to each model of its candidate; models without one share the remaining probability");
+               "the probability of a candidate applies to each of its models; models without one share the remaining probability");
 }
 
 Diagnostic not_a_probability(Span span, double value) {
@@ -75,7 +76,7 @@ Diagnostic channel_of_two_units(Span one, std::string const& model, Unit const& 
   return about({name, other_model, model},
                conflict("E6508", one, measure(unit), other, measure(other_unit),
                         fmt::format("`{}` is not the same quantity in `{}` and in `{}`", name, other_model, model),
-                        "observe it in units of the same kind in all candidates"));
+                        "observe it in units of the same dimension in all candidates"));
 }
 
 Diagnostic distance_choice(Span span, std::string const& given, std::string const& channel) {

@@ -90,7 +90,7 @@ Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, 
 
 Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {
   return error("E4113", span, fmt::format("{} is in [{}], but the declared unit is [{}]", what, column_unit, declared_unit),
-               "use units of the same kind");
+               "use units of the same dimension");
 }
 
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {

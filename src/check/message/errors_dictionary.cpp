@@ -43,10 +43,10 @@ Diagnostic unknown_generator(ast::Name const& name, Names const& families) {
 }
 
 Diagnostic generator_arguments(ast::Name const& generator, std::string const& missing, std::string const& example) {
-  return about({generator.text}, error("E6603", generator.span,
-                                       fmt::format("`{}` does not say {}", generator.text,
-                                                   missing.starts_with("what") ? missing : "`" + missing + "`"),
-                                       fmt::format("for example `{}`", example)));
+  return about({generator.text},
+               error("E6603", generator.span,
+                     fmt::format("`{}` needs {}", generator.text, missing == "arguments" ? missing : "`" + missing + "`"),
+                     fmt::format("for example `{}`", example)));
 }
 
 Diagnostic generator_number(Span span, std::string const& option, int most, std::string const& example) {
@@ -55,12 +55,11 @@ Diagnostic generator_number(Span span, std::string const& option, int most, std:
 }
 
 Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters) {
-  return about(
-      {text},
-      error("E6604", target,
-            fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
-                        parameters.size() == 1 ? "has" : "have"),
-            "an unknown parameter must be a factor of a term: `m*y'' - x`; give the others values: `parameter m [kg] = 1`"));
+  return about({text}, error("E6604", target,
+                             fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
+                                         parameters.size() == 1 ? "has" : "have"),
+                             "an unknown parameter must be a factor of a term: `m*y'' - x`; give the other parameters values: "
+                             "`parameter m [kg] = 1`"));
 }
 
 Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter) {
@@ -70,8 +69,9 @@ Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter)
 }
 
 Diagnostic coefficient_inside(Span term, std::string const& text) {
-  return about({text}, error("E6605", term, fmt::format("`{}` is not linear in a parameter that has no value", text),
-                             "a term has at most one parameter without a value, as a factor: `k*y`; give the others values"));
+  return about({text},
+               error("E6605", term, fmt::format("`{}` is not linear in a parameter that has no value", text),
+                     "a term has at most one parameter without a value, as a factor: `k*y`; give the other parameters values"));
 }
 
 Diagnostic state_without_channel(Span state, std::string const& name) {

@@ -16,7 +16,7 @@ Diagnostic explicit_solver(Span option, std::string const& solver, Span equation
 Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input) {
   return {Severity::error,
           "E3015",
-          fmt::format("this constraint prescribes a motion: its force needs the second derivative of input `{}`", input),
+          fmt::format("this constraint prescribes a motion: the constraint force needs the second derivative of input `{}`", input),
           Label{equation.span, {}},
           {},
           fmt::format("use the acceleration as the input, or use `{}` in place of the state", input),

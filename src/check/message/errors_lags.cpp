@@ -33,8 +33,10 @@ Diagnostic not_a_channel(Span span, std::string const& function, std::string con
     for (std::string const& channel : channels) known += fmt::format("{}`{}`", known.empty() ? "" : ", ", channel);
     help = channels.empty() ? "declare a channel: `observe displacement ~ normal(y, sd = s)`" : "channels of this model: " + known;
   }
-  return about({function},
-               error("E3105", span, fmt::format("`{}` takes a channel, by the name that stands after `observe`", function), help));
+  return about(
+      {function},
+      error("E3105", span, fmt::format("the argument of `{}` must be the name of a channel, as written after `observe`", function),
+            help));
 }
 Diagnostic samples_in_differential_equation(ast::Call const& call) {
   return about(
@@ -44,7 +46,8 @@ Diagnostic samples_in_differential_equation(ast::Call const& call) {
             "bind the column as an input with a rule between its samples, or declare `time discrete`"));
 }
 Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_states) {
-  if (discrete) return error("E3107", call.span, "`since_last` is for continuous time", "write the difference: `y - lag(y, 1)`");
+  if (discrete)
+    return error("E3107", call.span, "`since_last` can be used only in continuous time", "write the difference: `y - lag(y, 1)`");
   return error("E3107", call.span,
                no_states ? "`since_last` needs consecutive rows, but this model has no states"
                          : "`since_last` can be used in `observe` and `derive`, but not in an equation",
@@ -71,9 +74,10 @@ Diagnostic range_out_of_place(Span span) {
 Diagnostic initial_lag_missing(Span declaration, std::string const& state) {
   return about(
       {state},
-      error("E3111", declaration, fmt::format("`{}` needs values before the first sample", state),
-            fmt::format("give one value for all lags, `initial {} = 0`, or use the measured one: `initial {} = measured(CHANNEL)`",
-                        state, state)));
+      error(
+          "E3111", declaration, fmt::format("`{}` needs values before the first sample", state),
+          fmt::format("give one value for all lags, `initial {} = 0`, or use the measured values: `initial {} = measured(CHANNEL)`",
+                      state, state)));
 }
 Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
   return about({state},
@@ -90,7 +94,7 @@ Diagnostic prediction_without_lags(Span span, std::string const& model) {
 }
 Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model) {
   return about({model},
-               error("E6017", span, fmt::format("no channel of `{}` measures a quantity that the model lags", model),
+               error("E6017", span, fmt::format("no channel of `{}` measures a quantity that the model uses with a lag", model),
                      "observe the lagged state itself, `observe output ~ normal(y, sd = s)`, or write `lag(measured(output), 1)`"));
 }
 Diagnostic other_step(Span span, double given, double declared, std::string const& model) {

@@ -87,7 +87,7 @@ Diagnostic argument_count(ast::Name const& function, std::size_t given, std::siz
 
 Diagnostic piecewise_without_otherwise(ast::Call const& call) {
   return about({call.function.text},
-               error("E2004", call.span, fmt::format("`{}` has no value for the case that no condition holds", call.function.text),
+               error("E2004", call.span, fmt::format("`{}` has no value where no condition holds", call.function.text),
                      "write condition, value, condition, value, ..., and last the value for all other cases"));
 }
 
@@ -98,7 +98,7 @@ Diagnostic named_argument_of_function(ast::Name const& argument, std::string con
 
 Diagnostic definition_cycle(Span span, Names const& loop) {
   return error("E2006", span, fmt::format("this definition is circular: {}", fmt::join(loop, " -> ")),
-               "remove the cycle; a quantity with memory is a state with an equation");
+               "remove the cycle; declare a quantity that depends on its own past as a state with an equation");
 }
 
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what) {
@@ -173,8 +173,8 @@ Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& 
 
 Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
   return error("E4017", span,
-               fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, a factor of 2 pi", what,
-                           measure(wanted), measure(given)),
+               fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, so they differ by a factor of 2 pi",
+                           what, measure(wanted), measure(given)),
                fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted)));
 }
 

@@ -73,7 +73,7 @@ Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string 
 }
 Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right) {
   return error("E3206", span,
-               fmt::format("these kernels are of functions in different units: {} and {}", measure(left), measure(right)),
+               fmt::format("these kernels belong to functions with different units: {} and {}", measure(left), measure(right)),
                "kernels of one sum describe the same function: give their amplitudes the same unit");
 }
 Diagnostic hyper_parameter_moves(Span span, std::string const& name, std::string const& what) {
@@ -124,10 +124,11 @@ Diagnostic expansion_of_number(Span span, std::string const& name) {
                              "give the number a unit, or apply the function to a quantity first"));
 }
 Diagnostic expansion_beside_process(Span span, std::string const& process, std::string const& expansion) {
-  return about(
-      {process, expansion},
-      error("E3217", span, fmt::format("`{}` is a Gaussian process at samples, but `{}` is a finite sum", process, expansion),
-            fmt::format("give `{}` a range as well: `within = (low, high)`", process)));
+  return about({process, expansion},
+               error("E3217", span,
+                     fmt::format("`{}` is an exact Gaussian process at the samples, but `{}` is approximated by a finite sum",
+                                 process, expansion),
+                     fmt::format("give `{}` a range as well: `within = (low, high)`", process)));
 }
 Diagnostic expansion_by_likelihood(Span span, std::string const& model) {
   return about({model}, error("E3217", span,
@@ -149,11 +150,11 @@ Diagnostic expansion_terms(Span span, std::size_t inputs) {
       inputs == 1 ? "for example `terms = 16`" : "one number for all inputs, or a list with one for each: `terms = (8, 6)`");
 }
 Diagnostic expansion_too_large(Span span, long most) {
-  return error("E3232", span, fmt::format("more than {} coefficients", most),
+  return error("E3232", span, fmt::format("the finite sum has more than {} coefficients", most),
                "use fewer terms along each input, or a sum of kernels of one input each");
 }
 Diagnostic expansion_too_small(Span span, std::size_t conditions) {
-  return error("E3232", span, fmt::format("{} conditions leave no freedom in so few terms", conditions),
+  return error("E3232", span, fmt::format("{} conditions leave no free coefficient: there are too few terms", conditions),
                "use more terms than there are conditions in `zero_at` and `flat_at`");
 }
 Diagnostic no_expansion(Span span, std::string const& what) {
@@ -161,10 +162,9 @@ Diagnostic no_expansion(Span span, std::string const& what) {
                "use squared_exponential, matern12, matern32, matern52, linear, constant, or a sum of them");
 }
 Diagnostic expansion_of_lags(Span span, std::string const& name) {
-  return about(
-      {name},
-      error("E3233", span, fmt::format("`{}` is a finite sum over a box, which cannot have as many dimensions as these lags", name),
-            "remove `within` in a model of discrete time, or pass single values"));
+  return about({name},
+               error("E3233", span, fmt::format("`{}` is a finite sum, which cannot have as many inputs as these lags", name),
+                     "remove `within` in a model of discrete time, or pass single values"));
 }
 Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted) {
   return about({name},
@@ -173,7 +173,7 @@ Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given,
 }
 Diagnostic process_out_of_place(Span span, std::string const& what) {
   return error("E3209", span, fmt::format("a Gaussian process cannot be {}", what),
-               "add it to the mean of a channel: `observe y ~ normal(F + d(u), sd = s)`; write lags in its arguments");
+               "add it to the mean of a channel: `observe y ~ normal(F + d(u), sd = s)`; lags are allowed in its arguments");
 }
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel) {
   return about({name, channel}, error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),

@@ -17,16 +17,16 @@ Diagnostic with(Diagnostic diagnostic, Span other, std::string label) {
 }  // namespace
 
 Diagnostic whole_number_needed(Span span, std::string const& what) {
-  return error("E2701", span, fmt::format("{} is a whole number known when the model is used", what),
-               "use digits and arguments of the model: `3`, `n`, `n - 1`");
+  return error("E2701", span, fmt::format("{} must be a constant whole number", what),
+               "use numbers and arguments of the model: `3`, `n`, `n - 1`");
 }
 Diagnostic size_out_of_range(Span span, std::string const& name, long size, long most) {
   return about({name}, error("E2702", span, fmt::format("`{}` cannot have {} elements", name, size),
-                             fmt::format("a size is 1 to {}", most)));
+                             fmt::format("a size must be from 1 to {}", most)));
 }
 Diagnostic too_many_sizes(Span span, std::string const& name) {
-  return about({name},
-               error("E2703", span, fmt::format("`{}` has more than two sizes", name), "a vector is `q(3)`, a matrix `M(3, 3)`"));
+  return about({name}, error("E2703", span, fmt::format("`{}` has more than two dimensions", name),
+                             "a vector is `q(3)`, a matrix `M(3, 3)`"));
 }
 Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& left, Span left_span, Shape const& right,
                           Span right_span) {
@@ -104,7 +104,7 @@ Diagnostic unknown_model_argument(ast::Name const& name, std::string const& mode
                      guess_or(name.text, known, known.empty() ? "it takes none" : fmt::format("it takes {}", quoted(known)))));
 }
 Diagnostic model_argument_by_position(Span span, std::string const& model, Names const& known) {
-  return about({model}, error("E2804", span, fmt::format("arguments of model `{}` are named", model),
+  return about({model}, error("E2804", span, fmt::format("the arguments of model `{}` must be given by name", model),
                               known.empty() ? "it takes none" : fmt::format("write `{} = ...`", known.front())));
 }
 Diagnostic model_argument_twice(Span second, Span first, std::string const& name) {
@@ -122,7 +122,7 @@ Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) 
       about({input},
             error("E2807", binding,
                   fmt::format("the part needs the time derivative of its input `{}`, which this expression does not have", input),
-                  "bind a state, or sums, products and whole powers of states and inputs")),
+                  "bind a state, or sums, products and integer powers of states and inputs")),
       use, "the derivative is used here");
 }
 Diagnostic candidate_range(Span span, long models, std::size_t most) {

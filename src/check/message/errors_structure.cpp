@@ -20,7 +20,7 @@ Diagnostic algebraic_state(Span declaration, std::string const& state) {
 
 Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
   return error("E3003", equation.span, "one equation too many: the others already determine every state",
-               fmt::format("states: {}; delete this equation or declare the state it is for", quoted(states)));
+               fmt::format("the states are {}; delete this equation, or declare the state that it determines", quoted(states)));
 }
 
 Diagnostic undetermined(Span declaration, std::string const& unknown) {

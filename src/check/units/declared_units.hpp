@@ -21,7 +21,7 @@ class DeclaredUnits {
 
   /// A unit as the text has it, else in the names that it uses.
   std::string words(Unit const& unit) const;
-  /// How an expression that lacks the factor `missing` could be mended ("multiply it by a length; `y` is one"); odd: null where it
+  /// How an expression that lacks the factor `missing` could be mended ("multiply it by a length, such as `y`"); odd: null where it
   /// is a declaration; wanted: the unit it should have; pure: a pure number is wanted.
   std::string cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure) const;
 

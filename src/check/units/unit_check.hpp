@@ -37,7 +37,7 @@ class UnitCheck {
   explicit UnitCheck(Diagnostics& diagnostics) : diagnostics_(&diagnostics) {}
   UnitCheck(UnitCheck const& other, Diagnostics& diagnostics) : UnitCheck(other) { diagnostics_ = &diagnostics; }
 
-  /// Known to the help lines ("multiply it by a length; `y` is one").
+  /// Known to the help lines ("multiply it by a length, such as `y`").
   void declare(DeclaredUnit declared) { declared_.declare(std::move(declared)); }
 
   /// False, with a diagnostic, when the known units differ. The odd ones out are those that the majority does not share.

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "check/units/units.hpp"
 #include "check/message/error_words.hpp"
+#include "check/units/units.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -30,7 +30,7 @@ std::string term_message(UnitConflict const& conflict) {
 
 std::string with_names(std::string const& cure, std::string const& names) {
   if (names.empty()) return cure;
-  return fmt::format("{}; {} is one", cure, names);
+  return fmt::format("{}, such as {}", cure, names);
 }
 
 std::string subject(Temperature const& temperature) {
@@ -72,8 +72,8 @@ Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
 }
 
 Diagnostic pure_argument(Label argument, std::string const& function, std::string help) {
-  return errors::about({function}, at(Severity::error, "E2206", std::move(argument), {}, fmt::format("`{}` takes a pure number", function),
-                              std::move(help)));
+  return errors::about({function}, at(Severity::error, "E2206", std::move(argument), {},
+                                      fmt::format("`{}` takes a pure number", function), std::move(help)));
 }
 Diagnostic exponent_with_unit(Label exponent, std::string help) {
   return at(Severity::error, "E2207", std::move(exponent), {}, "an exponent must be a pure number", std::move(help));
@@ -126,11 +126,11 @@ Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) 
   return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
             "a frequency in cycles is used as an angular frequency, without 2*pi",
             name.empty() ? "multiply the frequency by 2*pi if it counts cycles"
-                         : fmt::format("write `2*pi*{0}` for `{0}` if it counts cycles", name));
+                         : fmt::format("write `2*pi*{0}` instead of `{0}` if it counts cycles", name));
 }
 Diagnostic cycles_in_angle(Span argument, std::string const& function) {
   return errors::about({function}, at(Severity::warning, "E2210", {argument, "cycles"}, {},
-                              fmt::format("`{}` takes radians, but this counts cycles", function), "multiply by 2*pi"));
+                                      fmt::format("`{}` takes radians, but this counts cycles", function), "multiply by 2*pi"));
 }
 
 bool is_unit_conflict(Diagnostic const& diagnostic) {
@@ -173,7 +173,7 @@ std::string tag_the_number(std::string const& number, std::string const& unit) {
 }
 std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit) {
   auto const primed = [&](int count) { return name + std::string(static_cast<std::size_t>(count), '\''); };
-  std::string const meant = fmt::format("did you mean `{}` for `{}`", primed(wanted), primed(primes));
+  std::string const meant = fmt::format("did you mean `{}` instead of `{}`", primed(wanted), primed(primes));
   return coefficient.empty() ? meant + "?" : fmt::format("{}, or `{} [{}]`?", meant, coefficient, unit);
 }
 

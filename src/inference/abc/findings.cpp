@@ -44,7 +44,7 @@ void add_failures(SelectionResult const& result, Findings& findings) {
     findings.push_back({FindingCode::failed_solves,
                         Severity::warning,
                         {result.models[m].name},
-                        fmt::format("{} of the {} draws of the priors of `{}` did not stay finite, so its priors are cut off there",
+                        fmt::format("{} of the {} draws of the priors of `{}` did not stay finite, which truncates its priors",
                                     record.failed == record.proposed ? "all" : fmt::format("{}", record.failed), record.proposed,
                                     result.models[m].name),
                         "narrow the priors, or use a finer solver if the integration fails"});
@@ -69,7 +69,7 @@ std::optional<Finding> equal_distances(SelectionResult const& result) {
         FindingCode::distances_equal,
         Severity::warning,
         {},
-        fmt::format("the threshold cannot fall below {:.6g}: that many particles have exactly this distance", result.threshold),
+        fmt::format("the threshold cannot fall below {:.6g}: too many particles have exactly this distance", result.threshold),
         "check that the simulation depends on the parameters"};
   std::string const fixed = fmt::format("`{}`", fmt::join(names, "`, `"));
   return Finding{

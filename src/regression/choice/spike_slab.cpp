@@ -22,9 +22,9 @@ constexpr SettingRow rows[] = {
      "equal probability of every number of terms, or of every support"},
     {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
     {"enumerate", SettingKind::integer, "16", 0, 24, "", "number of selectable terms up to which all supports are evaluated"},
-    {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "iterations iterations of each Gibbs chain over all terms"},
+    {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "iterations of each Gibbs chain over all terms"},
     {"chains", SettingKind::integer, "4", 1, 1000, "", "Gibbs chains"},
-    {"supports", SettingKind::integer, "10", 1, 10000, "", "number of number of best supports that are reported"},
+    {"supports", SettingKind::integer, "10", 1, 10000, "", "number of best supports that are reported"},
 };
 
 /// Supports beyond this many, by falling probability, no longer enter averages of coefficients.

@@ -74,12 +74,13 @@ Usable independent_terms(Equation const& equation, Columns const& columns) {
     if (others.size() == 1) {
       concern.kind = Concern::Kind::repeats;
       concern.terms = {others.front(), j};
-      concern.clause = fmt::format("{} is a multiple of {} on these data and left out", name, names_of(equation, others));
+      concern.clause = fmt::format("{} is a multiple of {} on these data and is left out", name, names_of(equation, others));
     } else {
       concern.kind = Concern::Kind::collinear;
       concern.terms = {j};
       concern.terms.insert(concern.terms.end(), others.begin(), others.end());
-      concern.clause = fmt::format("{} is a sum of {} on these data and left out", name, names_of(equation, others));
+      concern.clause =
+          fmt::format("{} is a linear combination of {} on these data and is left out", name, names_of(equation, others));
     }
     usable.concerns.push_back(std::move(concern));
   }

@@ -61,7 +61,7 @@ class SampledProjection : public Projection {
       if (channel < 0) {
         Concern concern{.kind = Concern::Kind::not_measured};
         concern.clause = fmt::format("no channel measures `{}`{}", symbol_text(dictionary_, symbol.index, symbol.order),
-                                     smoother_.derives ? " or what it is a derivative of" : "");
+                                     smoother_.derives ? " or a quantity of which it is a derivative" : "");
         concerns.push_back(std::move(concern));
       } else if (std::find(used.begin(), used.end(), channel) == used.end()) {
         used.push_back(channel);

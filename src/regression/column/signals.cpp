@@ -181,7 +181,7 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
     std::string const& name = dictionary.channels[c].name;
     if (low > high) {
       Concern concern{.kind = Concern::Kind::not_measured, .channel = channel};
-      concern.clause = fmt::format("`{}` holds no sample", name);
+      concern.clause = fmt::format("`{}` has no samples", name);
       concerns.push_back(std::move(concern));
     } else if (low == high) {
       Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};

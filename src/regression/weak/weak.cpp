@@ -19,7 +19,7 @@ constexpr SettingRow rows[] = {
     {"half_width", SettingKind::integer, "0", 0, 1e6, "",
      "half-width of a window in samples; 0: a third of the fastest period, at least 10"},
     {"step", SettingKind::integer, "0", 0, 1e6, "", "samples between windows; 0: a sixth of the half-width"},
-    {"power", SettingKind::integer, "8", 4, 24, "", "exponent exponent p of the test function (1 - s^2)^p"},
+    {"power", SettingKind::integer, "8", 4, 24, "", "exponent p of the test function (1 - s^2)^p"},
     {"reweightings", SettingKind::integer, "3", 0, 20, "", "how often the noise covariance is computed anew from the coefficients"},
 };
 
@@ -99,7 +99,7 @@ class WeakProjection : public Projection {
     if (!smoothed.terms.empty()) {
       for (int const term : smoothed.terms)
         smoothed.clause += (smoothed.clause.empty() ? "`" : ", `") + equation.terms[static_cast<std::size_t>(term)].name + "`";
-      smoothed.clause = "a smoothed derivative stands in " + smoothed.clause + ", which cannot be integrated by parts";
+      smoothed.clause = "a smoothed derivative is used in " + smoothed.clause + ", which cannot be integrated by parts";
       projected.concerns.push_back(std::move(smoothed));
     }
     stack(equation, projected);
@@ -111,7 +111,7 @@ class WeakProjection : public Projection {
     for (Symbol const& symbol : symbols_below(dictionary_, roots))
       if (symbol.kind == Symbol::Kind::state && base_channel(dictionary_, symbol.index, symbol.order) < 0) {
         Concern concern{.kind = Concern::Kind::not_measured};
-        concern.clause = fmt::format("no channel measures `{}` or what it is a derivative of",
+        concern.clause = fmt::format("no channel measures `{}` or a quantity of which it is a derivative",
                                      symbol_text(dictionary_, symbol.index, symbol.order));
         projected.concerns.push_back(std::move(concern));
       }
@@ -184,7 +184,7 @@ class WeakProjection : public Projection {
     if (windows_lost_ > 0) {
       double const share = static_cast<double>(windows_lost_) / windows_tried_;
       Concern concern{.kind = Concern::Kind::missing, .value = share};
-      concern.clause = fmt::format("{:.3g} % of the windows touch a missing sample and are left out", 100 * share);
+      concern.clause = fmt::format("{:.3g} % of the windows contain a missing sample and are left out", 100 * share);
       projected.concerns.push_back(std::move(concern));
     }
     windows_lost_ = windows_tried_ = 0;

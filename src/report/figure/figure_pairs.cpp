@@ -1,4 +1,4 @@
-// Draws of each two parameters against each other.
+// Draws of each pair of parameters against each other.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -170,8 +170,8 @@ Plot cloud_plot(Pairs const& of, std::size_t row, std::size_t column, Panel pane
 
 std::string caption_of(Draws const& draws, std::size_t count) {
   std::string out =
-      "Draws of each two parameters, with their correlation above the diagonal. A narrow slanted cloud is a combination that the "
-      "data determine where the two alone are not; separate clouds are several modes.";
+      "Draws of each pair of parameters, with their correlation above the diagonal. In a narrow slanted cloud the data "
+      "determine a combination of the two parameters, but not each of them; separate clouds are separate modes.";
   if (std::size_t const hidden = draws.names.size() - count; hidden > 0)
     out += fmt::format(" Shown are {} of {}, {}; {} {} left out.", count, draws.names.size(),
                        static_cast<std::size_t>(draws.parameter_count) > count

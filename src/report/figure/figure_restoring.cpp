@@ -47,8 +47,8 @@ std::string where_data_come_from(RestoringForce const& force) {
   if (!force.why_no_data.empty()) return fmt::format(" The data are not shown: {}.", force.why_no_data);
   if (force.accelerometer) return " Points: force from the measured accelerations, at the states of the model.";
   return fmt::format(
-      " Points: from the measured samples, differentiated twice by parabolas through {} of them each, and from the input under the "
-      "same smoothing.",
+      " Points: from the measured samples, differentiated twice by local parabolas through {} samples each, and from the input, "
+      "smoothed in the same way.",
       2 * force.half_width + 1);
 }
 

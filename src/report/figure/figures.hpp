@@ -42,7 +42,7 @@ plot::Figure trace_figure(Draws const& draws);
 plot::Figure rank_figure(Draws const& draws);
 /// Model probabilities and thresholds over the populations of a selection.
 plot::Figure population_figure(SelectionReport const& selection);
-/// Draws of each two parameters against each other.
+/// Draws of each pair of parameters against each other.
 plot::Figure pair_figure(Draws const& draws);
 
 }  // namespace sysid

@@ -25,12 +25,12 @@ std::string verdict_html(Report const& report) {
     out +=
         fmt::format("<li class=\"{0}\"><b>{1}</b> {2}{3} <span class=\"code\">{4}</span></li>\n", severity_word(finding.severity),
                     finding.severity == Severity::error     ? "Failed:"
-                    : finding.severity == Severity::warning ? "Look at:"
+                    : finding.severity == Severity::warning ? "Warning:"
                                                             : "Note:",
                     marked(finding.message),
                     finding.help.empty() ? "" : fmt::format(". <span class=\"help\">What to do: {}</span>", marked(finding.help)),
                     code(word(finding.code)));
-  return out + "</ul>\n<p class=\"note\">To explain a code in this type: <code>sysid explain</code> and the code.</p>\n";
+  return out + "</ul>\n<p class=\"note\"><code>sysid explain CODE</code> explains a code such as those above.</p>\n";
 }
 
 std::string model_html(Report const& report) {

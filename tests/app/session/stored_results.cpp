@@ -74,7 +74,8 @@ TEST_CASE("stored draws of a model with other parameters are refused") {
   CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
   Answer const shown = run("rate", output.path(), {"predict"});
   CHECK(shown.exit == ExitCode::user_error);
-  CHECK(shown.messages.find("error[E6201]: the results in `OUT/posterior` are of another text of model") != std::string::npos);
+  CHECK(shown.messages.find("error[E6201]: the results in `OUT/posterior` were computed with another text of model") !=
+        std::string::npos);
   CHECK(run("k", output.path(), {"predict"}).exit <= ExitCode::doubtful);
 }
 
@@ -86,7 +87,8 @@ TEST_CASE("complete results of another text are not kept by --resume") {
   CHECK(run("k", output.path(), {"fit"}, options).exit == ExitCode::success);
   Answer const shown = run("rate", output.path(), {"fit"}, options);
   CHECK(shown.exit == ExitCode::user_error);
-  CHECK(shown.messages.find("error[E6208]: the results in `OUT/posterior` are of another text of model") != std::string::npos);
+  CHECK(shown.messages.find("error[E6208]: the results in `OUT/posterior` were computed with another text of model") !=
+        std::string::npos);
 }
 
 TEST_CASE("complete results of another statement are not kept by --resume, nor predicted with") {
@@ -99,10 +101,12 @@ TEST_CASE("complete results of another statement are not kept by --resume, nor p
   WorkingFolder const here(error_examples);
   Answer const kept = answer("example.sysid", longer, Depth::run, output.path(), options, {"fit"});
   CHECK(kept.exit == ExitCode::user_error);
-  CHECK(kept.messages.find("error[E6208]: the results in `OUT/posterior` are of another statement, or of other rows") !=
-        std::string::npos);
+  CHECK(
+      kept.messages.find("error[E6208]: the results in `OUT/posterior` were computed with another statement, or with other rows") !=
+      std::string::npos);
   Answer const predicted = answer("example.sysid", longer, Depth::run, output.path(), {}, {"predict"});
-  CHECK(predicted.messages.find("error[E6201]: the results in `OUT/posterior` are of another statement") != std::string::npos);
+  CHECK(predicted.messages.find("error[E6201]: the results in `OUT/posterior` were computed with another statement") !=
+        std::string::npos);
 }
 
 TEST_CASE("stored draws of other data, or of other experiments, are not taken up") {
@@ -121,11 +125,13 @@ TEST_CASE("stored draws of other data, or of other experiments, are not taken up
   parted.replace(parted.find("  measure"), 0, "  split all = rows 1..4\n");
   parted.replace(parted.find("to dish"), 7, "to dish.all");
   CHECK(run_here(parted, {"predict"})
-            .messages.find("error[E6201]: the results in `OUT/posterior` are of another set of experiments") != std::string::npos);
-  write("data/growth.csv", csv + "99,1\n");
-  CHECK(run_here(text_with("k"), {"predict"})
-            .messages.find("error[E6201]: the results in `OUT/posterior` are of another content of `data/growth.csv`") !=
+            .messages.find("error[E6201]: the results in `OUT/posterior` were computed with another set of experiments") !=
         std::string::npos);
+  write("data/growth.csv", csv + "99,1\n");
+  CHECK(
+      run_here(text_with("k"), {"predict"})
+          .messages.find("error[E6201]: the results in `OUT/posterior` were computed with another content of `data/growth.csv`") !=
+      std::string::npos);
 }
 
 TEST_CASE("a damaged checkpoint and one of another text are told apart") {
@@ -136,7 +142,8 @@ TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   options.resume = true;
   Answer const other = run("rate", output.path(), {}, options);
   CHECK(other.exit == ExitCode::user_error);
-  CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` is of another text, data or seed") != std::string::npos);
+  CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` belongs to another text, data or seed") !=
+        std::string::npos);
   write(output.path() / "posterior" / "checkpoint.cbor", checkpoint.substr(0, checkpoint.size() / 2));
   Answer const damaged = run("k", output.path(), {}, options);
   CHECK(damaged.exit == ExitCode::user_error);

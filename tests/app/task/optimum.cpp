@@ -97,7 +97,7 @@ TEST_CASE("a parameter that nothing uses is said once, and the direction it leav
   std::string const used = text.substr(0, text.find("\ntruth")) + text.substr(text.find("\nposterior"));
   Told const told = run_optimum(used);
   CHECK(found(told.fit, "unused_parameter"));
-  CHECK(times_in(told.run.out, "idle enters no equation") == 1);
+  CHECK(times_in(told.run.out, "idle is used in no equation") == 1);
   // Its prior has a width: the posterior has one, too.
   CHECK_FALSE(found(told.fit, "flat_direction"));
   std::string const likeliest = with(used, "with map", "with ml");

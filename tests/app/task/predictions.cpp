@@ -111,7 +111,7 @@ again = predict line_fit on bench with draws(200), seed = 1
   REQUIRE(!said.is_null());
   CHECK(said.at("severity") == "warning");
   CHECK(said.at("message") ==
-        "margin is undefined somewhere along " + std::to_string(below) + " of 200 trajectories; its band is that of the others");
+        "margin is undefined somewhere along " + std::to_string(below) + " of 200 trajectories; its band contains only the others");
   CHECK(finding_in(run.summary("again"), "failed_predictions").is_null());
   CHECK_FALSE(finding_in(run.summary("line_fit"), "undefined_in_band").is_null());
 }
