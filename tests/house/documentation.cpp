@@ -16,15 +16,21 @@
 #include <iterator>
 #include <regex>
 
-#include "house/quoted_output.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/run/pipeline.hpp"
 #include "app/running.hpp"
+#include "check/task/task_options.hpp"
+#include "data/input_rule.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
+#include "gaussian_process/kernel.hpp"
+#include "house/quoted_output.hpp"
 #include "inference/table.hpp"
+#include "regression/choice/selector.hpp"
+#include "regression/column/columns.hpp"
 #include "report/page/check_page.hpp"
 #include "result/finding_table.hpp"
+#include "solver/solver.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;
@@ -211,7 +217,24 @@ TEST_CASE("quoted C++ stands in the file it is said to be from") {
   });
 }
 
-TEST_CASE("the reference names every distribution, function, back end, setting and statement") {
+TEST_CASE("paths of sources in the text exist") {
+  std::regex const path("`((?:src|tests|grammar|stdlib|models|docs)/[A-Za-z0-9_./-]+)`");
+  // What the examples of the page on extensions add.
+  std::set<std::string> const added = {"src/distribution/logistic.cpp", "src/gaussian_process/rational_quadratic.cpp",
+                                       "src/inference/importance.cpp", "src/solver/midpoint.cpp"};
+  int count = 0;
+  for (fs::path const& name : pages())
+    for (std::string const& line : read_page(name).prose)
+      for (std::sregex_iterator i(line.begin(), line.end(), path), end; i != end; ++i) {
+        std::string const found = (*i)[1].str();
+        if (found.find("NAME") != std::string::npos || found.find("VERB") != std::string::npos || added.contains(found)) continue;
+        CHECK_MESSAGE(fs::exists(root / found), name.string() << ": no " << found);
+        ++count;
+      }
+  CHECK(count > 50);
+}
+
+TEST_CASE("the reference names every word of every table, with its settings") {
   std::string const text = read_file(root / "docs/reference.md");
   auto const named = [&](std::string_view name, std::string const& kind) {
     std::regex const word("[^A-Za-z0-9_]" + std::string(name) + "[^A-Za-z0-9_]");
@@ -223,14 +246,21 @@ TEST_CASE("the reference names every distribution, function, back end, setting a
       for (Spelling const& spelling : argument.spellings) named(spelling.name, "argument");
   }
   for (FunctionRow const& row : functions()) named(row.name, "function");
-  for (BackendRow const& row : backends()) {
-    named(row.name, "back end");
-    for (SettingRow const& setting : row.settings) named(setting.name, "setting");
-  }
-  for (SelectorRow const& row : selectors()) {
-    named(row.name, "back end");
-    for (SettingRow const& setting : row.settings) named(setting.name, "setting");
-  }
+  for (gaussian_process::KernelRow const& row : gaussian_process::kernels()) named(row.name, "kernel");
+  for (InputRuleRow const& row : input_rules()) named(row.name, "input rule");
+  auto const with_settings = [&](auto const& rows, std::string const& kind) {
+    for (auto const& row : rows) {
+      named(row.name, kind);
+      for (SettingRow const& setting : row.settings) named(setting.name, "setting of " + std::string(row.name));
+    }
+  };
+  with_settings(backends(), "back end");
+  with_settings(selectors(), "back end");
+  with_settings(solvers(), "solver");
+  with_settings(regression::selectors(), "selector");
+  with_settings(regression::forms(), "form of derivatives");
+  for (std::string_view const verb : words::verbs)
+    for (std::string const& option : task_option_names(verb)) named(option, "option of " + std::string(verb));
   for (std::string_view const word : words::model_statements) named(word, "statement");
   for (std::string_view const word : words::data_statements) named(word, "statement");
   for (std::string_view const word : words::verbs) named(word, "verb");

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "check/dictionary/generators.hpp"
+#include "check/task/task_options.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
@@ -42,10 +43,9 @@ TEST_CASE("every word of the language, every setting and every code of a message
   add_settings(backends()), add_settings(selectors()), add_settings(solvers());
   add_settings(regression::selectors()), add_settings(regression::forms());
   add_rows(repl::commands()), add_rows(repl::prompt_functions());
-  for (char const* option : {"start",  "solver",   "substeps", "prediction",      "seed",       "search",  "draws",
-                             "redraw", "distance", "weights",  "values",          "noise",      "samples", "rate",
-                             "file",   "E2103",    "2103",     "chains_disagree", "hysteresis", "plot",    "trace"})
-    words.insert(option);
+  for (std::string_view const verb : words::verbs)
+    for (std::string const& option : task_option_names(verb)) words.insert(option);
+  for (char const* other : {"E2103", "2103", "chains_disagree", "hysteresis", "plot", "trace"}) words.insert(other);
   CHECK(words.size() > 150);
   for (std::string const& word : words) CHECK_MESSAGE(repl::help_on(word).has_value(), word);
   CHECK_FALSE(repl::help_on("frobnicate").has_value());
