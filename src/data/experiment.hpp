@@ -1,5 +1,6 @@
 // One recorded experiment as simulation sees it: times, inputs as piecewise polynomials, measured channels, which rows are scored.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -83,6 +84,13 @@ struct Experiment {
   /// Per channel [N]: 0 where a past measured sample that its density reads is missing, so that it cannot be scored. Empty:
   /// nowhere.
   std::vector<std::vector<std::uint8_t>> has_lags;
+
+  /// Whether a likelihood reads the sample of a channel at an index: in the split, measured, and so is what its density looks back
+  /// to.
+  bool is_scored(std::size_t channel, std::size_t index) const {
+    if (measured[channel].empty() || scored[index] == 0 || std::isnan(measured[channel][index])) return false;
+    return has_lags.empty() || has_lags[channel].empty() || has_lags[channel][index] != 0;
+  }
 };
 
 /// The sample of a channel at `row`, which may lie before the first; NaN where it is missing or was not recorded.

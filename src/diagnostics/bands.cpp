@@ -77,7 +77,7 @@ Findings band_findings(Prediction const& prediction, int failed, int failed_else
     findings.push_back(
         {FindingCode::undefined_in_band,
          severity,
-         {quantity.name},
+         {quantity.name, prediction.experiment},
          fmt::format("{}{} is undefined somewhere along {} of {} trajectories; its band contains only the others", quantity.name,
                      several ? " on " + prediction.experiment : std::string(), excluded, widest.draws),
          "check for a root or a logarithm of a negative number, or a division by zero"});

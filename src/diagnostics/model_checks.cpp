@@ -22,10 +22,7 @@ constexpr double gain_at_least = 20;
 int scored_samples(Experiment const& experiment) {
   int count = 0;
   for (std::size_t c = 0; c < experiment.measured.size(); ++c)
-    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
-      bool const has_lags = experiment.has_lags.empty() || experiment.has_lags[c].empty() || experiment.has_lags[c][i] != 0;
-      count += experiment.scored[i] != 0 && has_lags && !std::isnan(experiment.measured[c][i]) ? 1 : 0;
-    }
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) count += experiment.is_scored(c, i) ? 1 : 0;
   return count;
 }
 

@@ -143,13 +143,6 @@ Draws prior_draws(StoredFit const& fit, int wanted, std::uint64_t seed) {
   return draws;
 }
 
-/// The first parameter whose prior cannot be drawn from; null where all can.
-Parameter const* improper(Model const& model) {
-  for (Parameter const& parameter : model.parameters)
-    if (parameter.prior && !parameter.prior->row->proper) return &parameter;
-  return nullptr;
-}
-
 void add_posterior_groups(StoredFit const& fit, int draws, std::uint64_t seed, InferenceData& data) {
   std::vector<std::size_t> const numbers = spread_over_chain(fit.fitted.draws, draws);
   LaneArray const declared = columns_of(fit.fitted.draws, numbers);
@@ -162,7 +155,7 @@ void add_posterior_groups(StoredFit const& fit, int draws, std::uint64_t seed, I
 }
 
 void add_prior_groups(StoredFit const& fit, int draws, std::uint64_t seed, InferenceData& data) {
-  if (Parameter const* parameter = improper(fit.model())) {
+  if (Parameter const* parameter = fit.model().improper()) {
     data.omitted.push_back(fmt::format("prior, prior_predictive: the prior of `{}` is {} and cannot be sampled", parameter->name,
                                        parameter->prior->row->name));
     return;

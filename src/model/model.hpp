@@ -109,6 +109,12 @@ struct Model {
 
   /// Whether a solver integrates it, so that substeps mean something.
   bool integrated() const { return dynamics == Dynamics::continuous && !states.empty(); }
+  /// The first parameter whose prior cannot be drawn from; null where all can.
+  Parameter const* improper() const {
+    for (Parameter const& each : parameters)
+      if (each.prior && !each.prior->row->proper) return &each;
+    return nullptr;
+  }
 };
 
 }  // namespace sysid

@@ -22,9 +22,10 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 std::string at_the_prompt(std::string text) {
   replace_all(text, "sysid explain CODE, for each word in brackets", "`help WORD`, for each word in brackets");
   replace_all(text, "sysid explain ", "help ");
-  replace_all(text, "`./sysid list ", "`list ");
+  replace_all(text, "`sysid list ", "`list ");
   replace_all(text, "continue with --resume", "continue with `resume`");
   replace_all(text, "--resume continues from there", "`resume` continues from there");
+  replace_all(text, "run the task again with --force", "give the task another name, or start the prompt with --force");
   replace_all(text, "--resume starts it again", "`resume` starts it again");
   replace_all(text, "add --force to replace them, or -o DIR to write elsewhere",
               "give the task another name, or start the prompt with --force or another -o");

@@ -19,7 +19,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::ess_bulk_low, "ess_bulk_low", error},
     {FindingCode::ess_tail_low, "ess_tail_low", error},
     {FindingCode::no_diagnostics, "no_diagnostics", error},
-    {FindingCode::integration_step, "integration_step", any},
+    {FindingCode::integration_step, "integration_step", error_or_warning},
     {FindingCode::step_not_settled, "step_not_settled", error_or_warning},
     {FindingCode::noise_size, "noise_size", error},
     {FindingCode::made_from_earlier, "made_from_earlier", warning},

@@ -17,12 +17,10 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
     throw InternalError("the experiment does not fit the program");
 
   for (std::size_t c = 0; c < channels; ++c) {
-    std::vector<double> const& measured = experiment.measured[c];
     std::vector<std::uint8_t> summed(experiment.time.size());
     int count = 0;
     for (std::size_t i = 0; i < summed.size(); ++i) {
-      bool const has_lags = experiment.has_lags.empty() || experiment.has_lags[c].empty() || experiment.has_lags[c][i] != 0;
-      summed[i] = !measured.empty() && experiment.scored[i] != 0 && has_lags && !std::isnan(measured[i]);
+      summed[i] = experiment.is_scored(c, i) ? 1 : 0;
       if (summed[i] == 0) continue;
       ++count;
       last_summed_ = std::max(last_summed_, static_cast<int>(i) + 1);

@@ -18,7 +18,6 @@ TEST_CASE("every finding that the sources make has a severity that its row allow
   // `FindingCode::x, Severity::y`, and in tables that name the severity first `Severity::y, FindingCode::x`.
   std::regex const made("FindingCode::(\\w+),\\s*([^,;]*Severity::\\w+[^,;]*),|Severity::(\\w+), FindingCode::(\\w+)");
   std::regex const each_severity("Severity::(\\w+)");
-  int count = 0;
   std::set<std::string> seen;
   for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / "src")) {
     if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
@@ -28,14 +27,15 @@ TEST_CASE("every finding that the sources make has a severity that its row allow
       std::string const code = (*i)[1].matched ? (*i)[1].str() : (*i)[4].str();
       std::string const severity = (*i)[1].matched ? (*i)[2].str() : "Severity::" + (*i)[3].str();
       auto const known = finding_code(code);
-      REQUIRE_MESSAGE(known, entry.path().string() << ": " << code);
       for (std::sregex_iterator s(severity.begin(), severity.end(), each_severity); s != end; ++s)
         CHECK_MESSAGE(row_of(*known).severities.contains(severities.at((*s)[1].str())),
                       entry.path().string() << ": " << code << " with " << (*s)[1].str());
       seen.insert(code);
-      ++count;
     }
   }
-  CHECK(count > 60);
-  CHECK(seen.size() > 50);
+  // Of these the code or the severity is computed.
+  for (char const* code : {"chains_disagree", "chains_not_quite_agreed", "ess_bulk_low", "ess_tail_low", "worse_than_the_mean",
+                           "failed_predictions", "failed_solves", "undefined_in_band"})
+    CHECK_MESSAGE(seen.insert(code).second, code);
+  for (FindingRow const& row : finding_table()) CHECK_MESSAGE(seen.contains(std::string(row.word)), row.word);
 }

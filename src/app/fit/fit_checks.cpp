@@ -17,9 +17,8 @@ std::string always(FinishedFit const&) { return {}; }
 
 // --- before sampling
 std::string without_proper_prior(FinishedFit const& fit) {
-  for (Parameter const& each : fit.likelihood.model().parameters)
-    if (each.prior && !each.prior->row->proper) return fmt::format("the prior of `{}` is improper", each.name);
-  return {};
+  Parameter const* improper = fit.likelihood.model().improper();
+  return improper == nullptr ? std::string() : fmt::format("the prior of `{}` is improper", improper->name);
 }
 
 // --- the model and the record

@@ -72,8 +72,7 @@ class ProcessLikelihood : public FitLikelihood {
   }
 
   FitCheck check_residuals(FitResult const&, Draws const& draws) const override {
-    ProcessScores scores = score_leave_one_out(*target_, *space_, parameters_of_best(draws), data_);
-    return {std::move(scores.lines), std::move(scores.findings)};
+    return score_leave_one_out(*target_, *space_, parameters_of_best(draws), data_);
   }
 
   std::vector<FunctionReport> functions(FitResult const&, Draws const& draws) const override {
@@ -93,8 +92,7 @@ class ProcessLikelihood : public FitLikelihood {
     Trajectory::Result const result = forecast_draws(forecast, *space_, columns, own, 100, prediction_noise(seed_, e));
     // Constraints beside processes are refused by the checker (E3217), so that nothing can drift.
     FittedRows rows{bands_along(forecast.quantities(), result, experiment, model()), {}, {}};
-    // No other finding reports a trajectory that failed. It is reported once, with the channel, not again with its parametric part.
-    rows.bands = band_findings(rows.prediction, 0, result.failed(), data_.size() > 1);
+    rows.bands = channel_band_findings(rows.prediction, model(), 0, data_.size() > 1);  // no other finding reports failures here
     return rows;
   }
 

@@ -32,17 +32,11 @@ std::string obstacle(Preflight const& preflight, PriorDraws const& prior, std::v
   return {};
 }
 
-Parameter const* improper(Model const& model) {
-  auto const found = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                  [](Parameter const& each) { return each.prior && !each.prior->row->proper; });
-  return found == model.parameters.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 Findings check_prior_size(Session& session, FitTask const& what, std::vector<ExperimentData> const& data) {
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
-  if (improper(written) != nullptr) return {};
+  if (written.improper() != nullptr) return {};
   PreflightPage page;
   if (!written.processes.empty()) {
     preflight_processes(session, what, data, page);
@@ -56,7 +50,7 @@ Findings check_prior_size(Session& session, FitTask const& what, std::vector<Exp
 
 void run_preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page) {
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
-  if (Parameter const* parameter = improper(written)) {
+  if (Parameter const* parameter = written.improper()) {
     page.not_examined =
         fmt::format("the prior-based checks: the prior of `{}` is improper ({})", parameter->name, parameter->prior->row->name);
     return;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/process/process_draws.hpp"
+#include "app/process/process_scores.hpp"
 #include "app/process/process_trajectories.hpp"
 #include "app/session/made_from.hpp"
 #include "app/session/provenance.hpp"
@@ -71,6 +72,8 @@ class ProcessPredict {
                                  fmt::format("{} of {} trajectories{} are left out of the bands", result.failed(),
                                              result.ledger.solves(), several ? " on " + data.experiment.name : ""),
                                  "the free run overflows, or the covariance cannot be decomposed"});
+    for (Finding& finding : channel_band_findings(report.predictions.back(), trajectories_.model(), result.failed(), several))
+      report.findings.push_back(std::move(finding));
     say_reach(forecast, own, several ? " on " + data.experiment.name : "", report);
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/process/process_draws.hpp"
+#include "diagnostics/bands.hpp"
 #include "diagnostics/residual_tests.hpp"
 #include "gaussian_process/concern.hpp"
 #include "gaussian_process/leave_one_out.hpp"
@@ -58,9 +59,9 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
 
 }  // namespace
 
-ProcessScores score_leave_one_out(ProcessTarget const& target, ParameterSpace const& all, std::vector<double> const& declared,
-                                  std::vector<ExperimentData> const& data) {
-  ProcessScores result;
+FitCheck score_leave_one_out(ProcessTarget const& target, ParameterSpace const& all, std::vector<double> const& declared,
+                             std::vector<ExperimentData> const& data) {
+  FitCheck result;
   LaneArray const parameters = fitted_parameters(all, declared);
   std::string names;
   for (ExperimentData const& each : data) names += (names.empty() ? "" : ", ") + each.experiment.name;
@@ -93,6 +94,11 @@ ProcessScores score_leave_one_out(ProcessTarget const& target, ParameterSpace co
     result.lines.push_back(std::move(line));
   }
   return result;
+}
+
+Findings channel_band_findings(Prediction prediction, Model const& model, int failed, bool several) {
+  prediction.quantities.resize(model.channels.size());  // as ProcessForecast::quantities orders them
+  return band_findings(prediction, failed, failed, several);
 }
 
 }  // namespace sysid

@@ -29,13 +29,12 @@ Diagnostic refused_settings(Task const& task, std::string_view backend, std::str
 
 /// of: " of `model`" where there are several. Asked of parameters that have a prior in `model`.
 std::optional<Diagnostic> improper_prior(Task const& task, std::string_view backend, Model const& model, std::string const& of) {
-  for (Parameter const& parameter : model.parameters)
-    if (parameter.prior && !parameter.prior->row->proper)
-      return refused(task, "E6204",
-                     fmt::format("`{}` needs proper priors, but that of `{}`{} is {}", backend, parameter.name, of,
-                                 parameter.prior->row->name),
-                     fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", parameter.name));
-  return std::nullopt;
+  Parameter const* improper = model.improper();
+  if (improper == nullptr) return std::nullopt;
+  return refused(
+      task, "E6204",
+      fmt::format("`{}` needs proper priors, but that of `{}`{} is {}", backend, improper->name, of, improper->prior->row->name),
+      fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", improper->name));
 }
 
 std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<ExperimentData> const& data) {

@@ -40,8 +40,7 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
   for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
     std::string text;
     for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
-      bool const with_lags = c >= experiment.has_lags.size() || experiment.has_lags[c].empty() || experiment.has_lags[c][i] != 0;
-      if (experiment.scored[i] == 0 || !with_lags || !std::isfinite(experiment.measured[c][i])) continue;
+      if (!experiment.is_scored(c, i)) continue;
       text += fmt::format("{} {}\n", experiment.first_row + static_cast<int>(i),
                           shortest(model.channels[c].from_si(experiment.measured[c][i])));
     }

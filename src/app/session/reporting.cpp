@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/made_from.hpp"
+#include "app/session/results.hpp"
 #include "app/session/task_rows.hpp"
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
@@ -200,7 +201,7 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
         Severity::error, "E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
         std::nullopt,    {},      "run the task again with --force, or write elsewhere with -o"};
   };
-  if (!summary.is_object() || !summary.contains("versions")) return refuse("program");
+  if (!summary.is_object() || !summary.contains("versions") || !has_deciding_fields(summary)) return refuse("program");
   if (summary["versions"].value("model_sha256", "") != task_digest(session, task))
     return refuse("text of " + task_row(task).name(session, task));
   std::vector<ExperimentUse> const experiments = task_row(task).experiments(task);

@@ -55,8 +55,14 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   if (!session_.options.resume) return nullptr;
   auto const stored = read(path_);
   if (!stored) return nullptr;
-  if (!stored->is_object() || stored->value("version", json()) != file_version || !stored->contains("who") ||
-      !stored->contains("content"))
+  if (stored->is_object() && stored->contains("version") && stored->at("version") != file_version)
+    throw UserError({Severity::error,
+                     "E6208",
+                     fmt::format("`{}` was written by another version of sysid", path_.string()),
+                     std::nullopt,
+                     {},
+                     "continue with that version, or start again with --force"});
+  if (!stored->is_object() || !stored->contains("version") || !stored->contains("who") || !stored->contains("content"))
     throw UserError(
         {Severity::error, "E6207", fmt::format("`{}` is damaged", path_.string()), std::nullopt, {}, "start again with --force"});
   if (stored->at("who") != who())

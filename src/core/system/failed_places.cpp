@@ -10,7 +10,8 @@ namespace sysid {
 
 std::string failed_places(Ledger const& ledger) {
   std::vector<Failure> failures = ledger.failures();
-  std::erase_if(failures, [](Failure const& each) { return each.where == Ledger::untraced || each.where.ends_with("not traced"); });
+  std::erase_if(failures,
+                [](Failure const& each) { return each.where == Ledger::untraced || each.where.ends_with(Ledger::not_traced); });
   std::stable_sort(failures.begin(), failures.end(), [](Failure const& a, Failure const& b) { return a.count > b.count; });
   std::string places;
   for (std::size_t i = 0; i < failures.size() && i < 3; ++i)

@@ -151,8 +151,8 @@ class Run {
       context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", where, candidates_.name(model)), time,
                                   std::move(example), 1, std::move(names));
     } else {
-      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`, not traced", candidates_.name(model)), not_a_number,
-                                  std::move(example), 1, std::move(names));
+      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`{}", candidates_.name(model), Ledger::not_traced),
+                                  not_a_number, std::move(example), 1, std::move(names));
     }
   }
 

@@ -139,9 +139,60 @@ bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitt
         double const value = here.parametric[sample] + prediction.mean[i] + std::sqrt(prediction.variance[i]) * stream.normal();
         values[c][static_cast<std::size_t>(d)][k] = value;
         noisy[c][static_cast<std::size_t>(d)][k] = value + sd * stream.normal();
-        parametric[c][static_cast<std::size_t>(d)][k] = here.parametric[sample];
       }
+      std::copy(here.parametric.begin(), here.parametric.end(), parametric[c][static_cast<std::size_t>(d)].begin());
     }
+  }
+  return true;
+}
+
+bool ProcessForecast::sample_by_sample(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count,
+                                       StreamKey key, std::uint64_t first, Paths& values, Paths& noisy, Paths& parametric) const {
+  std::size_t const channels = fitted.size();
+  std::vector<DensePosterior> posteriors;
+  for (std::size_t c = 0; c < channels; ++c) {
+    posteriors.emplace_back(model_->channels()[c].covariance, fitted[c].observations, fitted[c].parameters);
+    if (posteriors.back().outcome() != gaussian_process::Outcome::fine) return false;
+  }
+  FreeRun const& run = *free_run_;
+  Schedule const& schedule = record_.simulator().schedule();
+  int const states = static_cast<int>(model_->model().states.size());
+  LaneArray state(states, count), drawn(run.processes, count), places(run.all_arguments, count);
+  LaneArray outcome(2 * static_cast<int>(channels) + states, count);
+  std::vector<Stream> streams;
+  for (int d = 0; d < count; ++d) streams.emplace_back(key.at(key.index + first + static_cast<std::uint64_t>(d), 0));
+  sysid::run(run.initial, run.at(own, state, drawn, schedule, 0), state);
+  for (int i = 0; i < record_.samples(); ++i) {
+    sysid::run(run.arguments, run.at(own, state, drawn, schedule, i), places);
+    for (int p = 0; p < run.processes; ++p)
+      for (int d = 0; d < count; ++d) drawn(p, d) = 0;
+    for (std::size_t c = 0; c < channels; ++c) {
+      // All processes of a channel are drawn as their sum, which its first one stands for.
+      int column = 0, leading = -1;
+      Eigen::MatrixXd at(count, static_cast<Eigen::Index>(model_->channels()[c].arguments.size()));
+      for (int p = 0; p < run.processes; ++p) {
+        Process const& process = model_->model().processes[static_cast<std::size_t>(p)];
+        if (process.channel != static_cast<int>(c)) continue;
+        if (leading < 0) leading = p;
+        for (int a = 0; a < static_cast<int>(process.arguments.size()); ++a, ++column)
+          for (int d = 0; d < count; ++d) at(d, column) = places(run.argument_of_process[static_cast<std::size_t>(p)] + a, d);
+      }
+      if (!at.allFinite()) return false;
+      Prediction const prediction = posteriors[c].predict({at, Eigen::MatrixXd(count, 0)});
+      for (int d = 0; d < count; ++d)
+        drawn(leading, d) = prediction.mean[d] + std::sqrt(prediction.variance[d]) * streams[static_cast<std::size_t>(d)].normal();
+    }
+    sysid::run(run.outcome, run.at(own, state, drawn, schedule, i), outcome);
+    for (std::size_t c = 0; c < channels; ++c)
+      for (int d = 0; d < count; ++d) {
+        auto const k = static_cast<std::size_t>(d);
+        double const value = outcome(static_cast<int>(c), d);
+        values[c][k][static_cast<std::size_t>(i)] = value;
+        noisy[c][k][static_cast<std::size_t>(i)] = value + fitted[c].parameters.back() * streams[k].normal();
+        parametric[c][k][static_cast<std::size_t>(i)] = outcome(static_cast<int>(channels + c), d);
+      }
+    for (int s = 0; s < states; ++s)
+      for (int d = 0; d < count; ++d) state(s, d) = outcome(2 * static_cast<int>(channels) + s, d);
   }
   return true;
 }
@@ -159,56 +210,7 @@ void ProcessForecast::run(ConstLanes fitted, ConstLanes own, int count, StreamKe
   if (good && !free_run_) {
     good = at_once(regressions, own, count, key, first, values, noisy, parametric);
   } else if (good) {
-    std::vector<DensePosterior> posteriors;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-      posteriors.emplace_back(model_->channels()[c].covariance, regressions[c].observations, regressions[c].parameters);
-      good = good && posteriors.back().outcome() == gaussian_process::Outcome::fine;
-    }
-    FreeRun const& run = *free_run_;
-    Schedule const& schedule = record_.simulator().schedule();
-    int const states = static_cast<int>(model_->model().states.size());
-    LaneArray state(states, count), drawn(run.processes, count), places(run.all_arguments, count);
-    LaneArray outcome(2 * static_cast<int>(channels.size()) + states, count);
-    std::vector<Stream> streams;
-    for (int d = 0; d < count; ++d) streams.emplace_back(key.at(key.index + first + static_cast<std::uint64_t>(d), 0));
-    if (good) sysid::run(run.initial, run.at(own, state, drawn, schedule, 0), state);
-    for (int i = 0; good && i < record_.samples(); ++i) {
-      sysid::run(run.arguments, run.at(own, state, drawn, schedule, i), places);
-      for (int p = 0; p < run.processes; ++p)
-        for (int d = 0; d < count; ++d) drawn(p, d) = 0;
-      for (std::size_t c = 0; c < channels.size(); ++c) {
-        // All processes of a channel are drawn as their sum, which its first one stands for.
-        int column = 0, leading = -1;
-        Eigen::MatrixXd at(count, static_cast<Eigen::Index>(model_->channels()[c].arguments.size()));
-        for (int p = 0; p < run.processes; ++p) {
-          Process const& process = model_->model().processes[static_cast<std::size_t>(p)];
-          if (process.channel != static_cast<int>(c)) continue;
-          if (leading < 0) leading = p;
-          for (int a = 0; a < static_cast<int>(process.arguments.size()); ++a, ++column)
-            for (int d = 0; d < count; ++d) at(d, column) = places(run.argument_of_process[static_cast<std::size_t>(p)] + a, d);
-        }
-        if (!at.allFinite()) {
-          good = false;
-          break;
-        }
-        Prediction const prediction = posteriors[c].predict({at, Eigen::MatrixXd(count, 0)});
-        for (int d = 0; d < count; ++d)
-          drawn(leading, d) =
-              prediction.mean[d] + std::sqrt(prediction.variance[d]) * streams[static_cast<std::size_t>(d)].normal();
-      }
-      if (!good) break;
-      sysid::run(run.outcome, run.at(own, state, drawn, schedule, i), outcome);
-      for (std::size_t c = 0; c < channels.size(); ++c)
-        for (int d = 0; d < count; ++d) {
-          auto const k = static_cast<std::size_t>(d);
-          double const value = outcome(static_cast<int>(c), d);
-          values[c][k][static_cast<std::size_t>(i)] = value;
-          noisy[c][k][static_cast<std::size_t>(i)] = value + regressions[c].parameters.back() * streams[k].normal();
-          parametric[c][k][static_cast<std::size_t>(i)] = outcome(static_cast<int>(channels.size() + c), d);
-        }
-      for (int s = 0; s < states; ++s)
-        for (int d = 0; d < count; ++d) state(s, d) = outcome(2 * static_cast<int>(channels.size()) + s, d);
-    }
+    good = sample_by_sample(regressions, own, count, key, first, values, noisy, parametric);
   }
   result.values.resize(quantities_.size());
   result.noisy.resize(channels.size());
@@ -240,11 +242,15 @@ std::vector<ProcessForecast::Reach> ProcessForecast::reach(ConstLanes fitted, Co
     auto const regression = trained_->regression(fitted, c, false);
     if (!regression) continue;
     ProcessRows const here = record_.rows(records, c, 0, rows);
+    std::vector<Eigen::Index> known;
+    for (Eigen::Index i = 0; i < here.inputs.rows(); ++i)
+      if (here.inputs.row(i).allFinite()) known.push_back(i);
+    Eigen::MatrixXd const inputs = here.inputs(known, Eigen::all);
     int column = 0;
     for (Process const& process : model_->model().processes) {
       if (process.channel != c) continue;
       for (Quantity const& input : process.inputs) {
-        for (auto const& concern : gaussian_process::places_outside(regression->observations.inputs, here.inputs, {column})) {
+        for (auto const& concern : gaussian_process::places_outside(regression->observations.inputs, inputs, {column})) {
           bool const again = !result.empty() && result.back().process == process.name && result.back().input == input.name;
           if (!again) result.push_back({process.name, input.name, 0});  // of several lags the farthest
           result.back().widths = std::max(result.back().widths, concern.value);

@@ -34,8 +34,12 @@ class ProcessForecast {
  private:
   struct FreeRun;
   using Paths = std::vector<std::vector<std::vector<double>>>;  // [channels][trajectories][samples], SI
+  /// Both give nothing but false where a covariance cannot be decomposed, or nothing can be predicted. Samples at once where
+  /// nothing that is predicted is read again; a sample without inputs has no value. Else each from what was drawn before it.
   bool at_once(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count, StreamKey key, std::uint64_t first,
                Paths& values, Paths& noisy, Paths& parametric) const;
+  bool sample_by_sample(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count, StreamKey key,
+                        std::uint64_t first, Paths& values, Paths& noisy, Paths& parametric) const;
 
   std::shared_ptr<ProcessTarget const> trained_;
   std::shared_ptr<ProcessModel const> model_;
