@@ -162,7 +162,8 @@ std::span<KeywordRow const> keywords() {
     for (InputRuleRow const& rule : input_rules()) all.push_back({rule.name, rule.usage, rule.summary});
     for (std::string_view const verb : words::verbs)
       for (TaskOptionRow const& option : task_options(verb)) {
-        bool const known = std::any_of(all.begin(), all.end(), [&](KeywordRow const& row) { return row.usage == option.usage; });
+        bool const known = std::any_of(all.begin(), all.end(),
+                                       [&](KeywordRow const& row) { return row.word == option.name && row.usage == option.usage; });
         if (!known) all.push_back({option.name, option.usage, option.summary});
       }
     return all;

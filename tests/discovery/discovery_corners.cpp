@@ -227,7 +227,7 @@ TEST_CASE("a discovery that is complete is kept by --resume, one of another text
   CHECK(contains(again.notices, "found: complete, kept"));
   std::string const other = with(text, ", 1\n", ", 1, y*y'\n");
   CHECK_THROWS_WITH_AS(run_text(folder.path() / "case.sysid", other, options),
-                       doctest::Contains("of another text of dictionary `terms`"), UserError);
+                       doctest::Contains("with another text of dictionary `terms`"), UserError);
 }
 
 TEST_CASE("functions of modules serve in dictionaries, and come with the model that is found") {

@@ -250,7 +250,7 @@ TEST_CASE("structures that are no model are left out of the candidates with a wo
     json const finding = answer.finding("candidates_left_out");
     REQUIRE_FALSE(finding.is_null());
     CHECK(finding.at("severity") == "warning");
-    CHECK(contains(finding.at("message"), "holds 4 of 8 structures"));
+    CHECK(contains(finding.at("message"), "contains 4 of 8 structures"));
     CHECK(contains(finding.at("message"), "`sign(y''), y` (the equations do not determine `y''`)"));
     CHECK(contains(answer.source, "candidates structures {"));
     Source source("found.sysid", answer.source);

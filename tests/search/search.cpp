@@ -203,7 +203,7 @@ TEST_CASE("a prior without a solvable point is a failure that names the place") 
   SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   REQUIRE(result.failure);
   CHECK(result.failure->severity == Severity::error);
-  CHECK(result.failure->message.find("none of 8192 draws") != std::string::npos);
+  CHECK(result.failure->message.find("not finite at any of 8192 draws") != std::string::npos);
   CHECK(result.failure->message.find("the test's residual at t = ") != std::string::npos);
 }
 
