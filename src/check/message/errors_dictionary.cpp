@@ -43,7 +43,7 @@ Diagnostic unknown_generator(ast::Name const& name, Names const& families) {
 }
 
 Diagnostic generator_arguments(ast::Name const& generator, std::string const& missing, std::string const& example) {
-  return about({generator.text},
+  return about({generator.text, missing},
                error("E6603", generator.span,
                      fmt::format("`{}` needs {}", generator.text, missing == "arguments" ? missing : "`" + missing + "`"),
                      fmt::format("for example `{}`", example)));
