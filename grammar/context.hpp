@@ -39,8 +39,8 @@ class State {
   }
 
   /// What the rules pass over behind a failure.
-  void leave_out(Iterator first, Iterator behind) { excluded_.push_back({offset(first), offset(behind)}); }
-  std::vector<Span> take_unread() { return std::move(excluded_); }
+  void mark_unread(Iterator first, Iterator behind) { unread_.push_back({offset(first), offset(behind)}); }
+  std::vector<Span> take_unread() { return std::move(unread_); }
 
   int depth = 0;
 
@@ -51,7 +51,7 @@ class State {
   Layout const& layout_;
   Diagnostics& diagnostics_;
   std::size_t limit_;
-  std::vector<Span> excluded_;
+  std::vector<Span> unread_;
 };
 
 struct state_tag {};
@@ -65,7 +65,7 @@ struct resumes_behind_statement {
     State& state = x3::get<state_tag>(context);
     state.report(failure.where(), failure.which());
     Iterator const behind = state.behind_statement(failure.where());
-    state.leave_out(first, behind);
+    state.mark_unread(first, behind);
     first = behind;
     return x3::error_handler_result::accept;
   }
@@ -78,7 +78,7 @@ struct resumes_behind_item {
     State& state = x3::get<state_tag>(context);
     state.report(failure.where(), failure.which());
     Iterator const behind = state.behind_item(failure.where(), failure.which());
-    state.leave_out(first, behind);
+    state.mark_unread(first, behind);
     first = behind;
     return x3::error_handler_result::accept;
   }

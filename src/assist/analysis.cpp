@@ -39,7 +39,7 @@ std::shared_ptr<Reading const> read(std::string const& path, std::string const& 
     auto reading = std::make_shared<Reading>(Reading{std::move(source), std::move(*readable.tree), {}, {}, unsaid.all().empty()});
     try {
       reading->modules = load_modules(reading->tree, reading->source, unsaid, unsaved);
-    } catch (IoError const&) {  // said by `judge`
+    } catch (IoError const&) {  // said by `analyse`
     }
     reading->names = resolve(reading->tree, reading->modules);
     return reading;

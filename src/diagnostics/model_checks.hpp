@@ -25,7 +25,7 @@ using TargetOf = std::function<std::unique_ptr<Target>(std::vector<Experiment> e
 
 /// A much better fit with an input of one experiment half a sample earlier or later (more than `0.2` nats per scored sample of that
 /// experiment, and 20 in all) means that the rule between input samples is not the one of the experiment. experiments: of the fit.
-/// mode: the best one of the density that `aim` names.
+/// mode: the best one of the density that `objective_kind` names.
 Findings check_input_timing(TargetOf const& target_of, Model const& model, std::vector<Experiment> const& experiments,
                             ObjectiveKind objective_kind, Mode const& mode, std::uint64_t seed, Ledger& ledger);
 

@@ -44,8 +44,8 @@ std::vector<Mode> merged(std::vector<Mode> const& modes) {
 
 bool lost(Mode const& mode) { return !std::isfinite(mode.log_density); }
 
-// `finer` without places that only the coarser solver could reach: nothing follows them, so no solver would settle. One that was
-// lost before may yet come back with steps as fine as those of the search.
+// `finer` without places that only the coarser solver could reach: nothing follows them, so they would converge with no solver. One
+// that was lost before may yet come back with steps as fine as those of the search.
 std::vector<Mode> reached(std::vector<Mode> const& coarser, std::vector<Mode> const& finer) {
   std::vector<Mode> left;
   double sum = 0;
@@ -170,8 +170,8 @@ double largest_move(std::vector<Mode> const& modes, std::vector<Mode> const& fin
 
 }  // namespace
 
-RefinedSolver refined_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
-                             std::vector<Mode> modes, RunContext& context) {
+RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
+                                    std::vector<Mode> modes, RunContext& context) {
   RefinedSolver result;
   result.solver = from;
   result.modes = std::move(modes);

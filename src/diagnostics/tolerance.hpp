@@ -43,10 +43,10 @@ struct RefinedSolver {
   std::vector<double> moves;  // of each that was tried: largest move to the next one [sd]
   bool converged = true;      // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative), or lost
   bool lost = false;          // with the next one no mode is finite any more: these are the last that were
-  bool given_up = false;      // before the finest, as one that would not settle it either
+  bool given_up = false;      // before the finest, as the modes would not converge there either
 };
-RefinedSolver refined_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
-                             std::vector<Mode> modes, RunContext& context);
+RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
+                                    std::vector<Mode> modes, RunContext& context);
 
 /// How far the weightiest of `modes` moves on `fine` [sd], infinite where it is not finite there.
 double move_to_finer(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,

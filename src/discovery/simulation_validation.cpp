@@ -79,7 +79,7 @@ class Validator {
     int bounded = 0;
   };
 
-  bool validation(std::size_t m) const { return fits_ && fits_->failure(m).empty(); }
+  bool is_validated(std::size_t m) const { return fits_ && fits_->failure(m).empty(); }
 
   // Every number of terms of an equation is as probable before, and among as many terms every choice (Scott, Berger 2010).
   double log_prior(std::size_t m) const {
@@ -102,7 +102,7 @@ class Validator {
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
     double sum = 0;
     for (std::size_t const m : order_)
-      if (validation(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
+      if (is_validated(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
     for (std::size_t const m : order_) scored_[m].probability /= sum > 0 ? sum : 1;
   }
 
@@ -122,7 +122,7 @@ class Validator {
     if (rows_.held_out.empty()) return;
     StartGuess guess(dictionary_.numbers, rows_.held_out, source_.discovery.noise_sd);
     for (std::size_t m = 0; m < models_.size(); ++m) {
-      if (!validation(m) || interrupted_()) continue;
+      if (!is_validated(m) || interrupted_()) continue;
       ShootingFit const fit = rows_.cut ? fits_->fit_before(m, rows_.ends) : fits_->fit(m);
       if (fit.finite)
         scored_[m].errors =
@@ -155,7 +155,7 @@ class Validator {
   void check_stability() {
     std::vector<Segment> const parts = fits_->segments();
     for (std::size_t m = 0; m < models_.size(); ++m) {
-      if (!validation(m) || interrupted_()) continue;
+      if (!is_validated(m) || interrupted_()) continue;
       std::vector<LaneArray> points;
       for (std::size_t s = 0; s < parts.size(); ++s)
         if (parts[s].first == 0) points.push_back(drawn(m, s));

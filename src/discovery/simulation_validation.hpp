@@ -1,5 +1,5 @@
-// Discovered structures judged by the motion itself: refitted by simulation, ranked by evidence, checked for stability, scored on
-// rows kept aside.
+// Discovered structures validated by the motion itself: refitted by simulation, ranked by evidence, checked for stability, scored
+// on held-out rows.
 #pragma once
 #include <functional>
 #include <optional>
@@ -19,7 +19,7 @@ struct Validation {
 };
 
 /// structures: as best_structures gives them, the regression's choice first; at least one. unused: experiments that the task did
-/// not use, with the dictionary's columns; where there are none the last fifth of each of the task's is kept aside for the scores.
+/// not use, with the dictionary's columns; where there are none the last fifth of each of the task's is held out for the scores.
 /// Every structure is fitted over the same segments: as long as the best one follows the record. The same bytes for any number of
 /// threads and lanes.
 Validation validate_structures(FoundSource const& source, std::vector<FoundStructure> structures,

@@ -31,10 +31,10 @@ class StructureFits {
 
   void run();
 
-  /// Why structure m is not judged; empty: it is, and has a fit.
+  /// Why structure m is not validated; empty: it is, and has a fit.
   std::string const& failure(std::size_t m) const;
   ShootingFit const& fit(std::size_t m) const { return fits_[m].fit; }
-  /// Log evidence and prior; -infinity where it is not judged.
+  /// Log evidence and prior; -infinity where it is not validated.
   double log_posterior(std::size_t m) const;
   std::vector<Segment> segments() const { return segments(halved_); }
   /// No record could be cut less.
@@ -42,7 +42,7 @@ class StructureFits {
   SolverSettings solver(std::size_t m) const;
   /// Its solver takes one simulation after the other: hundreds of times what lanes cost.
   bool one_by_one(std::size_t m) const;
-  /// It is not judged because its allowance was spent.
+  /// It is not validated because its allowance was spent.
   bool given_up(std::size_t m) const { return one_by_one(m) && spent_[m] > allowance_; }
   /// Coefficients by the rows of each record before `ends` alone.
   ShootingFit fit_before(std::size_t m, std::vector<int> const& ends) const;

@@ -120,14 +120,14 @@ Findings validation_findings(ValidationReport const& validation) {
         fmt::format("simulation ranks `{}` first, the regression `{}`, which {}", best.terms, regression->terms,
                     regression->failure.empty()
                         ? fmt::format("has a probability of {} by the simulated motion", probability_text(regression->probability))
-                        : "was not judged: " + regression->failure),
+                        : "could not be checked by simulation: " + regression->failure),
         "`found.sysid` contains the model that simulation ranks first; a record of another amplitude may decide");
   auto const costly = given_up(validation);
   if (costly) findings.push_back(*costly);
   if (!best.failure.empty()) {
     if (costly) return findings;
     add(FindingCode::not_refitted, Severity::warning, {},
-        fmt::format("no structure could be judged by simulation: {}", best.failure),
+        fmt::format("no structure could be checked by simulation: {}", best.failure),
         "the coefficients are those of the regression: check the length and step of the record, and terms that diverge");
     return findings;
   }

@@ -5,7 +5,7 @@
 
 namespace sysid {
 
-/// judged: with at least one structure.
+/// validation: with at least one structure.
 Findings validation_findings(ValidationReport const& validation);
 
 /// What the regression left unexplained is a note where simulation explains the motion to its noise.

@@ -25,7 +25,7 @@ class StanExport {
   void add(Task const& task, FitTask const& fit) {
     attempt(task, [&] { return fit.solver; });
   }
-  /// With the one that it settled on.
+  /// With the one that was chosen for it.
   void add(StoredResult const& stored) {
     int const index = find_task(session_, stored);
     attempt(session_.file.tasks[static_cast<std::size_t>(index)], [&] { return fitted_model(session_, index).solver; });

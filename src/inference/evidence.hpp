@@ -13,7 +13,8 @@
 
 namespace sysid {
 
-/// From the modes of the density that `aim` names, which are followed to those of the density on the sampler's coordinates:
+/// From the modes of the density that `objective_kind` names, which are followed to those of the density on the sampler's
+/// coordinates:
 ///
 ///   log p(y) = log sum over modes m of p(y | u_m) p(u_m) (2 pi)^(P/2) det(H_m)^(-1/2)         MacKay 2003, ch. 27 and 28
 ///

@@ -34,7 +34,7 @@ struct Document {
   std::string uri, path, text;
   std::int64_t version = 0;
   bool analysed = false;                           // its diagnostics are those of this text
-  std::vector<std::string> asked;                  // files that its last judgement looked for, there or not
+  std::vector<std::string> asked;                  // files that its last analysis looked for, there or not
   std::shared_ptr<assist::Reading const> reading;  // of this text; null: not read yet, or it cannot be read
   bool read = false;
   std::shared_ptr<assist::Reading const> last_reading;  // the last that there was, with its text

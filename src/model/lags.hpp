@@ -16,16 +16,16 @@ enum class PredictionRule {
 };
 std::string_view prediction_name(PredictionRule rule);
 
-/// Gives every past that is read, leaf previous(past, lag), its registers: states named "lag(y, 1)", "lag(y, 2)", ..., whose
-/// derivative is their value at the next sample. Registers of a past p begin with initial[p]: an expression of parameters, and of
-/// measured samples as if it stood at the register's own sample; what a channel predicts begins with what it measured. Returns the
-/// first past that is read and has no initial value.
+/// Gives every lagged quantity that is read, leaf previous(quantity, lag), its registers: states named "lag(y, 1)", "lag(y, 2)",
+/// ..., whose derivative is their value at the next sample. Registers of a quantity p begin with initial[p]: an expression of
+/// parameters, and of measured samples as if it stood at the register's own sample; what a channel predicts begins with what it
+/// measured. Returns the first lagged quantity that is read and has no initial value.
 std::optional<int> lay_out_lags(Model& model, std::vector<std::optional<NodeId>> const& initial);
 
 /// The model under a rule. Nothing when it asks for one-step prediction and no channel measures what is lagged.
 std::optional<Model> with_prediction(Model model, PredictionRule rule);
 
-/// Every process at zero, the mean of its prior: what is left is white.
+/// Every process at zero, the mean of its prior: what is left is the parametric part.
 void remove_processes(Model& model);
 
 /// Whether a state reads a process: what it is at one sample then shows in later ones.

@@ -92,7 +92,7 @@ struct InformationPage {
   std::string refinement;                             // "half the step"
   std::vector<std::pair<std::string, double>> moves;  // solver, largest move of a parameter [sd] when it is refined
   std::string taken;                                  // the one that the task goes on with; empty: the fit chooses
-  std::string advised;                                // the first that settles the result; empty: none that was tried
+  std::string advised;                                // the first that no longer moves the result; empty: none that was tried
   std::optional<double> response_move;                // of a candidate: of the middle response, as a part of its sd, when refined
 };
 
@@ -134,7 +134,7 @@ struct TaskPage {
   std::vector<PreflightPage> preflights;  // one of a fit, one for each candidate of a selection, none of other tasks
   Findings findings;                      // of the data
 
-  /// Those of the data, then of each outlook.
+  /// Those of the data, then of each preflight page.
   Findings all_findings() const;
 };
 

@@ -9,10 +9,10 @@ namespace sysid {
 /// Of one channel, in `unit`.
 struct ValidatedChannel {
   std::string channel, unit;
-  double sd = 0;        // of what is measured on the rows kept aside
+  double sd = 0;        // of what is measured on the held-out rows
   double residual = 0;  // sd of the refit's residuals
   double noise = 0;     // as the regression took it; 0: not known
-  // Root mean square errors on rows kept aside; nothing where there are too few rows, or where a run is not finite.
+  // Root mean square errors on held-out rows; nothing where there are too few rows, or where a run is not finite.
   std::optional<double> one_step, horizon, free_run;
 };
 
@@ -28,7 +28,7 @@ struct ValidatedStructure {
   std::string terms;                   // "y'', y', y, y^3"; of several equations "x': x, y; y': ..."
   std::vector<std::string> equations;  // with the refit's coefficients
   int of_regression = 0;               // its place there, from 1
-  std::string failure;                 // why it was not judged; empty: it was
+  std::string failure;                 // why it was not validated; empty: it was
   bool given_up = false;               // it was not, because that costs too much
   double log_evidence = 0, log_prior = 0;
   double probability = 0;          // among the structures tried

@@ -9,9 +9,9 @@
 
 namespace sysid {
 
-/// Local searches on `target` from each of `modes`, which are those of a target with the same parameters and the same aim. Modes
-/// come back in the order given (shares as they were); one whose density is not finite any more keeps its place with log_density
-/// -infinity. `stop` ends it early: the modes as far as they have come.
+/// Local searches on `target` from each of `modes`, which are those of a target with the same parameters and the same objective
+/// kind. Modes come back in the order given (shares as they were); one whose density is not finite any more keeps its place with
+/// log_density -infinity. `stop` ends it early: the modes as far as they have come.
 std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
                         Ledger& ledger, std::function<bool()> const& stop = {});
 

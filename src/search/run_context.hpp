@@ -21,14 +21,14 @@ struct RunContext {
   Ledger& ledger;
   /// Asked between steps; true: checkpoint, return what there is. Empty: never.
   std::function<bool()> interrupted = {};
-  /// Takes the whole state of the run; anything stored as JSON text or CBOR comes back exactly. Empty: no checkpoints.
+  /// Takes the whole state of the run; stored as CBOR it comes back exactly. Empty: no checkpoints.
   std::function<void(nlohmann::json const&)> checkpoint = {};
   /// Seconds between checkpoints; one more is made on interruption.
   double checkpoint_interval = 60;
   /// What `checkpoint` was last given by the same task: the run goes on to the same bytes as if it had never stopped.
   std::shared_ptr<nlohmann::json const> resume = {};
-  /// Modes of the density that the row's `aim` names, when a search has found them already: back ends start from these instead of
-  /// searching again.
+  /// Modes of the density that the row's `objective_kind` names, when a search has found them already: back ends start from these
+  /// instead of searching again.
   std::vector<Mode> modes = {};
   Findings mode_findings = {};  // of that search
 

@@ -34,7 +34,7 @@ inline TaskPage const& task(CheckResult const& result, std::string const& name) 
 inline PreflightPage const& preflight(CheckResult const& result, std::string const& name, std::string const& candidate = "") {
   for (PreflightPage const& each : task(result, name).preflights)
     if (each.candidate == candidate) return each;
-  throw InternalError("no outlook of " + name + " " + candidate);
+  throw InternalError("no preflight page of " + name + " " + candidate);
 }
 
 inline std::vector<std::string> messages(CheckResult const& result, std::string const& code) {

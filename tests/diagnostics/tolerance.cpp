@@ -27,7 +27,7 @@ RefinedSolver settled(std::function<double(int substeps)> const& centre, int row
   SolverSettings const from;
   std::vector<Mode> modes = search(*centred(centre(from.substeps)), ObjectiveKind::posterior, bench.context).modes;
   MakeTarget const make = [&](SolverSettings const& solver) { return centred(centre(solver.substeps), rows); };
-  return refined_solver(make, ObjectiveKind::posterior, from, std::move(modes), bench.context);
+  return find_converged_solver(make, ObjectiveKind::posterior, from, std::move(modes), bench.context);
 }
 
 constexpr int short_record = 10, long_record = 200'000;

@@ -61,16 +61,16 @@ void run_preflight(Session& session, FitTask const& what, std::vector<Experiment
     return;
   }
   Preflight const preflight(session, what, data, page);
-  std::string const unlooked = preflight.model().integrated() ? "identifiability and the solver: " : "identifiability: ";
+  std::string const skipped_words = preflight.model().integrated() ? "identifiability and the solver: " : "identifiability: ";
   PriorDraws const prior = draw_prior(preflight);
   std::vector<int> const sized = describe_prior(preflight, prior);
   if (std::string const why = obstacle(preflight, prior, sized); !why.empty()) {
-    page.not_examined = unlooked + why;
+    page.not_examined = skipped_words + why;
     return;
   }
   std::vector<LocalResponse> const responses = local_responses(preflight, prior, sized);
   if (responses.size() < 2) {
-    page.not_examined = unlooked + "the response is not smooth in the parameters at the prior draws that were examined";
+    page.not_examined = skipped_words + "the response is not smooth in the parameters at the prior draws that were examined";
     return;
   }
   page.information.emplace();

@@ -9,7 +9,7 @@
 namespace sysid {
 namespace {
 
-constexpr double excluded = 0.005;  // of the power, at either end of the band
+constexpr double excluded_share = 0.005;  // of the power, at either end of the band
 
 // The band that holds all but a share of the power at either end, from a periodogram of the samples less their mean.
 void fill_band(InputSignal const& signal, double rate, CoveragePage::Input& input) {
@@ -37,9 +37,9 @@ void fill_band(InputSignal const& signal, double rate, CoveragePage::Input& inpu
   for (std::size_t k = 0; k < power.size(); ++k) {
     sum += power[k];
     double const frequency = rate * static_cast<double>(k) / static_cast<double>(size);
-    if (!begun && sum > excluded * total) begun = true, input.low = frequency;
+    if (!begun && sum > excluded_share * total) begun = true, input.low = frequency;
     input.high = frequency;
-    if (sum >= (1 - excluded) * total) break;
+    if (sum >= (1 - excluded_share) * total) break;
   }
 }
 

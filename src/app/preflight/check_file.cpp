@@ -55,7 +55,7 @@ void check_bands(TaskPage& page) {
 }
 
 // Each candidate as the fit of it would be, unless the selection cannot begin.
-void look_ahead_at_candidates(Session& session, Task const& task, SelectTask const& selection, TaskPage& page) {
+void preflight_candidates(Session& session, Task const& task, SelectTask const& selection, TaskPage& page) {
   std::vector<std::vector<ExperimentData>> data;
   for (FitTask const& fit : selection.fits)
     data.push_back(load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
@@ -73,15 +73,15 @@ void look_ahead_at_candidates(Session& session, Task const& task, SelectTask con
 
 // One function for each kind of task: what it is, in a line, and what can be known of it before it runs. data: of a selection and
 // its predictions the same for each candidate.
-using Looked = std::vector<TaskData> const&;
+using TaskDataList = std::vector<TaskData>;
 
-void look_at_simulate(Session& session, Task const& task, Looked, TaskPage& page) {
+void preflight_simulate(Session& session, Task const& task, TaskDataList const&, TaskPage& page) {
   SimulateTask const& what = std::get<SimulateTask>(task.what);
   page.what = fmt::format("simulate {}: {} samples at {:.6g} Hz into {}",
                           session.file.models[static_cast<std::size_t>(what.model)].name, what.samples, 1 / what.step, what.file);
 }
 
-void look_at_fit(Session& session, Task const& task, Looked data, TaskPage& page) {
+void preflight_fit(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {
   FitTask const& what = std::get<FitTask>(task.what);
   Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
   page.what = fmt::format("fit {} to {} with {}", model.name, data_names(session.file, what.experiments), what.backend);
@@ -91,17 +91,17 @@ void look_at_fit(Session& session, Task const& task, Looked data, TaskPage& page
     run_preflight(session, what, *experiments, page.preflights.emplace_back());
 }
 
-void look_at_select(Session& session, Task const& task, Looked data, TaskPage& page) {
+void preflight_select(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {
   SelectTask const& what = std::get<SelectTask>(task.what);
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
   page.what = fmt::format("select {} ({}) to {} with {}", set.name, counted(set.models.size(), "model"),
                           data_names(session.file, what.fits.front().experiments), what.backend);
   auto const experiments = cover(session, data.front(), page);
   check_bands(page);
-  if (experiments) look_ahead_at_candidates(session, task, what, page);
+  if (experiments) preflight_candidates(session, task, what, page);
 }
 
-void look_at_discover(Session& session, Task const& task, Looked data, TaskPage& page) {
+void preflight_discover(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {
   DiscoverTask const& what = std::get<DiscoverTask>(task.what);
   page.what = fmt::format("discover {} from {} with {}, derivatives = {}",
                           session.file.dictionaries[static_cast<std::size_t>(what.dictionary)].name,
@@ -110,28 +110,28 @@ void look_at_discover(Session& session, Task const& task, Looked data, TaskPage&
   check_bands(page);
 }
 
-void look_at_predict(Session& session, Task const& task, Looked data, TaskPage& page) {
+void preflight_predict(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {
   PredictTask const& what = std::get<PredictTask>(task.what);
   page.what = fmt::format("predict {} on {}", session.file.tasks[static_cast<std::size_t>(what.fit)].name,
                           data_names(session.file, what.experiments));
   cover(session, data.front(), page);
 }
 
-struct LookRow {
+struct PreflightRow {
   TaskKind kind;
-  void (*preflight)(Session&, Task const&, Looked, TaskPage&);
+  void (*preflight)(Session&, Task const&, TaskDataList const&, TaskPage&);
 };
-constexpr LookRow look_rows[] = {
-    {TaskKind::simulate, &look_at_simulate}, {TaskKind::fit, &look_at_fit},         {TaskKind::select, &look_at_select},
-    {TaskKind::discover, &look_at_discover}, {TaskKind::predict, &look_at_predict},
+constexpr PreflightRow preflight_rows[] = {
+    {TaskKind::simulate, &preflight_simulate}, {TaskKind::fit, &preflight_fit},         {TaskKind::select, &preflight_select},
+    {TaskKind::discover, &preflight_discover}, {TaskKind::predict, &preflight_predict},
 };
 
-static_assert(std::size(look_rows) == task_kind_count);
+static_assert(std::size(preflight_rows) == task_kind_count);
 
 TaskPage check_task(Session& session, Task const& task) {
   TaskPage page;
   page.name = task.name;
-  row_for(look_rows, kind_of(task)).preflight(session, task, task_row(task).data(session.file, task), page);
+  row_for(preflight_rows, kind_of(task)).preflight(session, task, task_row(task).data(session.file, task), page);
   return page;
 }
 
@@ -165,7 +165,7 @@ CheckResult check_file(Session& session) {
   for (Task const& task : session.file.tasks) {
     try {
       result.page.tasks.push_back(check_task(session, task));
-    } catch (IoError const&) {  // said by `readiness`
+    } catch (IoError const&) {  // said by `check_preconditions`
       result.page.tasks.push_back({task.name, "its data cannot be read", {}, {}, {}});
     } catch (UserError const&) {
       result.page.tasks.push_back({task.name, "its data cannot be used", {}, {}, {}});

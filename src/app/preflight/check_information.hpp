@@ -8,7 +8,7 @@
 
 namespace sysid {
 
-/// A sampled parameter of a fit, as it is judged here.
+/// A sampled parameter of a fit, as it is assessed here.
 struct AssessedParameter {
   ParameterWords words;
   ParameterRole role = ParameterRole::response;

@@ -44,7 +44,7 @@ class Preflight {
 
   Model const& model() const { return compiled->model; }
   bool candidate() const { return !page.candidate.empty(); }
-  /// Whether the task makes the solver finer until it settles the result: fits do, selections take theirs as it is.
+  /// Whether the task makes the solver finer until the result has converged: fits do, selections take theirs as it is.
   bool refines_solver() const { return what.refine_solver && !candidate(); }
   void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) const;
   /// Rows [first, end) of the predictions: one channel of one experiment each.

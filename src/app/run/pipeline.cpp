@@ -1,5 +1,5 @@
-// The program on one screen. `load` (load/load.cpp) takes text to a checked file: parse, modules, elaborate, check. Here its tasks
-// are run (run_tasks.cpp), each by the row of its kind (task_runners.cpp).
+// Runs the wanted tasks of a checked file in order, each by the row of its kind (task_runners.cpp). `load` (load/load.cpp) has
+// taken the text to that file: parse, modules, elaborate, check.
 #include "app/run/pipeline.hpp"
 
 #include <algorithm>

@@ -41,7 +41,7 @@ double unit_term(Candidate const& candidate, Candidate const& first) {
 }
 
 /// Follows the modes to finer solvers; a solver that the task states is only asked.
-void refine(Session& session, Candidate const& candidate, std::uint64_t seed, CandidatePosterior& posterior) {
+void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_t seed, CandidatePosterior& posterior) {
   if (!candidate.compiled->model.integrated() || posterior.modes.empty() || posterior.modes.front().theta.empty()) return;
   Ledger extra;
   if (!candidate.fit->refine_solver) {
@@ -60,7 +60,7 @@ void refine(Session& session, Candidate const& candidate, std::uint64_t seed, Ca
                      .interrupted = [&] { return session.interrupted(); },
                      .checkpoint_interval = 0};
   RefinedSolver refined =
-      refined_solver(make, ObjectiveKind::posterior, candidate.fit->solver, std::move(posterior.modes), context);
+      find_converged_solver(make, ObjectiveKind::posterior, candidate.fit->solver, std::move(posterior.modes), context);
   posterior.modes = std::move(refined.modes);
   if (refined.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none
   // What is left is weighed as the finer one has it.
@@ -114,7 +114,7 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
       continue;
     }
     examined[k] = true;
-    refine(session, candidates[k], seed, posteriors[k]);
+    refine_solver_of(session, candidates[k], seed, posteriors[k]);
     if (posteriors[k].solver != candidates[k].fit->solver)
       finer +=
           fmt::format("the likelihood of `{}` with {}: with {} {} with {}\n", candidates[k].what->name, posteriors[k].solver.text(),

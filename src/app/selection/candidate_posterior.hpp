@@ -22,8 +22,8 @@ struct CandidatePosterior {
 };
 
 /// Modes of each candidate's posterior, climbed to from its particles with the task's solver. Of candidates worth a look the solver
-/// is made finer until it settles them, as for a fit; where the task states how fine it is, it is asked how far the next finer one
-/// moves them. Nothing when interrupted.
+/// is made finer until they have converged, as for a fit; where the task states how fine it is, it is asked how far the next finer
+/// one moves them. Nothing when interrupted.
 std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& session, std::vector<Candidate> const& candidates,
                                                                     SelectionResult const& result, std::uint64_t seed);
 

@@ -21,10 +21,10 @@ Settings settings_for(std::int64_t samples) {
 
 }  // namespace
 
-Refinement refine_candidates(Session& session, std::vector<Candidate> const& candidates,
-                             std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
-                             SelectionReport& selection) {
-  Refinement refinement;
+McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const& candidates,
+                                  std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
+                                  SelectionReport& selection) {
+  McmcRefinement refinement;
   selection.refined.resize(candidates.size());
   selection.refined_draws.resize(candidates.size());
   for (std::size_t k = 0; k < candidates.size(); ++k) {

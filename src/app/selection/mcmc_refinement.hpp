@@ -7,17 +7,17 @@
 
 namespace sysid {
 
-struct Refinement {
+struct McmcRefinement {
   Findings findings;
   bool interrupted = false;
 };
 
 /// Metropolis-Hastings of so many iterations a chain, a fifth of them burn-in, for each model of probability 0.01 or more, from the
-/// modes and with the solver of its posterior. Fills `polished` and `refined_draws` of the selection; not of models without
+/// modes and with the solver of its posterior. Fills `refined` and `refined_draws` of the selection; not of models without
 /// parameters, and not, which is said, where a climb was given up or none ended at a finite likelihood. Interrupted, it leaves the
 /// models that were not reached without.
-Refinement refine_candidates(Session& session, std::vector<Candidate> const& candidates,
-                             std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
-                             SelectionReport& selection);
+McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const& candidates,
+                                  std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
+                                  SelectionReport& selection);
 
 }  // namespace sysid

@@ -78,8 +78,8 @@ class PredictSelection {
     say_of_models(e, report);
     Experiment const& experiment = leading.data->experiment;
     report.predictions.push_back(bands_along(leading.trajectory->quantities(), all, experiment, leading.model()));
-    Findings const excluded = leave_out_noise(leading.model(), report.predictions.back());
-    if (e == 0) report.findings.insert(report.findings.end(), excluded.begin(), excluded.end());
+    Findings const noise_findings = leave_out_noise(leading.model(), report.predictions.back());
+    if (e == 0) report.findings.insert(report.findings.end(), noise_findings.begin(), noise_findings.end());
     report.ledger.merge(all.ledger);
     bool const several = what_.candidate_experiments[lead].size() > 1;
     Severity const severity = failure_severity(all.ledger.failed(), all.ledger.solves());

@@ -120,8 +120,8 @@ class Select {
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
       report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, candidate.compiled->model));
       add_restoring_forces(candidate.compiled->model, trajectory.quantities(), result, parameters, experiment, report.forces);
-      Findings excluded = leave_out_noise(candidate.compiled->model, report.predictions.back());
-      if (e == 0) report.findings.insert(report.findings.end(), excluded.begin(), excluded.end());
+      Findings noise_findings = leave_out_noise(candidate.compiled->model, report.predictions.back());
+      if (e == 0) report.findings.insert(report.findings.end(), noise_findings.begin(), noise_findings.end());
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
         report.findings.push_back(std::move(finding));
       for (Finding& finding : check_ranges(candidate.compiled->model, experiment, candidate.fit->solver,
@@ -154,8 +154,8 @@ class Select {
     if (checked) check_by_likelihood(leading, posteriors, selection, report);
     if (!interrupted) check_simulations(target, leading, posteriors, selection, report);
     if (refined) {
-      Refinement refinement =
-          refine_candidates(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
+      McmcRefinement refinement =
+          refine_with_chains(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
       add(refinement.findings, report);
       interrupted = refinement.interrupted;
     }

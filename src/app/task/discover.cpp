@@ -139,7 +139,7 @@ class Discover {
     return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
   }
 
-  // By simulation where that has judged.
+  // By simulation where that has validated a structure.
   static std::vector<std::string> equations(DiscoveryReport const& discovery) {
     if (discovery.validation && discovery.validation->structures.front().failure.empty())
       return discovery.validation->structures.front().equations;
@@ -154,8 +154,8 @@ class Discover {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
-    std::string const judged = verdict_of(findings).text;
-    return terms + "; " + judged.substr(0, judged.find('\n'));
+    std::string const verdict = verdict_of(findings).text;
+    return terms + "; " + verdict.substr(0, verdict.find('\n'));
   }
 
   bool given(std::size_t channel) const { return !what_.noise.empty() && what_.noise[channel]; }

@@ -24,6 +24,30 @@ Diagnostic about(Names names, Diagnostic diagnostic, std::string kind) {
   return diagnostic;
 }
 
+Diagnostic also_about(Names const& names, Diagnostic diagnostic) {
+  for (std::string const& each : names)
+    if (std::find(diagnostic.names.begin(), diagnostic.names.end(), each) == diagnostic.names.end())
+      diagnostic.names.push_back(each);
+  return diagnostic;
+}
+
+Names with_bare(std::string const& component) {
+  Names names{component};
+  if (std::size_t const end = component.find('\''); end != std::string::npos && end > 0) names.push_back(component.substr(0, end));
+  return names;
+}
+
+Names names_in(std::string_view phrase) {
+  Names names;
+  for (std::size_t open = phrase.find('`'); open != std::string_view::npos;) {
+    std::size_t const close = phrase.find('`', open + 1);
+    if (close == std::string_view::npos) break;
+    for (std::string& each : with_bare(std::string(phrase.substr(open + 1, close - open - 1)))) names.push_back(std::move(each));
+    open = phrase.find('`', close + 1);
+  }
+  return names;
+}
+
 std::string guess_or(std::string const& text, Names const& known, std::string fallback) {
   std::string guess = did_you_mean(text, known);
   return guess.empty() ? std::move(fallback) : guess;

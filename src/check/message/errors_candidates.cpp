@@ -80,7 +80,7 @@ Diagnostic channel_of_two_units(Span one, std::string const& model, Unit const& 
 }
 
 Diagnostic distance_choice(Span span, std::string const& given, std::string const& channel) {
-  return about({given},
+  return about({given, "distance"},
                error("E6006", span, fmt::format("`distance` cannot be `{}`", given),
                      guess_or(given, {"nmse", "rmse"},
                               fmt::format("choose `nmse`, `rmse` or an expression such as `abs(residual({}))`", channel))));
@@ -95,8 +95,8 @@ Diagnostic distance_reads(Span span, std::string const& name) {
 Diagnostic distance_of_one_channel(Span span, Names const& channels, std::string const& example) {
   if (channels.empty())
     return error("E6510", span, "this distance uses no channel", fmt::format("for example `abs(residual({}))`", example));
-  return error("E6510", span, fmt::format("this distance uses more than one channel: {}", quoted(channels)),
-               "write one expression for each channel, in a list: `(abs(residual(a)), abs(residual(b)))`");
+  return about(channels, error("E6510", span, fmt::format("this distance uses more than one channel: {}", quoted(channels)),
+                               "write one expression for each channel, in a list: `(abs(residual(a)), abs(residual(b)))`"));
 }
 
 Diagnostic distance_may_be_negative(Span span, std::string const& expression) {
@@ -113,7 +113,7 @@ Diagnostic distance_lacks_channel(Span span, std::string const& channel) {
 Diagnostic distances_of_two_kinds(Span span, std::string const& one, Unit const& unit, std::string const& other,
                                   Unit const& other_unit) {
   return about(
-      {one, other},
+      {one, other, "rmse"},
       error("E6513", span, fmt::format("`rmse` cannot add `{}` {} and `{}` {}", one, measure(unit), other, measure(other_unit)),
             "use `nmse`, which has no unit, or give one of them weight 0: `weights(" + other + " = 0)`"));
 }

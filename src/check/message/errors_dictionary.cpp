@@ -43,7 +43,7 @@ Diagnostic unknown_generator(ast::Name const& name, Names const& families) {
 }
 
 Diagnostic generator_arguments(ast::Name const& generator, std::string const& missing, std::string const& example) {
-  return about({generator.text},
+  return about({generator.text, missing},
                error("E6603", generator.span,
                      fmt::format("`{}` needs {}", generator.text, missing == "arguments" ? missing : "`" + missing + "`"),
                      fmt::format("for example `{}`", example)));
@@ -55,11 +55,13 @@ Diagnostic generator_number(Span span, std::string const& option, int most, std:
 }
 
 Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters) {
-  return about({text}, error("E6604", target,
-                             fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
-                                         parameters.size() == 1 ? "has" : "have"),
-                             "an unknown parameter must be a factor of a term: `m*y'' - x`; give the other parameters values: "
-                             "`parameter m [kg] = 1`"));
+  return also_about(
+      parameters,
+      about({text}, error("E6604", target,
+                          fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
+                                      parameters.size() == 1 ? "has" : "have"),
+                          "an unknown parameter must be a factor of a term: `m*y'' - x`; give the other parameters values: "
+                          "`parameter m [kg] = 1`")));
 }
 
 Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter) {
@@ -88,7 +90,7 @@ Diagnostic derivative_of_nothing(ast::Name const& state, int primes) {
 
 Diagnostic derivative_without_channel(ast::Name const& state, int primes) {
   return about(
-      {primed(state.text, primes)},
+      {primed(state.text, primes), state.text},
       error("E6607", state.span, fmt::format("`{}` has no channel here", primed(state.text, primes)),
             fmt::format("write `{} = CHANNEL`, or remove it: derivatives need no declaration", primed(state.text, primes))));
 }

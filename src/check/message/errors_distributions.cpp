@@ -53,14 +53,17 @@ Diagnostic argument_twice(Span second, Span first, std::string const& spelling, 
 }
 
 Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
-  return about({call.function.text},
-               error("E2105", call.span, fmt::format("`{}` needs {}", call.function.text, quoted(spellings, "or")),
-                     fmt::format("write for example `{} = ...`", spellings.front())));
+  return also_about(spellings,
+                    about({call.function.text},
+                          error("E2105", call.span, fmt::format("`{}` needs {}", call.function.text, quoted(spellings, "or")),
+                                fmt::format("write for example `{} = ...`", spellings.front()))));
 }
 
 Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings) {
-  return error("E2106", span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
-               fmt::format("write `{}(..., {} = ...)`", distribution, spellings.front()));
+  return also_about(
+      spellings,
+      about({distribution}, error("E2106", span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
+                                  fmt::format("write `{}(..., {} = ...)`", distribution, spellings.front()))));
 }
 
 Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature) {

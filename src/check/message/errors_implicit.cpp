@@ -1,14 +1,15 @@
 // The checker's wording about implicit and differential-algebraic models.
 #include <fmt/format.h>
 
-#include "check/message/errors.hpp"
+#include "check/message/error_words.hpp"
 
 namespace sysid::errors {
 
 Diagnostic explicit_solver(Span option, std::string const& solver, Span equation, std::string const& unknown) {
   Diagnostic result{Severity::error,   "E3004", fmt::format("`{}` needs equations that can be solved for `{}`", solver, unknown),
                     Label{option, {}}, {},      fmt::format("use `solver = ida`, or solve the equation for `{}` by hand", unknown)};
-  result.names = {unknown, solver};
+  result.names = with_bare(unknown);
+  result.names.push_back(solver);
   result.secondary.push_back({equation, fmt::format("not linear in `{}`", unknown)});
   return result;
 }
@@ -20,7 +21,7 @@ Diagnostic constraint_of_input(ast::Equation const& equation, std::string const&
           Label{equation.span, {}},
           {},
           fmt::format("use the acceleration as the input, or use `{}` in place of the state", input),
-          {input}};
+          with_bare(input)};
 }
 
 Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown) {
@@ -30,7 +31,7 @@ Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string cons
           Label{equation.span, {}},
           {},
           fmt::format("solve it for `{}` and write that as a definition: `let {} = ...`", unknown, unknown),
-          {unknown}};
+          with_bare(unknown)};
 }
 
 Diagnostic start_off_constraint(Span equation, Span initial) {

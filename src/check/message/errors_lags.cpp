@@ -16,14 +16,13 @@ Diagnostic lag_count(Span span) {
                "0 is the present sample, 1 the one before; `lag` takes one number, `lags` a range");
 }
 Diagnostic lags_out_of_place(ast::Call const& call) {
-  return error("E3103", call.span, "`lags` gives several values, but one is needed here",
-               "use it as the arguments of a function: `f(lags(y, 1..3))`; for one sample write `lag(y, 1)`");
+  return about({call.function.text},
+               error("E3103", call.span, "`lags` gives several values, but one is needed here",
+                     "use it as the arguments of a function: `f(lags(y, 1..3))`; for one sample write `lag(y, 1)`"));
 }
 Diagnostic primes_in_discrete_time(ast::Reference const& reference) {
-  return about({reference.name.text, std::string(static_cast<std::size_t>(reference.primes), '\'')},
-               error("E3104", reference.span,
-                     fmt::format("`{}{}`: there are no derivatives in discrete time", reference.name.text,
-                                 std::string(static_cast<std::size_t>(reference.primes), '\'')),
+  return about({reference.name.text, primed(reference)},
+               error("E3104", reference.span, fmt::format("`{}`: there are no derivatives in discrete time", primed(reference)),
                      fmt::format("write differences of samples: `{0} - lag({0}, 1)`; or remove `discrete`", reference.name.text)));
 }
 Diagnostic not_a_channel(Span span, std::string const& function, std::string const& name, Names const& channels) {
@@ -47,12 +46,14 @@ Diagnostic samples_in_differential_equation(ast::Call const& call) {
 }
 Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_states) {
   if (discrete)
-    return error("E3107", call.span, "`since_last` can be used only in continuous time", "write the difference: `y - lag(y, 1)`");
-  return error("E3107", call.span,
-               no_states ? "`since_last` needs consecutive rows, but this model has no states"
-                         : "`since_last` can be used in `observe` and `derive`, but not in an equation",
-               no_states ? "without dynamics the rows are independent: add a column with the change to the data"
-                         : "write the rate itself: `y'`");
+    return about({call.function.text}, error("E3107", call.span, "`since_last` can be used only in continuous time",
+                                             "write the difference: `y - lag(y, 1)`"));
+  return about({call.function.text},
+               error("E3107", call.span,
+                     no_states ? "`since_last` needs consecutive rows, but this model has no states"
+                               : "`since_last` can be used in `observe` and `derive`, but not in an equation",
+                     no_states ? "without dynamics the rows are independent: add a column with the change to the data"
+                               : "write the rate itself: `y'`"));
 }
 Diagnostic own_sample(Span span, std::string const& channel) {
   return about({channel}, error("E3108", span, fmt::format("channel `{}` is predicted from its own present sample", channel),

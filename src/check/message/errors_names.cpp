@@ -118,18 +118,20 @@ Diagnostic beyond_highest(ast::Reference const& reference, int order) {
 }
 
 Diagnostic second_input_derivative(ast::Reference const& reference) {
-  return about({primed(reference)}, error("E2008", reference.span,
-                                          fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
-                                          "declare the derivative as a separate input"));
+  return about(
+      {primed(reference), reference.name.text},
+      error("E2008", reference.span, fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
+            "declare the derivative as a separate input"));
 }
 
 Diagnostic not_a_number(Span span, std::string const& what) {
-  return error("E2009", span, fmt::format("{} cannot be used in an expression", what), "use numbers and names of quantities");
+  return about(names_in(what), error("E2009", span, fmt::format("{} cannot be used in an expression", what),
+                                     "use numbers and names of quantities"));
 }
 
 Diagnostic constant_needed(Span span, std::string const& what) {
-  return error("E2010", span, fmt::format("{} must be a number known before the run", what),
-               "use numbers, constants and functions of them only");
+  return about(names_in(what), error("E2010", span, fmt::format("{} must be a number known before the run", what),
+                                     "use numbers, constants and functions of them only"));
 }
 
 Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant, std::string const& whole) {
@@ -167,15 +169,17 @@ Diagnostic list_here(Span span) {
 }
 
 Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
-  return error("E2014", span, fmt::format("{} is {}, but this is {}", what, measure(wanted), measure(given)),
-               wanted.dimensionless() ? "remove the unit" : "correct the unit, or remove it");
+  return about(names_in(what), error("E2014", span, fmt::format("{} is {}, but this is {}", what, measure(wanted), measure(given)),
+                                     wanted.dimensionless() ? "remove the unit" : "correct the unit, or remove it"));
 }
 
 Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
-  return error("E4017", span,
-               fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, so they differ by a factor of 2 pi",
-                           what, measure(wanted), measure(given)),
-               fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted)));
+  return about(
+      names_in(what),
+      error("E4017", span,
+            fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, so they differ by a factor of 2 pi", what,
+                        measure(wanted), measure(given)),
+            fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted))));
 }
 
 }  // namespace sysid::errors

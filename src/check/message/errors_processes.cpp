@@ -33,8 +33,9 @@ Diagnostic not_a_process(ast::Name const& name) {
                      "an unknown function is a Gaussian process: `~ gp(squared_exponential(amplitude = s, length = l))`"));
 }
 Diagnostic one_covariance(Span span) {
-  return error("E3201", span, "`gp` takes one argument, its covariance",
-               "kernels are added and multiplied: `gp(matern52(amplitude = s, length = l) + constant(amplitude = s0))`");
+  return about({"gp"},
+               error("E3201", span, "`gp` takes one argument, its covariance",
+                     "kernels are added and multiplied: `gp(matern52(amplitude = s, length = l) + constant(amplitude = s0))`"));
 }
 Diagnostic not_a_covariance(Span span) {
   return error("E3202", span, "a covariance is a kernel, or a sum or product of kernels",
@@ -45,10 +46,13 @@ Diagnostic unknown_kernel(ast::Name const& name, Names const& known) {
                                   guess_or(kernel_synonyms, name.text, known, fmt::format("kernels: {}", quoted(known)))));
 }
 Diagnostic not_an_input_of_process(Span span, std::string const& given, std::string const& process, Names const& inputs) {
-  return error("E3204", span,
-               given.empty() ? "the first arguments of a kernel are the names of its inputs"
-                             : fmt::format("`{}` is not an input of `{}`", given, process),
-               guess_or(given, inputs, fmt::format("its inputs are {}; hyper-parameters are given by name", quoted(inputs))));
+  Names names{process};
+  if (!given.empty()) names.insert(names.begin(), given);
+  return about(
+      names, error("E3204", span,
+                   given.empty() ? "the first arguments of a kernel are the names of its inputs"
+                                 : fmt::format("`{}` is not an input of `{}`", given, process),
+                   guess_or(given, inputs, fmt::format("its inputs are {}; hyper-parameters are given by name", quoted(inputs)))));
 }
 Diagnostic kernel_input_twice(Span span, std::string const& input) {
   return about({input}, error("E3204", span, fmt::format("the kernel has the input `{}` twice", input), "list each input once"));
@@ -68,8 +72,9 @@ Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string 
   std::string const message =
       fmt::format("the {}{} must be {}", name, input.empty() ? "" : fmt::format(" of `{}`", input), measure(wanted));
   std::string const help = "a length-scale has the unit of its input, an amplitude that of the function's values";
-  return of_input ? conflict("E3206", span, measure(given), input_place, measure(*of_input), message, help)
-                  : error("E3206", span, message, help, measure(given));
+  Names const names = input.empty() ? Names{name} : Names{name, input};
+  return about(names, of_input ? conflict("E3206", span, measure(given), input_place, measure(*of_input), message, help)
+                               : error("E3206", span, message, help, measure(given)));
 }
 Diagnostic kernels_of_other_units(Span span, Unit const& left, Unit const& right) {
   return error("E3206", span,
@@ -100,21 +105,21 @@ Diagnostic process_in_differential_equation(Span span, std::string const& name) 
           "give the range in which it is needed, and a finite sum approximates it: `gp(..., within = (-0.1 [m], 0.1 [m]))`"));
 }
 Diagnostic expansion_range(Span span, std::size_t inputs) {
-  return error("E3231", span,
-               inputs == 1 ? std::string("`within` must be a range: a lower and an upper bound")
-                           : fmt::format("`within` must be a list of {} ranges, one for each input", inputs),
-               inputs == 1 ? "for example `within = (-0.1 [m], 0.1 [m])`"
-                           : "for example `within = ((-0.1 [m], 0.1 [m]), (-2 [m/s], 2 [m/s]))`");
+  return about({"within"}, error("E3231", span,
+                                 inputs == 1 ? std::string("`within` must be a range: a lower and an upper bound")
+                                             : fmt::format("`within` must be a list of {} ranges, one for each input", inputs),
+                                 inputs == 1 ? "for example `within = (-0.1 [m], 0.1 [m])`"
+                                             : "for example `within = ((-0.1 [m], 0.1 [m]), (-2 [m/s], 2 [m/s]))`"));
 }
 Diagnostic expansion_range_empty(Span span) {
   return error("E3231", span, "this range is empty", "write the lower bound first: `within = (-0.1 [m], 0.1 [m])`");
 }
 Diagnostic expansion_without_range(Span span) {
-  return error("E3231", span, "`terms` needs `within`: basis functions are defined over a range",
-               "give the range of the function: `within = (-0.1 [m], 0.1 [m])`");
+  return about({"terms", "within"}, error("E3231", span, "`terms` needs `within`: basis functions are defined over a range",
+                                          "give the range of the function: `within = (-0.1 [m], 0.1 [m])`"));
 }
 Diagnostic expansion_condition_outside(Span span, std::string const& input) {
-  return about({input},
+  return about({input, "zero_at", "flat_at"},
                error("E3231", span, fmt::format("a point of `zero_at` or `flat_at` lies outside this range of `{}`", input),
                      "widen the range, or remove the condition: the finite sum is defined within its range only"));
 }
@@ -137,7 +142,7 @@ Diagnostic expansion_by_likelihood(Span span, std::string const& model) {
 }
 Diagnostic expansion_by_optimum(Span span, std::string const& function, std::string const& parameter) {
   return about(
-      {parameter, function},
+      {parameter, function, "map"},
       error("E3235", span,
             fmt::format(
                 "`map` cannot estimate `{}` together with the function `{}` that it scales: the function would follow the noise",
@@ -145,9 +150,10 @@ Diagnostic expansion_by_optimum(Span span, std::string const& function, std::str
             fmt::format("give `{}` a value (`sysid compare` compares fits with different values), or fit with mh", parameter)));
 }
 Diagnostic expansion_terms(Span span, std::size_t inputs) {
-  return error(
-      "E3232", span, "`terms`, the number of basis functions along each input, must be a whole number above 0",
-      inputs == 1 ? "for example `terms = 16`" : "one number for all inputs, or a list with one for each: `terms = (8, 6)`");
+  return about(
+      {"terms"},
+      error("E3232", span, "`terms`, the number of basis functions along each input, must be a whole number above 0",
+            inputs == 1 ? "for example `terms = 16`" : "one number for all inputs, or a list with one for each: `terms = (8, 6)`"));
 }
 Diagnostic expansion_too_large(Span span, long most) {
   return error("E3232", span, fmt::format("the finite sum has more than {} coefficients", most),
@@ -262,7 +268,7 @@ Diagnostic condition_count(Span span, std::string const& name, std::string const
                      "give one for each input, `zero_at = (0, 0)`; several points are a list of such lists"));
 }
 Diagnostic condition_without_derivative(Span span, std::string const& kernel) {
-  return about({kernel},
+  return about({kernel, "flat_at"},
                error("E3226", span, fmt::format("`flat_at` sets a derivative to zero, but functions of `{}` have none", kernel),
                      "`matern32` has one, `matern52` two, `squared_exponential` all; `zero_at` needs none"));
 }

@@ -17,8 +17,8 @@ Diagnostic with(Diagnostic diagnostic, Span other, std::string label) {
 }  // namespace
 
 Diagnostic whole_number_needed(Span span, std::string const& what) {
-  return error("E2701", span, fmt::format("{} must be a constant whole number", what),
-               "use numbers and arguments of the model: `3`, `n`, `n - 1`");
+  return about(names_in(what), error("E2701", span, fmt::format("{} must be a constant whole number", what),
+                                     "use numbers and arguments of the model: `3`, `n`, `n - 1`"));
 }
 Diagnostic size_out_of_range(Span span, std::string const& name, long size, long most) {
   return about({name}, error("E2702", span, fmt::format("`{}` cannot have {} elements", name, size),
@@ -51,9 +51,10 @@ Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& lef
   return left_span == right_span ? result : with(std::move(result), right_span, right.text());
 }
 Diagnostic wrong_shape(Span span, std::string const& what, Shape const& given, Shape const& wanted) {
-  return error("E2705", span, fmt::format("{} is {}, but {} is needed", what, given.text(), wanted.text()),
-               wanted.rank == 0 ? "use one element, `q[1]`, or a sum, `sum(q)`; or declare the size after the name: `name(3)`"
-                                : "write a list in parentheses with as many items, or one number for all");
+  return about(names_in(what),
+               error("E2705", span, fmt::format("{} is {}, but {} is needed", what, given.text(), wanted.text()),
+                     wanted.rank == 0 ? "use one element, `q[1]`, or a sum, `sum(q)`; or declare the size after the name: `name(3)`"
+                                      : "write a list in parentheses with as many items, or one number for all"));
 }
 Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span other_span) {
   return with(error("E2706", span, "the items of this list have different shapes", "a matrix is a list of rows of one length",
@@ -74,8 +75,8 @@ Diagnostic index_count(Span span, std::string const& name, Shape const& shape, s
 }
 Diagnostic array_arguments(ast::Name const& function, std::size_t given, std::string const& usage) {
   if (function.text == "dot" && given == 1)
-    return error("E2708", function.span, "`dot` multiplies two vectors and is not a derivative",
-                 "a derivative is written with primes: `y'`, `y''`");
+    return about({function.text}, error("E2708", function.span, "`dot` multiplies two vectors and is not a derivative",
+                                        "a derivative is written with primes: `y'`, `y''`"));
   return about({function.text},
                error("E2708", function.span, fmt::format("`{}` does not take these arguments", function.text), usage));
 }
@@ -112,10 +113,11 @@ Diagnostic model_argument_twice(Span second, Span first, std::string const& name
               "first here");
 }
 Diagnostic input_of_part_unbound(Span span, std::string const& part, Names const& inputs, std::string const& model) {
-  return about({part},
-               error("E2806", span,
-                     fmt::format("part `{}` has no value for its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
-                     fmt::format("bind it: `{}({} = ...)`", model, inputs.front())));
+  return also_about(
+      inputs,
+      about({part}, error("E2806", span,
+                          fmt::format("part `{}` has no value for its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
+                          fmt::format("bind it: `{}({} = ...)`", model, inputs.front()))));
 }
 Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) {
   return with(

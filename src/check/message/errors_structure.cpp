@@ -24,30 +24,31 @@ Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) 
 }
 
 Diagnostic undetermined(Span declaration, std::string const& unknown) {
-  return about({unknown}, error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
-                                "change one of the equations: two of them are equivalent in the highest derivatives"));
+  return about(with_bare(unknown), error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
+                                         "change one of the equations: two of them are equivalent in the highest derivatives"));
 }
 
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {
   Names components;
   for (int k = 0; k < order; ++k) components.push_back(primed(state, k));
   return about(
-      {primed(reference)},
+      {primed(reference), state},
       error("E3006", reference.span, fmt::format("`{}` follows from the equations and takes no initial value", primed(reference)),
             fmt::format("`{}` is of order {}: give {}", state, order, quoted(components))));
 }
 
 Diagnostic initial_missing(Span declaration, Names const& components) {
   bool const one = components.size() == 1;
-  return about(
-      {components.front().substr(0, components.front().find('\''))},
-      error("E3007", declaration, fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
-            fmt::format("write `initial {} = 0`", fmt::join(components, " = 0, "))));
+  return also_about(components,
+                    about({components.front().substr(0, components.front().find('\''))},
+                          error("E3007", declaration,
+                                fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
+                                fmt::format("write `initial {} = 0`", fmt::join(components, " = 0, ")))));
 }
 
 Diagnostic initial_twice(Span second, Span first, std::string const& component) {
-  return about({component}, conflict("E3008", second, "again here", first, "first given here",
-                                     fmt::format("the initial value of `{}` is given twice", component), "keep one"));
+  return about(with_bare(component), conflict("E3008", second, "again here", first, "first given here",
+                                              fmt::format("the initial value of `{}` is given twice", component), "keep one"));
 }
 
 Diagnostic initial_moves(Span span) {
@@ -80,8 +81,8 @@ Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span f
 
 namespace {
 
-Diagnostic unused(Span declaration, std::string message, std::string help) {
-  Diagnostic result = error("E3019", declaration, std::move(message), std::move(help));
+Diagnostic unused(Span declaration, std::string const& name, std::string message, std::string help) {
+  Diagnostic result = about({name}, error("E3019", declaration, std::move(message), std::move(help)));
   result.severity = Severity::warning;
   return result;
 }
@@ -89,13 +90,13 @@ Diagnostic unused(Span declaration, std::string message, std::string help) {
 }  // namespace
 
 Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where) {
-  return unused(declaration, fmt::format("nothing in this {} uses the parameter `{}`", where, parameter),
+  return unused(declaration, parameter, fmt::format("nothing in this {} uses the parameter `{}`", where, parameter),
                 where == "dictionary" ? "use it as a factor of a term or in the target, or delete it"
                 : has_prior ? "use it in an equation, an observation or another prior; otherwise its posterior equals its prior"
                             : "use it in an equation, an observation or a prior, or delete it");
 }
 Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where) {
-  return unused(declaration, fmt::format("nothing in this {} uses the input `{}`", where, input),
+  return unused(declaration, input, fmt::format("nothing in this {} uses the input `{}`", where, input),
                 where == "dictionary"
                     ? "use it in the target or in a term: an input that acts but is left out remains in the residual"
                     : "use it in an equation or an observation, or delete it");

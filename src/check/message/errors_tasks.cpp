@@ -18,10 +18,10 @@ Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names co
 }
 
 Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::string const& kind, Names const& known) {
-  return about({name.text},
-               error("E6001", name.span, fmt::format("{} has no {} `{}`", owner, kind, name.text),
-                     guess_or(name.text, known, choose(known, kind))),
-               kind + " of " + owner);
+  return also_about(names_in(owner), about({name.text},
+                                           error("E6001", name.span, fmt::format("{} has no {} `{}`", owner, kind, name.text),
+                                                 guess_or(name.text, known, choose(known, kind))),
+                                           kind + " of " + owner));
 }
 
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
@@ -38,8 +38,8 @@ Diagnostic option_missing(ast::Task const& task, std::string const& option, std:
 }
 
 Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example) {
-  return about({option},
-               error("E6004", span, fmt::format("`{}` must be {}", option, wanted), fmt::format("for example `{}`", example)));
+  return also_about(names_in(wanted), about({option}, error("E6004", span, fmt::format("`{}` must be {}", option, wanted),
+                                                            fmt::format("for example `{}`", example))));
 }
 
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most) {
@@ -59,8 +59,10 @@ Diagnostic option_range_or_zero(Span span, std::string const& option, double giv
 }
 
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices) {
-  return about({option}, error("E6006", span, fmt::format("`{}` cannot be {}", option, given.empty() ? "this" : "`" + given + "`"),
-                               guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or")))));
+  Names names{option};
+  if (!given.empty()) names.push_back(given);
+  return about(names, error("E6006", span, fmt::format("`{}` cannot be {}", option, given.empty() ? "this" : "`" + given + "`"),
+                            guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or")))));
 }
 
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {
@@ -98,8 +100,8 @@ Diagnostic fixed_parameter(ast::Name const& name, Span declaration) {
 }
 
 Diagnostic value_missing(Span span, Names const& parameters) {
-  return error("E6011", span, fmt::format("a simulation needs a value for {}", quoted(parameters)),
-               fmt::format("write `values({} = ..., ...)`", parameters.front()));
+  return about(parameters, error("E6011", span, fmt::format("a simulation needs a value for {}", quoted(parameters)),
+                                 fmt::format("write `values({} = ..., ...)`", parameters.front())));
 }
 
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate) {

@@ -22,7 +22,8 @@ struct Typed {
   Kind kind = Kind::unknown;
   Unit unit{};  // when known
   Span span;
-  int turns = 0;  // powers of pi among the bare factors of a product, for what its unit counts (cycles or radians): see `settled`
+  int turns =
+      0;  // powers of pi among the bare factors of a product, for what its unit counts (cycles or radians): see `with_own_unit`
 };
 
 /// The same where its product ends: 2*pi has made radians of cycles, 1/(2*pi) cycles of radians.

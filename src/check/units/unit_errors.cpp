@@ -68,7 +68,10 @@ Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict) {
                             conflict.wanted == "-" ? "a pure number" : fmt::format("in [{}]", conflict.wanted), conflict.found);
       break;
   }
-  return at(Severity::error, code, conflict.primary, conflict.secondary, message, help);
+  Diagnostic result = at(Severity::error, code, conflict.primary, conflict.secondary, message, help);
+  for (std::string const& name : {occasion.what, occasion.of})
+    if (!name.empty()) result = errors::also_about(with_bare(name), std::move(result));
+  return result;
 }
 
 Diagnostic pure_argument(Label argument, std::string const& function, std::string help) {
@@ -154,6 +157,7 @@ Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string co
 
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function) {
   diagnostic.function = function;
+  diagnostic = also_about({function}, std::move(diagnostic));
   diagnostic.message = fmt::format("in the function `{}`: {}", function, diagnostic.message);
   diagnostic.secondary.insert(diagnostic.secondary.begin(), *diagnostic.primary);
   diagnostic.primary = Label{call, "called here"};

@@ -135,14 +135,14 @@ ProcessModel::ProcessModel(Model model, bool free_start, std::string const& meth
   parametric.derived.clear();
   remove_processes(parametric);
   std::vector<NodeId> outputs;
-  std::vector<std::vector<int>> arguments(model_.channels.size()), slopes(model_.channels.size());  // among white.derived
+  std::vector<std::vector<int>> arguments(model_.channels.size()), slopes(model_.channels.size());  // among parametric.derived
   auto const record = [&](NodeId value) {
     parametric.derived.push_back({{}, value, true});
     return static_cast<int>(parametric.derived.size()) - 1;
   };
   for (std::size_t c = 0; c < model_.channels.size(); ++c) {
     std::optional<gaussian_process::Covariance> covariance;
-    ProcessChannel channel{static_cast<int>(c), {*gaussian_process::find_kernel("constant"), {}}, {}, 0, {}, 0, {}, {}};
+    ProcessChannel process_channel{static_cast<int>(c), {*gaussian_process::find_kernel("constant"), {}}, {}, 0, {}, 0, {}, {}};
     for (Process const& process : model_.processes) {
       if (process.channel != static_cast<int>(c)) continue;
       auto own = covariance_of(process, static_cast<int>(arguments[c].size()));
@@ -150,28 +150,28 @@ ProcessModel::ProcessModel(Model model, bool free_start, std::string const& meth
       for (NodeId const argument : process.arguments) arguments[c].push_back(record(argument));
       for (KernelUse const& kernel : process.kernels)
         for (NodeId const hyper_parameter : kernel.hyper_parameters) {
-          channel.hyper_parameters.push_back(static_cast<int>(outputs.size()));
+          process_channel.hyper_parameters.push_back(static_cast<int>(outputs.size()));
           outputs.push_back(hyper_parameter);
         }
     }
     if (!covariance) throw InternalError("a channel without a process");
-    channel.covariance = std::move(*covariance);
-    Channel& of_parametric = parametric.channels[c];
-    NodeId const centre = centre_of(graph, of_parametric);
-    for (NodeId const argument : of_parametric.noise.arguments)
+    process_channel.covariance = std::move(*covariance);
+    Channel& channel = parametric.channels[c];
+    NodeId const centre = centre_of(graph, channel);
+    for (NodeId const argument : channel.noise.arguments)
       if (argument != centre) {
-        channel.noise_sd = static_cast<int>(outputs.size());
+        process_channel.noise_sd = static_cast<int>(outputs.size());
         outputs.push_back(argument);
       }
     for (int const p : coefficients[c]) {
       Parameter& fixed = reduced_.parameters[static_cast<std::size_t>(p)];
       auto const number = [&](std::size_t i) { return graph.constant_value(fixed.prior->arguments[i]).value(); };
-      channel.coefficients.push_back({p, number(0), number(1)});
-      slopes[c].push_back(record(graph.differentiate(centre_of(graph, of_parametric), graph.leaf(LeafKind::parameter, p))));
+      process_channel.coefficients.push_back({p, number(0), number(1)});
+      slopes[c].push_back(record(graph.differentiate(centre_of(graph, channel), graph.leaf(LeafKind::parameter, p))));
       fixed.value = fixed.prior->arguments[0];
       fixed.prior.reset();
     }
-    channels_.push_back(std::move(channel));
+    channels_.push_back(std::move(process_channel));
   }
   std::erase_if(reduced_.sampling_order,
                 [&](int p) { return !reduced_.parameters[static_cast<std::size_t>(p)].prior.has_value(); });

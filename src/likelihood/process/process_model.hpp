@@ -27,7 +27,7 @@ struct ProcessChannel {
   std::vector<int> hyper_parameters;        // outputs of ProcessModel::parameters_of_covariance, in the covariance's order
   int noise_sd = 0;                         // one more
   std::vector<MarginalCoefficient> coefficients;
-  // Rows among the records of the white model's trajectory program.
+  // Rows among the records of the parametric model's trajectory program.
   int centre = 0;
   std::vector<int> arguments;  // of the processes
   std::vector<int> slopes;     // dF/d(coefficient)

@@ -1,4 +1,4 @@
-// Records of the white model's trajectory program, as matrices.
+// Records of the parametric model's trajectory program, as matrices.
 #include "likelihood/process/process_rows.hpp"
 
 #include "simulate/thread_pool.hpp"

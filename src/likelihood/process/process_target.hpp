@@ -35,8 +35,8 @@ class ProcessTarget : public Target {
     space_->log_prior(theta, out, jacobian);
   }
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override;
-  /// By the chain rule: what the covariance reads by its analytic gradient, what the parametric part reads by differences of the
-  /// white part alone; only parameters that inputs of a process read need the likelihood itself at two more points each.
+  /// By the chain rule: what the covariance reads by its analytic gradient, what the parametric part reads by differences of
+  /// that part alone; only parameters that inputs of a process read need the likelihood itself at two more points each.
   bool has_gradient() const override { return true; }
   double log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const override;
   /// One row, sqrt(2 (C - log likelihood)): what is fitted here is no sum of squares.

@@ -1,4 +1,4 @@
-// The work of a session at the prompt: a file of the language, statement by statement, as they were typed or loaded.
+// The workspace of a session at the prompt: a file of the language, statement by statement, as they were typed or loaded.
 #pragma once
 #include <filesystem>
 #include <set>

@@ -164,7 +164,7 @@ constexpr FormatRow formats[] = {
 FormatRow const& row(FigureFormat format) { return formats[static_cast<std::size_t>(format)]; }
 
 /// Without the feeds between plots, blanks at the ends of lines, and lines without anything above and below.
-std::string trimmed(std::string_view text) {
+std::string without_blank_lines(std::string_view text) {
   std::string out;
   while (!text.empty()) {
     std::size_t const end = std::min(text.find('\n'), text.size());
@@ -205,7 +205,7 @@ std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format,
     if (run_gnuplot({"gnuplot", "-d", "-e", variables, (folder.path / "figure.gnuplot").string()}, folder.path) != 0)
       return std::nullopt;
     std::string picture = read_file(folder.path / "picture");
-    if (format == FigureFormat::text) return trimmed(picture);
+    if (format == FigureFormat::text) return without_blank_lines(picture);
     // A terminal that gnuplot does not have makes no error of its own.
     if (format == FigureFormat::png && !picture.starts_with("\x89PNG")) return std::nullopt;
     if (format == FigureFormat::pdf && !picture.starts_with("%PDF")) return std::nullopt;

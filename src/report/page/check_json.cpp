@@ -140,7 +140,7 @@ void add_preflight(PreflightPage const& preflight, Json& out) {
   out["left_out"] = preflight.not_examined;
 }
 
-// A fit has its outlook in the object of the task, a selection one for each candidate in `candidates`.
+// A fit has its preflight page in the object of the task, a selection one for each candidate in `candidates`.
 Json task_object(TaskPage const& task) {
   Json data = Json::array(), candidates = Json::array();
   for (CoveragePage const& coverage : task.coverage) data.push_back(coverage_object(coverage));

@@ -93,8 +93,8 @@ std::string terminal_summary(Report const& report) {
   facts += evidence_line(report) + ledger_text(report);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report)) {
-    std::string const judged = verdict_of(report.findings).text;
-    std::string const list = judged.substr(std::min(judged.find('\n'), judged.size()));
+    std::string const verdict = verdict_of(report.findings).text;
+    std::string const list = verdict.substr(std::min(verdict.find('\n'), verdict.size()));
     out += fmt::format("\nverdict: {}{}\n", verdict_headline(report), list);
   }
   return out;
