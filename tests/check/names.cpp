@@ -1,14 +1,13 @@
 // Rules over messages go by the names that a message gives, so it gives those that its sentence quotes.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "checking.hpp"
+#include "core/system/files.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;
@@ -17,13 +16,6 @@ using namespace sysid::test;
 namespace {
 
 std::filesystem::path const examples = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/errors";
-
-std::string content(std::filesystem::path const& path) {
-  std::ifstream const in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 bool is_name(std::string_view word) {
   return !word.empty() && words::begins_name(word.front()) && std::all_of(word.begin(), word.end(), words::continues_name);
@@ -73,7 +65,7 @@ TEST_CASE("a message gives the names of the text that its sentence quotes") {
   int checked_names = 0;
   for (auto const& entry : std::filesystem::directory_iterator(examples)) {
     if (entry.path().extension() != ".sysid") continue;
-    std::string const text = content(entry.path());
+    std::string const text = read_file(entry.path());
     std::set<std::string> const written = names_in(text);
     Source source(entry.path().filename().string(), text);
     Diagnostics diagnostics;

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "discovery/discovered.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/session/session.hpp"
+#include "discovery/discovered.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "discovery/coefficients.hpp"
 #include "discovery/discovered.hpp"
 
 using namespace sysid;
+using namespace sysid::test;
 using json = nlohmann::json;
 
 namespace {
@@ -19,17 +21,6 @@ struct Judged : Discovered {
   json const& first() const { return judged().at("structures").at(0); }
   bool found(std::string const& code) const { return result.out.find("[" + code + "]") != std::string::npos; }
 };
-
-void check_coefficients(json const& structure, std::vector<double> const& truth, double within) {
-  REQUIRE(structure.at("coefficients").size() == truth.size());
-  for (std::size_t j = 0; j < truth.size(); ++j) {
-    json const& each = structure.at("coefficients").at(j);
-    CAPTURE(each.at("term").get<std::string>());
-    double const value = each.at("value"), sd = each.at("sd");
-    CHECK(std::abs(value - truth[j]) < 4 * sd);
-    CHECK(std::abs(value / truth[j] - 1) < within);
-  }
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "discovery/coefficients.hpp"
 #include "discovery/discovering.hpp"
 
 using namespace sysid;
@@ -23,17 +24,6 @@ DiscoveryAnswer run_validation(std::string const& text, Made const& record) {
 
 json const& judged(DiscoveryAnswer const& answer) { return answer.summary.at("discovery").at("judged"); }
 json const& first(DiscoveryAnswer const& answer) { return judged(answer).at("structures").at(0); }
-
-void check_coefficients(json const& structure, std::vector<double> const& truth, double within) {
-  REQUIRE(structure.at("coefficients").size() == truth.size());
-  for (std::size_t j = 0; j < truth.size(); ++j) {
-    json const& each = structure.at("coefficients").at(j);
-    CAPTURE(each.at("term").get<std::string>());
-    double const value = each.at("value"), sd = each.at("sd");
-    CHECK(std::abs(value - truth[j]) < 4 * sd);
-    CHECK(std::abs(value / truth[j] - 1) < within);
-  }
-}
 
 double softening_then_hardening(double force, double y, double v) {
   return force - 0.8 * v - 25 * y + 60 * y * y * y - 45 * y * y * y * y * y;

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 
+#include "core/system/files.hpp"
 #include "parsing.hpp"
 
 using namespace sysid;
@@ -15,13 +15,6 @@ using test::messages;
 namespace {
 
 std::filesystem::path const examples = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/errors";
-
-std::string content(std::filesystem::path const& path) {
-  std::ifstream const in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 std::vector<std::filesystem::path> syntax_examples() {
   std::vector<std::filesystem::path> out;
@@ -42,7 +35,7 @@ std::size_t count(std::string const& text, std::string const& what) {
 TEST_CASE("each bad example is answered by the expected messages") {
   bool const bless = std::getenv("SYSID_BLESS") != nullptr;
   for (std::filesystem::path const& path : syntax_examples()) {
-    Source const source(path.filename().string(), content(path));
+    Source const source(path.filename().string(), read_file(path));
     Diagnostics diagnostics;
     CAPTURE(path.string());
     CHECK_FALSE(parse(source, diagnostics).has_value());
@@ -50,7 +43,7 @@ TEST_CASE("each bad example is answered by the expected messages") {
     std::filesystem::path expected = path;
     expected.replace_extension(".expected");
     if (bless) std::ofstream(expected, std::ios::binary) << shown;
-    CHECK(shown == content(expected));
+    CHECK(shown == read_file(expected));
   }
 }
 
@@ -60,11 +53,12 @@ TEST_CASE("an example shows its own code first, and every code has an example") 
     std::string const code = path.filename().string().substr(0, 5);
     codes.insert(code);
     if (code != "E11_s")
-      CHECK_MESSAGE(content(path.string().substr(0, path.string().size() - 6) + ".expected").find(code) != std::string::npos, path);
+      CHECK_MESSAGE(read_file(path.string().substr(0, path.string().size() - 6) + ".expected").find(code) != std::string::npos,
+                    path);
   }
   codes.insert("E1123");  // its example would hold thousands of operators; tested below
   codes.insert("E1126");  // a million bytes
-  std::string const wording = content(std::filesystem::path(SYSID_SOURCE_DIR) / "grammar/errors.cpp");
+  std::string const wording = read_file(std::filesystem::path(SYSID_SOURCE_DIR) / "grammar/errors.cpp");
   for (std::size_t at = wording.find("\"E1"); at != std::string::npos; at = wording.find("\"E1", at + 1))
     CHECK_MESSAGE(codes.contains(wording.substr(at + 1, 5)), wording.substr(at + 1, 5));
 }
