@@ -6,7 +6,7 @@
 namespace sysid {
 namespace {
 
-constexpr int vectors_at_once = 64;
+constexpr int densities_at_once = 64;
 
 }  // namespace
 
@@ -26,8 +26,8 @@ PointwiseLikelihood::PointwiseLikelihood(std::shared_ptr<CompiledModel const> co
 std::vector<std::vector<std::vector<double>>> PointwiseLikelihood::run(ConstLanes parameters) const {
   std::vector<std::vector<std::vector<double>>> values(samples_.size());
   int const channels = static_cast<int>(samples_.size()), last = simulator_.schedule().last_summed();
-  for (int first = 0; first < parameters.width(); first += vectors_at_once) {
-    int const width = std::min(vectors_at_once, parameters.width() - first);
+  for (int first = 0; first < parameters.width(); first += densities_at_once) {
+    int const width = std::min(densities_at_once, parameters.width() - first);
     LaneArray block(compiled_->parameter_rows(), width);
     for (int r = 0; r < parameters.rows(); ++r)
       for (int w = 0; w < width; ++w) block(r, w) = parameters(r, first + w);

@@ -9,7 +9,7 @@
 namespace sysid {
 namespace {
 
-constexpr int vectors_at_once = 64;
+constexpr int trajectories_at_once = 64;
 
 using RecordKind = CompiledModel::Record::Kind;
 
@@ -107,8 +107,8 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
 Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) const {
   Result result;
   int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
-  for (int first = 0; first < parameters.width(); first += vectors_at_once) {
-    int const width = std::min(vectors_at_once, parameters.width() - first);
+  for (int first = 0; first < parameters.width(); first += trajectories_at_once) {
+    int const width = std::min(trajectories_at_once, parameters.width() - first);
     LaneArray block(parameters.rows() + states, width);
     for (int r = 0; r < parameters.rows(); ++r)
       for (int w = 0; w < width; ++w) block(r, w) = parameters(r, first + w);
@@ -148,8 +148,8 @@ Trajectory::Result Trajectory::run_redrawn(ConstLanes parameters, int trajectori
     for (int w = 0; w < parameters.width(); ++w) all(r, w) = parameters(r, w);
   if (start_) start_->estimate(all);
   Result result;
-  for (int first = 0; first < trajectories; first += vectors_at_once) {
-    int const width = std::min(vectors_at_once, trajectories - first);
+  for (int first = 0; first < trajectories; first += trajectories_at_once) {
+    int const width = std::min(trajectories_at_once, trajectories - first);
     LaneArray records(samples() * static_cast<int>(compiled_->records.size()), width);
     std::vector<Outcome> outcome(static_cast<std::size_t>(width));
     auto const redraw = [&](int sample, int lane, Lanes drawn) {

@@ -14,7 +14,7 @@ std::unique_ptr<Kernel> make_nearest_neighbours(Plan const&, ConstLanes, std::sp
 
 namespace {
 
-constexpr KernelRow rows[] = {
+constexpr KernelRow kernel_rows[] = {
     {"gaussian", 2, make_gaussian},
     {"component_gaussian", 2, make_component_gaussian},
     {"uniform", 1, make_uniform},
@@ -23,11 +23,12 @@ constexpr KernelRow rows[] = {
 
 }  // namespace
 
-std::span<KernelRow const> kernels() { return rows; }
+std::span<KernelRow const> kernels() { return kernel_rows; }
 
 KernelRow const* find_kernel(std::string_view name) {
-  auto const row = std::find_if(std::begin(rows), std::end(rows), [&](KernelRow const& each) { return each.name == name; });
-  return row == std::end(rows) ? nullptr : row;
+  auto const row =
+      std::find_if(std::begin(kernel_rows), std::end(kernel_rows), [&](KernelRow const& each) { return each.name == name; });
+  return row == std::end(kernel_rows) ? nullptr : row;
 }
 
 Width width_of(ConstLanes at, std::span<double const> weight, Width const& last) {
