@@ -68,6 +68,7 @@ Report duffing(int draws) {
   report.formulas = formulas(report.equations);
   report.model_text = "model duffing \"Duffing's oscillator\" {\n  m*y'' + c*y' + k*y + k3*y^3 = x   # <as printed>\n}\n";
   report.resolved_text = report.model_text + "posterior = fit duffing to bench.train with mh(samples = 25000)\n";
+  report.resolved_files = {{"resolved.sysid", report.resolved_text}};
   report.seed = 1;
   report.draws.names = {"m", "c", "k", "k3", "beta"};
   report.draws.units = {"kg", "N s/m", "N/m", "N/m^3", "1/m^2"};

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/made_from.hpp"
+#include "app/session/resolved.hpp"
 #include "app/session/results.hpp"
 #include "app/session/task_rows.hpp"
 #include "core/system/digest.hpp"
@@ -176,6 +177,7 @@ std::vector<PriorInfo> declared_priors(Session const& session, int model_index) 
 void keep_result(Session& session, Task const& task, Report& report) {
   report.formulas = formulas(report.equations);
   report.fixed = fixed_parameters(report);
+  if (!report.resolved_text.empty()) report.resolved_files = resolved_files(session, task, report.resolved_text);
   std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
   session.out << terminal_summary(report);
   if (!undrawn.empty()) session.notices << fmt::format("{}: {}\n", task.name, undrawn_words(undrawn));

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
 #include <set>
 
 #include "core/text/number.hpp"
@@ -114,6 +116,58 @@ std::string resolved_discover(Session const& session, Task const& task, Discover
       task.name, without_tasks(session), task.name, dictionary.name, data_names(session.file, what.experiments), selector,
       noise.empty() ? "" : fmt::format("noise({}), ", noise), what.top, what.candidates ? "yes" : "no", what.refit ? "yes" : "no",
       seed);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// How the file at `path` is called from `folder`, which need not be there yet.
+std::string path_from(fs::path const& folder, fs::path const& path) {
+  return fs::proximate(fs::weakly_canonical(fs::absolute(path)), fs::weakly_canonical(fs::absolute(folder))).generic_string();
+}
+
+// The name of the module of each file that the source took in from beside the user's, by the number of the file.
+std::map<std::string, int> modules_beside(Source const& source) {
+  std::map<std::string, int> found;
+  std::string const folder = fs::path(source.name()).parent_path().string();
+  for (int f = 1; f < source.files(); ++f)
+    if (fs::path const path = source.name(f); path.parent_path().string() == folder && fs::exists(path))
+      found.emplace(path.stem().string(), f);
+  return found;
+}
+
+std::string resolved_module(std::string const& name) { return "resolved_" + name; }
+
+// A text of the language with data named from `folder`, and modules by the names that they have there.
+std::string moved(std::string const& text, Session const& session, fs::path const& folder,
+                  std::map<std::string, int> const& beside) {
+  Diagnostics ignored;
+  auto tree = parse(Source(session.source.name(), text), ignored);
+  if (!tree) throw InternalError("a resolved file does not parse");
+  for (ast::Item& item : tree->items) {
+    if (auto* use = std::get_if<ast::Use>(&item); use != nullptr && beside.contains(use->module.text))
+      use->module.text = resolved_module(use->module.text);
+    if (auto* data = std::get_if<ast::Data>(&item))
+      for (ast::DataStatement& statement : data->statements)
+        if (auto* file = std::get_if<ast::DataFile>(&statement))
+          if (fs::path const path = file->path.value; path.is_relative())
+            file->path.value = path_from(folder, session.folder() / path);
+  }
+  return unparse(*tree);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> resolved_files(Session const& session, Task const& task,
+                                                                std::string const& resolved) {
+  fs::path const folder = session.result_folder(task);
+  std::map<std::string, int> const beside = modules_beside(session.source);
+  std::string const head = fmt::format("# every setting of `{}` spelt out; data are named from this folder\n", task.name);
+  std::vector<std::pair<std::string, std::string>> files = {{"resolved.sysid", head + moved(resolved, session, folder, beside)}};
+  for (auto const& [name, file] : beside)
+    files.emplace_back(resolved_module(name) + ".sysid", moved(std::string(session.source.text(file)), session, folder, beside));
+  return files;
 }
 
 }  // namespace sysid

@@ -39,7 +39,7 @@ bool is_result_file(std::string const& name, std::string const& task) {
          name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
          name == "structures.csv" || name == "refit.csv" || name == "populations.csv" || between("draws_", ".csv") ||
          between("function_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") ||
-         between("polished_", ".csv");
+         between("polished_", ".csv") || between("resolved_", ".sysid");
 }
 
 bool is_figure_file(std::string const& name) {
@@ -99,7 +99,7 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
   write_file(folder / "report.html", report_html(report, drawn));
   write_file(folder / "report.cbor", record_bytes(report));
-  if (!report.resolved_text.empty()) write_file(folder / "resolved.sysid", report.resolved_text);
+  for (auto const& [name, content] : report.resolved_files) write_file(folder / name, content);
   write_file(folder / "timing.json", timing_json(report));
   write_file(folder / "summary.json", summary_json(report));
   return undrawn;
