@@ -225,6 +225,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedStructure, terms, equations, of_regr
                                    probability, residual_over_noise, draws, bounded, follows, coefficients, channels)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidationReport, structures, segments, shortest, longest, whole, step, horizon, horizon_rows,
                                    window_rows, held_out, held_out_seen, solver)
+void to_json(json& out, TermFate const& fate) { out = word(fate); }
+void from_json(json const& stored, TermFate& fate) {
+  auto const read = term_fate(stored.get<std::string>());
+  if (!read) throw json::other_error::create(501, "a fate of a term that there is not", &stored);
+  fate = *read;
+}
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredTerm, text, unit, name, fate, kept, coefficient, sd, measure, mean, mean_sd,
                                    contribution, inflation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredSupport, terms, probability, log_evidence)
