@@ -68,11 +68,14 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
     return about({name.text},
                  error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`"),
                  "function");
-  return about({name.text},
-               error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
-                     guess_or(function_synonyms, name.text, known,
-                              "define it: `function f(a, b) = ...`; built-in ones: sysid list functions")),
-               "function");
+  auto const help = [&](std::string const& list) {
+    return guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in ones: " + list);
+  };
+  Diagnostic result = about(
+      {name.text}, error("E2003", name.span, fmt::format("there is no function `{}`", name.text), help("sysid list functions")),
+      "function");
+  result.prompt_help = help("`list functions`");
+  return result;
 }
 
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {

@@ -146,10 +146,13 @@ Diagnostic process_of_part(Span span, std::string const& part, Span declaration)
 }
 
 Diagnostic module_not_found(ast::Name const& module, std::string const& folder, Names const& known) {
-  return about({module.text}, error("E2901", module.span,
-                                    fmt::format("there is no `{}.sysid` in {} and no module `{}` in the standard library",
-                                                module.text, folder, module.text),
-                                    guess_or(module.text, known, "`sysid list modules` lists the standard library")));
+  Diagnostic result =
+      about({module.text}, error("E2901", module.span,
+                                 fmt::format("there is no `{}.sysid` in {} and no module `{}` in the standard library", module.text,
+                                             folder, module.text),
+                                 guess_or(module.text, known, "`sysid list modules` lists the standard library")));
+  result.prompt_help = guess_or(module.text, known, "`list modules` lists the standard library");
+  return result;
 }
 Diagnostic module_cycle(Span span, Names const& loop) {
   return error("E2902", span, fmt::format("this module uses itself: {}", fmt::join(loop, " -> ")),
