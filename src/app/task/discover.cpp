@@ -154,8 +154,7 @@ class Discover {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
-    std::string const verdict = verdict_of(findings).text;
-    return terms + "; " + verdict.substr(0, verdict.find('\n'));
+    return terms + "; " + verdict_of(findings).headline;
   }
 
   bool given(std::size_t channel) const { return !what_.noise.empty() && what_.noise[channel]; }

@@ -41,6 +41,8 @@ Span own_name(ast::Item const& item) {
 
 }  // namespace
 
+std::string title_of(ItemKind kind, std::string_view name) { return std::string(word_of(kind)) + " " + std::string(name); }
+
 std::string_view word_of(ItemKind kind) {
   switch (kind) {
     case ItemKind::use:

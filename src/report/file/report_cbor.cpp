@@ -262,9 +262,11 @@ std::uint32_t checksum(std::vector<std::uint8_t> const& bytes) {
 }
 
 UserError unusable(std::filesystem::path const& path, std::string const& why) {
-  return UserError(
-      {Severity::error, "", fmt::format("`{}` {}", path.string(), why), std::nullopt, {}, "run the task again with --force"});
+  return UserError(result_error("", fmt::format("`{}` {}", path.string(), why), run_again()));
 }
+
+/// Records of before have the findings below the headline.
+std::string headline_alone(std::string const& stored) { return stored.substr(0, stored.find('\n')); }
 
 }  // namespace
 
@@ -284,7 +286,9 @@ Report read_record(std::string const& bytes, std::filesystem::path const& path) 
       stored.value("crc32", std::uint32_t{0}) != checksum(stored["report"].get_binary()))
     throw unusable(path, "is damaged");
   try {
-    return json::from_cbor(stored["report"].get_binary()).get<Report>();
+    Report report = json::from_cbor(stored["report"].get_binary()).get<Report>();
+    report.verdict = headline_alone(report.verdict);
+    return report;
   } catch (json::exception const&) {
     throw unusable(path, other);
   }
