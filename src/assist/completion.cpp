@@ -156,9 +156,10 @@ class Completer : private Offer {
     keyword("with");
   }
   void subjects(std::string_view verb) {
-    if (verb == "predict") return own(SymbolKind::task);
-    if (verb == "discover") return own(SymbolKind::dictionary);
-    if (verb == "select") own(SymbolKind::candidates);
+    auto const kind = words::task_kind(verb);
+    if (kind == TaskKind::predict) return own(SymbolKind::task);
+    if (kind == TaskKind::discover) return own(SymbolKind::dictionary);
+    if (kind == TaskKind::select) own(SymbolKind::candidates);
     of_kind(SymbolKind::model);
   }
 
@@ -167,10 +168,7 @@ class Completer : private Offer {
     auto const& tokens = place().before;
     if (place().follows("with") || place().follows(",")) {
       vocabulary(options_of(verb), CompletionKind::setting);
-      return vocabulary(verb == "select"     ? WordKind::selecting
-                        : verb == "discover" ? WordKind::discovering
-                                             : WordKind::fitting,
-                        CompletionKind::function);
+      return vocabulary(backends_of(verb), CompletionKind::function);
     }
     if (place().follows("input")) return of_subject(SymbolKind::input);
     if (!place().follows("=")) return;
@@ -191,7 +189,7 @@ class Completer : private Offer {
       return;
     }
     settings(inner.callee);
-    if (empty() && verb == "select") functions();
+    if (empty() && words::task_kind(verb) == TaskKind::select) functions();
   }
 };
 

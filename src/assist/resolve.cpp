@@ -13,6 +13,8 @@
 namespace sysid::assist {
 namespace {
 
+bool is_a(ast::Task const& task, TaskKind kind) { return words::task_kind(task.verb.text) == kind; }
+
 /// One file: what it declares at the top.
 struct FileNames {
   ast::File const* tree = nullptr;
@@ -138,29 +140,29 @@ class Resolver {
   /// The models or the dictionary that a task is about.
   Scopes subject_of(ast::Task const& task, int depth = 0) {
     std::string const& name = task.subject.text;
-    if (task.verb.text == "predict") {
+    if (is_a(task, TaskKind::predict)) {
       auto const fit = tasks_.find(name);
       if (fit == tasks_.end() || fit->second.first == &task || depth > 1) return {};
       return subject_of(*fit->second.first, depth + 1);
     }
-    if (task.verb.text == "discover") {
+    if (is_a(task, TaskKind::discover)) {
       auto const dictionary = dictionaries_.find(name);
       return dictionary == dictionaries_.end() ? Scopes() : Scopes{&names_.dictionaries.at(dictionary->second)};
     }
-    if (auto const set = candidates_.find(name); task.verb.text == "select" && set != candidates_.end())
+    if (auto const set = candidates_.find(name); is_a(task, TaskKind::select) && set != candidates_.end())
       return scopes_of_candidates_[set->second.first];
     ast::Model const* model = model_of(name);
     return model == nullptr ? Scopes() : Scopes{&names_.models.at(model)};
   }
 
   void resolve(ast::Task const& task) {
-    if (task.verb.text == "predict") {
+    if (is_a(task, TaskKind::predict)) {
       if (auto const fit = tasks_.find(task.subject.text); fit != tasks_.end())
         table_.mention(task.subject.span, fit->second.second);
-    } else if (task.verb.text == "discover") {
+    } else if (is_a(task, TaskKind::discover)) {
       if (auto const dictionary = dictionaries_.find(task.subject.text); dictionary != dictionaries_.end())
         table_.mention(task.subject.span, names_.dictionaries.at(dictionary->second).symbol);
-    } else if (auto const set = candidates_.find(task.subject.text); task.verb.text == "select" && set != candidates_.end()) {
+    } else if (auto const set = candidates_.find(task.subject.text); is_a(task, TaskKind::select) && set != candidates_.end()) {
       table_.mention(task.subject.span, set->second.second);
     } else {
       mention_model(task.subject, task.arguments);
@@ -234,7 +236,7 @@ class Resolver {
     if (file == std::string::npos || file == 0) return false;
     std::size_t const folder = text.rfind('/', file - 1) == std::string::npos ? 0 : text.rfind('/', file - 1) + 1;
     auto const task = tasks_.find(text.substr(folder, file - folder));
-    if (task == tasks_.end() || task->second.first->verb.text != "simulate" || !task->second.first->name) return false;
+    if (task == tasks_.end() || !is_a(*task->second.first, TaskKind::simulate) || !task->second.first->name) return false;
     auto const mention = [&](std::size_t begin, std::size_t length) {
       std::uint32_t const at = path.span.begin + 1 + static_cast<std::uint32_t>(begin);
       table_.mention({at, at + static_cast<std::uint32_t>(length)}, task->second.second);

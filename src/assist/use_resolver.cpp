@@ -6,6 +6,7 @@
 #include <set>
 
 #include "check/expression/option_reader.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid::assist {
 namespace {
@@ -387,9 +388,7 @@ void UseResolver::option(ast::Option const& option, ast::Task const& task, Scope
       if (auto const* fit = std::get_if<ast::Reference>(&argument.value.node))
         if (auto const known = tasks.find(fit->name.text); known != tasks.end()) table_.mention(fit->name.span, known->second);
   if (option.key) return value(option.value, task.verb.text, key, place);
-  WordKind const kind = task.verb.text == "select"     ? WordKind::selecting
-                        : task.verb.text == "discover" ? WordKind::discovering
-                                                       : WordKind::fitting;
+  WordKind const kind = backends_of(task.verb.text);
   if (find_word(kind, key) != nullptr) {
     if (call != nullptr) return word_call(*call, kind, place);
     return word(head, *find_word(kind, key));

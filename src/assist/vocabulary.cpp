@@ -20,6 +20,7 @@
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
 #include "solver/solver.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid::assist {
 namespace {
@@ -178,6 +179,11 @@ std::vector<Word> settings_of(std::string_view owner) {
       all.push_back({WordKind::setting, "rows", "rows = 50", "number of rows used to estimate the initial state"});
   }
   return all;
+}
+
+WordKind backends_of(std::string_view verb) {
+  auto const kind = words::task_kind(verb);
+  return kind == TaskKind::select ? WordKind::selecting : kind == TaskKind::discover ? WordKind::discovering : WordKind::fitting;
 }
 
 std::vector<Word> options_of(std::string_view verb) {

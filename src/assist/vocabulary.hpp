@@ -38,6 +38,8 @@ std::vector<Word> const& words_of(WordKind kind);
 std::vector<Word> settings_of(std::string_view owner);
 /// What may stand behind `with` in a task, but for back ends.
 std::vector<Word> options_of(std::string_view verb);
+/// The back ends that a task of this verb may name.
+WordKind backends_of(std::string_view verb);
 /// Values of an option or setting that are words: of `start`, `prediction`, `hold`, of a setting with choices or flags.
 std::vector<Word> choices_of(std::string_view owner, std::string_view setting);
 

@@ -100,7 +100,7 @@ std::string determined_combination(NullDirection const& direction, Words paramet
   return fmt::format("{} {} {}{}", left, v > 0 ? "+" : "-", equal(size, 1) ? "" : fmt::format("{:.4g}*", size), right);
 }
 
-std::string words(NullDirection const& direction, Words parameters, std::string const& output) {
+std::string direction_words(NullDirection const& direction, Words parameters, std::string const& output) {
   switch (direction.kind) {
     case NullDirection::Kind::no_influence:
       return fmt::format("{} has no influence on {} with this input", name(parameters, direction.parts[0]), output);

@@ -10,17 +10,24 @@ namespace sysid {
 
 namespace {
 
+/// Of a run that was interrupted.
+std::string resume_help(Surface read_at) {
+  return fmt::format("continue with {}: the result will be identical to that of an uninterrupted run", to_resume(read_at));
+}
+
 // What the other checks say of a part of a run says little of the run.
 bool is_end(Finding const& finding) { return finding.code == FindingCode::interrupted; }
+
+/// What to do, as it is typed at `read_at`; findings hold it as typed at the command line.
+std::string help_at(Finding const& finding, Surface read_at) {
+  if (read_at == Surface::prompt && is_end(finding)) return resume_help(read_at);
+  return finding.help;
+}
 
 }  // namespace
 
 Finding interrupted_finding(std::string const& what) {
-  return {FindingCode::interrupted,
-          Severity::error,
-          {},
-          "the run was interrupted: " + what,
-          "continue with --resume: the result will be identical to that of an uninterrupted run"};
+  return {FindingCode::interrupted, Severity::error, {}, "the run was interrupted: " + what, resume_help(Surface::command_line)};
 }
 
 Findings by_weight(Findings findings) {
@@ -43,27 +50,33 @@ Verdict verdict_of(Findings const& findings) {
   verdict.pass = errors == 0;
   verdict.exit_code = verdict.pass ? 0 : 1;
   if (std::any_of(findings.begin(), findings.end(), is_end))
-    verdict.text = "unfinished: the run was interrupted";
+    verdict.headline = "unfinished: the run was interrupted";
   else if (errors > 0)
-    verdict.text =
+    verdict.headline =
         fmt::format("do not use these numbers yet: {} failed", errors == 1 ? "a check" : fmt::format("{} checks", errors));
   else if (warnings > 0)
-    verdict.text = with_care(warnings);
+    verdict.headline = with_care(warnings);
   else
-    verdict.text = "the checks pass";
+    verdict.headline = "the checks pass";
+  return verdict;
+}
+
+std::string findings_list(Findings const& findings, Surface read_at) {
+  std::string list;
   for (Finding const& finding : by_weight(findings)) {
     char const* const mark = finding.severity == Severity::error     ? "failed"
                              : finding.severity == Severity::warning ? "warning"
                                                                      : "note";
-    verdict.text += fmt::format("\n  {}[{}]: {}", mark, word(finding.code), finding.message);
-    if (!finding.help.empty()) verdict.text += fmt::format("\n    what to do: {}", finding.help);
+    list += fmt::format("  {}[{}]: {}\n", mark, word(finding.code), finding.message);
+    if (!finding.help.empty()) list += fmt::format("    what to do: {}\n", help_at(finding, read_at));
   }
-  if (findings.empty()) return verdict;
+  if (findings.empty()) return list;
   bool const alike =
       std::all_of(findings.begin(), findings.end(), [&](Finding const& each) { return each.code == findings.front().code; });
-  verdict.text +=
-      fmt::format("\n  more: sysid explain {}", alike ? word(findings.front().code) : "CODE, for each word in brackets");
-  return verdict;
+  if (read_at == Surface::prompt)
+    return list + (alike ? fmt::format("  more: help {}\n", word(findings.front().code))
+                         : "  more: `help WORD`, for each word in brackets\n");
+  return list + fmt::format("  more: sysid explain {}\n", alike ? word(findings.front().code) : "CODE, for each word in brackets");
 }
 
 Severity grade(Report const& report) {
@@ -80,8 +93,7 @@ Severity failure_severity(std::uint64_t failed, std::uint64_t solves) {
 bool has_verdict(Report const& report) { return report.draws.total() > 0 || !report.verdict.empty() || !report.findings.empty(); }
 
 std::string verdict_headline(Report const& report) {
-  std::string const text = report.verdict.empty() ? verdict_of(report.findings).text : report.verdict;
-  return text.substr(0, text.find('\n'));
+  return report.verdict.empty() ? verdict_of(report.findings).headline : report.verdict;
 }
 
 Severity grade(CheckPage const& page) {

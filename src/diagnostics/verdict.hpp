@@ -10,8 +10,8 @@ namespace sysid {
 
 struct Verdict {
   bool pass = true;
-  int exit_code = 0;  // 0 diagnostics pass, 1 a diagnostic fails
-  std::string text;   // one or more lines in plain words, no trailing newline
+  int exit_code = 0;     // 0 diagnostics pass, 1 a diagnostic fails
+  std::string headline;  // in plain words
 };
 
 /// "use with care: 2 warnings".
@@ -23,8 +23,12 @@ Finding interrupted_finding(std::string const& what);
 /// That the run was interrupted first, then errors, warnings and notes; alike in the order found.
 Findings by_weight(Findings findings);
 
-/// Fails when any finding is an error; all are listed by weight.
+/// Fails when any finding is an error.
 Verdict verdict_of(Findings const& findings);
+
+/// A line for each finding, by weight, with what to do; then how to learn more, as it is typed where this is read. Each line ends;
+/// empty where there are no findings.
+std::string findings_list(Findings const& findings, Surface read_at);
 
 /// The worst of the findings; note when there are none.
 Severity grade(Report const& report);
@@ -35,7 +39,7 @@ Severity failure_severity(std::uint64_t failed, std::uint64_t solves);
 /// Whether there is anything to judge: a plain simulation has no diagnostics.
 bool has_verdict(Report const& report);
 
-/// The verdict's first line, without the findings.
+/// As its task words it, else as verdict_of does.
 std::string verdict_headline(Report const& report);
 
 /// The worst of the tasks' findings; note when there are none.

@@ -47,7 +47,8 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
                    i + 1, block.path, step, wanted, model.name),
          Label{block.time ? block.time->span : block.span, {}},
          {},
-         "correct `time discrete`, or resample the record to equal steps; rounded times may differ by 1 %"});
+         "correct `time discrete`, or resample the record to equal steps; rounded times may differ by 1 %",
+         {model.name}});
   }
 }
 
@@ -67,7 +68,8 @@ void mark_past(Experiment& experiment, Model const& model, Span place) {
                      model.name),
          Label{place, {}},
          {},
-         "fill the gap, choose other rows, or write `with prediction = free_run`: the model then uses its own prediction"});
+         "fill the gap, choose other rows, or write `with prediction = free_run`: the model then uses its own prediction",
+         {model.channels[static_cast<std::size_t>(sample.channel)].name, model.name}});
   };
   for (PastSample const& sample : lagged_samples(model, -2))
     if (missing(sample, 0)) refuse(sample, 0);
@@ -158,7 +160,8 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
                      fmt::format("{} ends at row {}, but model `{}` needs {} earlier rows", what, range.last, model.name, history),
                      Label{rows.span, {}},
                      {},
-                     "use more rows, or fewer lags"});
+                     "use more rows, or fewer lags",
+                     {part < 0 ? block.name : rows.name, model.name}});
   range.first = std::max(range.first, history + 1);
   int from = history + 1;
   if (start.kind != StartRule::Kind::record) from = range.first;
@@ -170,7 +173,8 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
                                    range.last - range.first + 1, start.rows),
                        Label{rows.span, {}},
                        {},
-                       "use more rows, or estimate the start from fewer rows"});
+                       "use more rows, or estimate the start from fewer rows",
+                       {part < 0 ? block.name : rows.name}});
     range.first += start.rows;
   }
   Experiment experiment = make_experiment(record, name, from, range, rows.span);

@@ -25,14 +25,27 @@ std::filesystem::path path_of(std::string text) {
   return text;
 }
 
+/// The warnings of a file that has been loaded: not shown again with what is typed next.
+void mark_shown(Context& context, Diagnostics const& warnings, Source const& source) {
+  Diagnostics none;
+  auto const tree = parse(source, none);
+  for (Diagnostic const& each : warnings.all()) {
+    std::string item;
+    for (std::size_t i = 0; tree && each.primary && i < tree->items.size(); ++i)
+      if (Span const span = span_of(tree->items[i]); span.begin <= each.primary->span.begin && each.primary->span.begin < span.end)
+        item = title_of(kind_of(tree->items[i]), name_of(tree->items[i]));
+    context.output.is_new(each, item);
+  }
+}
+
 bool take_file(Context& context, std::filesystem::path const& path) {
   std::string const text = read_file(path, most_text_bytes + 1);
   Source source(path.string(), text);
   Diagnostics diagnostics;
   auto const file = sysid::load(source, diagnostics);
   context.output.show(diagnostics, source);
-  for (Diagnostic const& each : diagnostics.all()) context.output.is_new(each);
   if (!file) return false;
+  mark_shown(context, diagnostics, source);
   Workspace loaded;
   loaded.path = path;
   loaded.items = items_of(text);

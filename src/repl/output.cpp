@@ -11,28 +11,6 @@
 #include "experiment/experiments.hpp"
 
 namespace sysid::repl {
-namespace {
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
-}
-
-}  // namespace
-
-std::string at_the_prompt(std::string text) {
-  replace_all(text, "sysid explain CODE, for each word in brackets", "`help WORD`, for each word in brackets");
-  replace_all(text, "sysid explain ", "help ");
-  replace_all(text, "`sysid list ", "`list ");
-  replace_all(text, "continue with --resume", "continue with `resume`");
-  replace_all(text, "--resume continues from there", "`resume` continues from there");
-  replace_all(text, "run the task again with --force", "give the task another name, or start the prompt with --force");
-  replace_all(text, "--resume starts it again", "`resume` starts it again");
-  replace_all(text, "add --force to replace them, or -o DIR to write elsewhere",
-              "give the task another name, or start the prompt with --force or another -o");
-  replace_all(text, "continue with `resume`, or start again with --force",
-              "give the task another name, or start the prompt with --force or another -o");
-  return text;
-}
 
 void Output::say(std::string const& line) { voices_.messages << line << '\n' << std::flush; }
 
@@ -44,11 +22,11 @@ bool Output::refuse(std::string const& message, std::string const& help) {
 }
 
 void Output::show(Diagnostics const& diagnostics, std::string const& entry) {
-  voices_.messages << at_the_prompt(render(diagnostics, Source("prompt", entry), voices_.colour)) << std::flush;
+  voices_.messages << render(diagnostics, Source("prompt", entry), voices_.colour, Surface::prompt) << std::flush;
 }
 
 void Output::show(Diagnostics const& diagnostics, Source const& source) {
-  voices_.messages << at_the_prompt(render(diagnostics, source, voices_.colour)) << std::flush;
+  voices_.messages << render(diagnostics, source, voices_.colour, Surface::prompt) << std::flush;
 }
 
 void Output::show(Diagnostics const& diagnostics, Source const& source, Workspace const& work, std::string const& entry) {
@@ -66,9 +44,15 @@ void Output::show(Diagnostics const& diagnostics, Source const& source, Workspac
     }
     return Span{span.begin + shift, span.end + shift};
   };
+  auto const item_of = [&](Diagnostic const& each) {
+    for (std::size_t i = 0; each.primary && i < work.items.size(); ++i)
+      if (each.primary->span.begin >= work.begin(i) && each.primary->span.begin < work.begin(i) + work.items[i].text.size())
+        return title_of(work.items[i].kind, work.items[i].name);
+    return std::string();
+  };
   Diagnostics mapped;
   for (Diagnostic each : diagnostics.all()) {
-    if (each.severity != Severity::error && !is_new(each)) continue;
+    if (each.severity != Severity::error && !is_new(each, item_of(each))) continue;
     if (each.primary) each.primary->span = place(each.primary->span);
     for (Label& label : each.secondary) label.span = place(label.span);
     mapped.add(std::move(each));
@@ -76,7 +60,11 @@ void Output::show(Diagnostics const& diagnostics, Source const& source, Workspac
   show(mapped, shown);
 }
 
-bool Output::is_new(Diagnostic const& warning) { return warned_.insert(warning.code + warning.message).second; }
+bool Output::is_new(Diagnostic const& warning, std::string_view item) {
+  std::vector<std::string> matter{warning.code, std::string(item), warning.kind, warning.function};
+  matter.insert(matter.end(), warning.names.begin(), warning.names.end());
+  return warned_.insert(std::move(matter)).second;
+}
 
 bool Output::guarded(Source const& source, std::function<bool()> const& act) {
   auto const told = [&](Diagnostics const& diagnostics) {

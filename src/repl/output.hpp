@@ -4,6 +4,8 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/text/diagnostic.hpp"
 #include "repl/work/workspace.hpp"
@@ -37,17 +39,15 @@ class Output {
   void show(Diagnostics const& diagnostics, Source const& source);
   /// Diagnostics about the text of a work: places in what was typed are shown there. A warning is shown once in a session.
   void show(Diagnostics const& diagnostics, Source const& source, Workspace const& work, std::string const& entry);
-  /// Whether no such warning has been shown; from now on it has.
-  bool is_new(Diagnostic const& warning);
+  /// Whether no such warning of that statement has been shown; from now on it has. item: the statement of the file that it stands
+  /// in, since places move while statements are typed.
+  bool is_new(Diagnostic const& warning, std::string_view item);
   /// Runs what may throw; false when it did, with what it said.
   bool guarded(Source const& source, std::function<bool()> const& act);
 
  private:
   Voices voices_;
-  std::set<std::string> warned_;
+  std::set<std::vector<std::string>> warned_;
 };
-
-/// What a message of the command line says in the words of the prompt: `help E2001` for `sysid explain E2001`.
-std::string at_the_prompt(std::string text);
 
 }  // namespace sysid::repl

@@ -78,7 +78,7 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
   options.seed.reset();  // it stands in the task
   options.resume = resume;
   options.force = context.options.force || context.results.made.contains(name);
-  LineOutput notices(context.output.messages(), [](std::string const& line) { return at_the_prompt(line); });
+  LineOutput notices(context.output.messages(), [](std::string const& line) { return line; });
   std::ostringstream answers;
   Session session(checked->source, checked->file, options, context.progress, answers, notices);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -119,8 +119,8 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
     context.results.interrupted.erase(name);
   // Stopped before its first draw, a task stays in the work: `resume` goes on with it.
   if (!something) return exit == ExitCode::interrupted;
-  keep(context, session, *place, index, at_the_prompt(answers.str()));
-  context.output.answer(at_the_prompt(answers.str()));
+  keep(context, session, *place, index, answers.str());
+  context.output.answer(answers.str());
   return true;
 }
 

@@ -12,6 +12,7 @@ namespace sysid::repl {
 Workbench::Workbench(RunOptions options, Progress& progress, Voices voices)
     : context_{std::move(options), progress, Output(std::move(voices))} {
   context_.options.figures = false;
+  context_.options.surface = Surface::prompt;
 }
 
 bool Workbench::complete(std::string const& entry) const {

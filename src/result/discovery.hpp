@@ -2,17 +2,37 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "result/simulation_validation.hpp"
 
 namespace sysid {
 
+/// What became of a term.
+struct TermFate {
+  enum class Kind {
+    known,     // in the target, and so in the equation
+    kept,      // chosen
+    dropped,   // not chosen
+    left_out,  // never offered to the choice
+  };
+  Kind kind = Kind::dropped;
+  int round = 0;  // in which it was dropped; 0: the selector has no rounds
+
+  bool operator==(TermFate const&) const = default;
+};
+
+/// "known", "kept", "dropped", "dropped in round 2", "left out": as results have it.
+std::string word(TermFate fate);
+/// What is stored under such a word; nothing for any other.
+std::optional<TermFate> term_fate(std::string_view word);
+
 /// A term of the dictionary in one equation. Coefficients are in `unit`.
 struct DiscoveredTerm {
   std::string text, unit;
   std::string name;  // of its coefficient in the source of what was found
-  std::string fate;  // "known", "kept", "dropped", "dropped in round 2", "left out"
+  TermFate fate;
   bool kept = false;
   double coefficient = 0, sd = 0;  // on the chosen support
   double measure = 0;              // DiscoveryReport::measure

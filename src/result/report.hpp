@@ -104,7 +104,7 @@ struct Report {
   std::vector<DataInfo> data;
   Draws draws;                   // may be empty (simulate, predict)
   std::vector<Summary> summary;  // of the draws, parameters first
-  std::string verdict;           // in plain words, its first line is shown; empty: as `verdict_of` words the findings
+  std::string verdict;           // its headline, in plain words; empty: as `verdict_of` words the findings
   Findings findings;
   std::vector<CheckRecord> checks;        // of a fit
   std::vector<FitLine> fit;               // what the task itself has scored

@@ -3,10 +3,18 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace sysid {
+
+/// In the order of words::verbs.
+enum class TaskKind { simulate, fit, select, discover, predict };
+
+}  // namespace sysid
 
 namespace sysid::words {
 
@@ -39,6 +47,13 @@ inline constexpr std::array<std::string_view, 11> dictionary_statements{
 
 constexpr bool contains(std::span<std::string_view const> table, std::string_view word) {
   return std::find(table.begin(), table.end(), word) != table.end();
+}
+
+/// The kind of a task by the verb that it is written with; nothing for what is no verb.
+constexpr std::optional<TaskKind> task_kind(std::string_view verb) {
+  for (std::size_t i = 0; i < verbs.size(); ++i)
+    if (verbs[i] == verb) return static_cast<TaskKind>(i);
+  return std::nullopt;
 }
 
 inline std::vector<std::string> list(std::span<std::string_view const> table) { return {table.begin(), table.end()}; }

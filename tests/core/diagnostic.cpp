@@ -154,7 +154,11 @@ TEST_CASE("JSON has one object per line with places from one, for every diagnost
                       "ab\n\xFF"
                       "cd");
   Diagnostics all;
-  for (std::uint32_t i = 0; i < 25; ++i) all.add(at(4, "wrong \"quote\"" + std::string(i, '!')));
+  for (std::uint32_t i = 0; i < 25; ++i) {
+    Diagnostic each = at(4, "wrong \"quote\"" + std::string(i, '!'));
+    each.names = {std::to_string(i)};
+    all.add(std::move(each));
+  }
   std::string const text = render_json(all, source);
   CHECK(std::count(text.begin(), text.end(), '\n') == 25);
   auto const object = nlohmann::json::parse(text.substr(0, text.find('\n')));
@@ -228,9 +232,42 @@ TEST_CASE("a message about two files shows both, and each place in its own file"
 TEST_CASE("what is found twice at one place is said once") {
   Source const source("a", "abcdef");
   Diagnostics all;
-  for (int i = 0; i < 3; ++i) all.add(at(2, "wrong"));
-  all.add(at(2, "worse"));
+  for (int i = 0; i < 3; ++i) all.add(at(2, i == 2 ? "wrong in other words" : "wrong"));
+  Diagnostic of_a_name = at(2, "worse");
+  of_a_name.names = {"name"};
+  all.add(of_a_name);
   std::string const text = render(all, source);
   CHECK(text.find("wrong") == text.rfind("wrong"));
   CHECK(text.find("worse") != std::string::npos);
+}
+
+TEST_CASE("two messages say the same by code, places and names, whatever their words") {
+  Diagnostic const one{Severity::error, "E6005", "`a` is wrong", Label{{2, 4}, {}}, {}, {}, {"a"}};
+  auto const changed = [&](auto const& change) {
+    Diagnostic other = one;
+    change(other);
+    return same_matter(one, other);
+  };
+  CHECK(changed([](Diagnostic& each) { each.message = "reworded", each.help = "too", each.primary->text = "here"; }));
+  CHECK_FALSE(changed([](Diagnostic& each) { each.names = {"b"}; }));
+  CHECK_FALSE(changed([](Diagnostic& each) { each.code = "E6004"; }));
+  CHECK_FALSE(changed([](Diagnostic& each) { each.primary->span.begin = 1; }));
+  CHECK(changed([](Diagnostic& each) { each.secondary.push_back({{0, 1}, {}}); }));  // one mistake, met from several places
+  Diagnostic const bare{Severity::error, "", "something is wrong", std::nullopt, {}, {}};
+  CHECK_FALSE(same_matter(bare, bare));
+}
+
+TEST_CASE("at the prompt a message names what is typed there") {
+  Diagnostic const error = result_error("E6208", "`a` holds an interrupted run", resume_or_replace());
+  Source const source("prompt", "");
+  CHECK(render(error, source) ==
+        "prompt: error[E6208]: `a` holds an interrupted run\nhelp: continue with --resume, or start again with --force\n"
+        "more: sysid explain E6208\n");
+  CHECK(render(error, source, false, Surface::prompt) ==
+        "prompt: error[E6208]: `a` holds an interrupted run\n"
+        "help: give the task another name, or start the prompt with --force or another -o\nmore: help E6208\n");
+  Diagnostic plain = error;
+  plain.prompt_help.clear();
+  plain.help = "write `sysid explain ` and --resume";  // the user's own words stay
+  CHECK(render(plain, source, false, Surface::prompt).find("help: write `sysid explain ` and --resume\n") != std::string::npos);
 }

@@ -189,8 +189,9 @@ TEST_CASE("the tutorial's spherical proposal of absurd size is caught standing s
   REQUIRE(found(result, "chain_did_not_move"));
   Verdict const verdict = verdict_of(result.findings);
   CHECK(verdict.exit_code == 1);
-  CHECK(verdict.text.find("the chain did not move") != std::string::npos);
-  CHECK(verdict.text.find("proposal = adaptive") != std::string::npos);
+  std::string const list = findings_list(result.findings, Surface::command_line);
+  CHECK(list.find("the chain did not move") != std::string::npos);
+  CHECK(list.find("proposal = adaptive") != std::string::npos);
 }
 
 TEST_CASE("a spherical proposal that fits gives the right posterior") {

@@ -384,3 +384,28 @@ TEST_CASE("a damaged table of draws is named, not read as numbers that are missi
   write_file(draws, text.substr(0, text.rfind(',')) + "\n");  // a row that lost its last number
   CHECK_THROWS_WITH_AS(repl::read_result(draws.parent_path(), "first", "fit"), doctest::Contains("is damaged: line"), UserError);
 }
+
+TEST_CASE("a warning is shown once for each statement that it stands in, whatever moves before it") {
+  Dialogue d;
+  std::string const rest =
+      "  state y [m]\n  initial y = 1\n  y' = -y/1 [s]\n  observe z ~ normal(y, sd = 1 [m])\n  parameter k ~ normal(0, 1)\n}";
+  d.enter("model a {\n" + rest);
+  CHECK(has(d.messages(), "uses the parameter `k`"));
+  d.enter("model b {\n" + rest);
+  CHECK(has(d.messages(), "uses the parameter `k`"));
+  d.enter("model c {\n  state y [m]\n  initial y = 1\n  y' = -y/1 [s]\n  observe z ~ normal(y, sd = 1 [m])\n}");
+  CHECK_FALSE(has(d.messages(), "uses the parameter `k`"));
+  write_file(d.path("loaded.sysid"), "// a comment\nmodel d {\n" + rest + "\n");
+  d.enter("load " + d.path("loaded.sysid"));
+  CHECK(has(d.messages(), "uses the parameter `k`"));
+  d.enter("model e {\n  state y [m]\n  initial y = 1\n  y' = -y/1 [s]\n  observe z ~ normal(y, sd = 1 [m])\n}");
+  CHECK_FALSE(has(d.messages(), "uses the parameter `k`"));
+}
+
+TEST_CASE("what the messages of the prompt name can be typed there") {
+  Dialogue d;
+  d.enter("use nothing_of_that_name");
+  CHECK(has(d.messages(), "`list modules` lists the standard library"));
+  CHECK_FALSE(has(d.messages(), "sysid list"));
+  CHECK_FALSE(has(d.messages(), "sysid explain"));
+}

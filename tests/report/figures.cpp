@@ -312,7 +312,7 @@ TEST_CASE("terms of a discovery stand in the order of how sure they are, with th
     term.text = j == 3 ? "y''" : "y'''^" + std::to_string(j);
     term.unit = "N/m";
     term.kept = j == 3 || j == 7;
-    term.fate = j == 0 ? "known" : term.kept ? "kept" : "dropped";
+    term.fate.kind = j == 0 ? TermFate::Kind::known : term.kept ? TermFate::Kind::kept : TermFate::Kind::dropped;
     term.measure = term.kept ? 0.99 + 0.001 * j : 0.01 * j;
     term.coefficient = 1e4;
     term.sd = j == 7 ? 0 : 20;

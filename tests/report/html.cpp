@@ -356,7 +356,7 @@ TEST_CASE("what stands in the target of a discovery is always kept, and the sour
   discovery.equations.resize(1);
   discovery.equations[0].equation = "J*th'' = 2*y";
   discovery.equations[0].terms.resize(1);
-  discovery.equations[0].terms[0].fate = "known";
+  discovery.equations[0].terms[0].fate.kind = TermFate::Kind::known;
   CHECK(discovery_tables(discovery)[0].rows[0][1] == "always kept");
   SelectionReport selection;
   selection.result.models.resize(1);

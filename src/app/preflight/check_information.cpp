@@ -83,7 +83,7 @@ class Description {
     for (LocalSlopes const& local : locals_) locals.push_back(without_coefficients(local));
     NullSpace const space = find_null_space(locals);
     for (NullDirection const& direction : space.directions) {
-      std::string const text = words(direction, asked_, channels_);
+      std::string const text = direction_words(direction, asked_, channels_);
       page_.information->null_directions.push_back(text);
       for (NullDirection::Part const& part : direction.parts) null_[static_cast<std::size_t>(part.parameter)] = true;
       std::vector<std::string> names;

@@ -44,6 +44,7 @@ struct StoredSummary {
   bool pass() const { return !summary.contains("verdict") || summary["verdict"].value("pass", true); }
 };
 
+UserError refused(std::string message, Help help) { return UserError(result_error("", std::move(message), std::move(help))); }
 UserError refused(std::string message, std::string help) {
   return UserError({Severity::error, "", std::move(message), std::nullopt, {}, std::move(help)});
 }
@@ -57,9 +58,7 @@ StoredSummary read_summary(fs::path const& folder) {
   if (result.name.empty()) result.name = folder.lexically_normal().parent_path().filename().string();
   bool const whole = result.summary.is_object() && result.summary.contains("what") && result.summary["what"].is_string() &&
                      result.summary.value("data", json::array()).is_array();
-  if (!whole)
-    throw refused(fmt::format("`{}` is not the result of a task", (folder / "summary.json").string()),
-                  "run the task again with --force");
+  if (!whole) throw refused(fmt::format("`{}` is not the result of a task", (folder / "summary.json").string()), run_again());
   if (!has_deciding_fields(result.summary)) throw older_version(folder);
   result.model = result.summary.value("model", std::string());
   return result;
@@ -107,7 +106,7 @@ std::string samples_of(StoredSummary const& result) {
     std::string const digest = data.value("samples_sha256", "");
     if (digest.empty())
       throw refused(fmt::format("`{}` does not record which samples it was fitted to", result.folder.string()),
-                    "it was written by an earlier program: run the task again with --force");
+                    run_again("it was written by an earlier program: "));
     all += digest + "\n";
   }
   return all;

@@ -29,12 +29,8 @@ bool is_result(fs::path const& folder) { return fs::exists(folder / "summary.jso
 
 Report whole_result(fs::path const& folder) {
   if (!fs::exists(folder / "summary.json"))
-    throw UserError({Severity::error,
-                     "",
-                     fmt::format("`{}` holds no complete result: it has no `summary.json`", folder.string()),
-                     std::nullopt,
-                     {},
-                     "run the task again with --force"});
+    throw UserError(
+        result_error("", fmt::format("`{}` holds no complete result: it has no `summary.json`", folder.string()), run_again()));
   Report report = read_result(folder);
   for (PriorInfo& prior : report.priors) add_density(prior);
   if (auto finding = made_from_earlier(folder)) report.findings.push_back(std::move(*finding));

@@ -31,12 +31,8 @@ ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& ask
   for (Task const& task : file.tasks) {
     if (!wanted(task)) continue;
     if (kind_of(task) == TaskKind::simulate && kept(task) && !options.force)
-      throw UserError({Severity::error,
-                       "",
-                       fmt::format("`{}` holds results already", session.result_folder(task).string()),
-                       std::nullopt,
-                       {},
-                       "add --force to replace them, or -o DIR to write elsewhere"});
+      throw UserError(
+          result_error("", fmt::format("`{}` holds results already", session.result_folder(task).string()), replace_results()));
     claim_results(session.result_folder(task), options);
   }
   ExitCode worst = ExitCode::success;

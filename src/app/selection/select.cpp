@@ -82,8 +82,8 @@ class Select {
                        {},
                        result.failure->help});
     if (result.populations.empty()) {
-      session_.notices << fmt::format("{}: interrupted before the first population was complete; --resume continues from there\n",
-                                      task_.name);
+      session_.notices << fmt::format("{}: interrupted before the first population was complete; {} continues from there\n",
+                                      task_.name, to_resume(session_.options.surface));
       return ExitCode::interrupted;
     }
     return finish(target, std::move(result));
@@ -167,7 +167,7 @@ class Select {
     report.selection = std::move(selection);
     keep_result(session_, task_, report);
     if (interrupted) {
-      session_.notices << fmt::format("{}: interrupted; continue with --resume\n", task_.name);
+      session_.notices << fmt::format("{}: interrupted; continue with {}\n", task_.name, to_resume(session_.options.surface));
       return ExitCode::interrupted;
     }
     remove_file(checkpoint_.path());
@@ -268,8 +268,7 @@ class Select {
     std::string const at = std::isfinite(selection.result.threshold)
                                ? fmt::format("threshold {}{}", significant(selection.result.threshold, 4), floor)
                                : "no threshold: these are draws of the priors";
-    return fmt::format("`{}` has probability {:.3f} at {}; {}", best.name, best.probability, at,
-                       verdict_of(findings).text.substr(0, verdict_of(findings).text.find('\n')));
+    return fmt::format("`{}` has probability {:.3f} at {}; {}", best.name, best.probability, at, verdict_of(findings).headline);
   }
 
   Session& session_;

@@ -24,14 +24,15 @@ Diagnostic no_result(Task const& task, Finding const& failure) {
 
 ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& checkpoint) {
   bool const kept = std::filesystem::exists(checkpoint.path());
-  session.notices << fmt::format("{}: interrupted before the first kept draw; --resume {}\n", task.name,
-                                 kept ? "continues from there" : "starts it again");
+  session.notices << fmt::format("{}: interrupted before the first kept draw; {} {}\n", task.name,
+                                 to_resume(session.options.surface), kept ? "continues from there" : "starts it again");
   return ExitCode::interrupted;
 }
 
 ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation) {
   if (!std::filesystem::exists(checkpoint.path())) checkpoint.save({{"preparation", store(preparation)}});
-  session.notices << fmt::format("{}: interrupted before its result was checked; --resume continues from there\n", task.name);
+  session.notices << fmt::format("{}: interrupted before its result was checked; {} continues from there\n", task.name,
+                                 to_resume(session.options.surface));
   return ExitCode::interrupted;
 }
 
@@ -79,14 +80,14 @@ std::vector<std::string> noise_parameters(ParameterSpace const& space) {
 ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpoint const& checkpoint, SolverSettings const& solver,
                       Report report, std::chrono::steady_clock::time_point began, bool interrupted) {
   Verdict const verdict = verdict_of(report.findings);
-  report.verdict = verdict.text;
+  report.verdict = verdict.headline;
   std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
   report.timing.emplace_back("wall_seconds", wall.count());
   report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
   report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
   keep_result(session, task, report);
   if (interrupted) {
-    session.notices << fmt::format("{}: interrupted; continue with --resume\n", task.name);
+    session.notices << fmt::format("{}: interrupted; continue with {}\n", task.name, to_resume(session.options.surface));
     return ExitCode::interrupted;
   }
   remove_file(checkpoint.path());

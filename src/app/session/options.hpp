@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/system/progress.hpp"
+#include "core/text/diagnostic.hpp"
 #include "report/figure/figure_format.hpp"
 #include "simulate/simulator.hpp"
 
@@ -14,8 +15,9 @@ namespace sysid {
 
 struct RunOptions {
   std::filesystem::path output = "results";
-  bool force = false;   // overwrite results of the same name
-  bool resume = false;  // go on from checkpoints, keep what is complete
+  Surface surface = Surface::command_line;  // where the run's messages are read
+  bool force = false;                       // overwrite results of the same name
+  bool resume = false;                      // go on from checkpoints, keep what is complete
   bool figures = true;
   std::vector<FigureFormat> figure_formats = {FigureFormat::svg};  // of the pictures beside the scripts
 

@@ -19,12 +19,13 @@ namespace sysid {
 
 namespace {
 
-Diagnostic refused(Task const& task, std::string code, std::string message, std::string help) {
-  return {Severity::error, std::move(code), std::move(message), Label{task.span, {}}, {}, std::move(help)};
+Diagnostic refused(Task const& task, std::string code, std::string message, std::string help, std::vector<std::string> names) {
+  return {Severity::error, std::move(code), std::move(message), Label{task.span, {}}, {}, std::move(help), std::move(names)};
 }
 
 Diagnostic refused_settings(Task const& task, std::string_view backend, std::string const& why) {
-  return refused(task, "E6203", fmt::format("these settings of `{}` conflict: {}", backend, why), "change one of them");
+  return refused(task, "E6203", fmt::format("these settings of `{}` conflict: {}", backend, why), "change one of them",
+                 {std::string(backend)});
 }
 
 /// of: " of `model`" where there are several. Asked of parameters that have a prior in `model`.
@@ -34,7 +35,8 @@ std::optional<Diagnostic> improper_prior(Task const& task, std::string_view back
   return refused(
       task, "E6204",
       fmt::format("`{}` needs proper priors, but that of `{}`{} is {}", backend, improper->name, of, improper->prior->row->name),
-      fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", improper->name));
+      fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", improper->name),
+      {improper->name, model.name});
 }
 
 std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<ExperimentData> const& data) {
@@ -45,7 +47,7 @@ std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<Experim
       for (std::size_t i = 0; i < channel.size(); ++i) any = any || (experiment.scored[i] != 0 && !std::isnan(channel[i]));
     if (!any)
       return refused(task, "E4202", fmt::format("there is no measured sample in `{}` to fit to", experiment.name),
-                     "choose other rows or columns");
+                     "choose other rows or columns", {experiment.name});
   }
   return std::nullopt;
 }
@@ -61,7 +63,7 @@ std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model c
     if (auto const found = improper_prior(task, backend.name, model, {})) return found;
   if (parameter_space(model, what.experiments)->dimension() == 0)
     return refused(task, "E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model.name),
-                   "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`");
+                   "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`", {model.name});
   return nothing_measured(task, data);
 }
 
@@ -109,11 +111,10 @@ Preconditions check_preconditions(Session& session, std::function<bool(Task cons
   Preconditions result;
   bool only_unreadable = true;
   std::set<std::pair<int, Model const*>> reported;  // data that a message has been said about
-  std::set<std::string> said;
   auto const add = [&](Diagnostics const& more, bool unreadable) {
     for (Diagnostic const& each : more.all()) {
-      std::string const place = each.primary ? fmt::format("{}:", each.primary->span.begin) : std::string();
-      if (!said.insert(place + each.message).second) continue;
+      auto const& said = result.diagnostics.all();
+      if (std::any_of(said.begin(), said.end(), [&](Diagnostic const& other) { return same_matter(other, each); })) continue;
       result.diagnostics.add(each);
       only_unreadable = only_unreadable && unreadable;
     }

@@ -179,7 +179,7 @@ void keep_result(Session& session, Task const& task, Report& report) {
   report.fixed = fixed_parameters(report);
   if (!report.resolved_text.empty()) report.resolved_files = resolved_files(session, task, report.resolved_text);
   std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
-  session.out << terminal_summary(report);
+  session.out << terminal_summary(report, session.options.surface);
   if (!undrawn.empty()) session.notices << fmt::format("{}: {}\n", task.name, undrawn_words(undrawn));
 }
 
@@ -199,9 +199,11 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   auto const folder = session.result_folder(task);
   auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
   auto const refuse = [&](std::string const& what) {
-    return Diagnostic{
-        Severity::error, "E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
-        std::nullopt,    {},      "run the task again with --force, or write elsewhere with -o"};
+    Help help = run_again();
+    help.command_line += ", or write elsewhere with -o";
+    help.prompt += " or another -o";
+    return result_error("E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
+                        std::move(help));
   };
   if (!summary.is_object() || !summary.contains("versions") || !has_deciding_fields(summary)) return refuse("program");
   if (summary["versions"].value("model_sha256", "") != task_digest(session, task))

@@ -15,12 +15,7 @@ bool complete(std::filesystem::path const& folder) {
 }
 
 UserError older_version(std::filesystem::path const& folder) {
-  return UserError({Severity::error,
-                    "",
-                    fmt::format("`{}` was written by an older version of sysid", folder.string()),
-                    std::nullopt,
-                    {},
-                    "run the task again with --force"});
+  return UserError(result_error("", fmt::format("`{}` was written by an older version of sysid", folder.string()), run_again()));
 }
 
 void claim_results(std::filesystem::path const& folder, RunOptions const& options) {
@@ -28,12 +23,7 @@ void claim_results(std::filesystem::path const& folder, RunOptions const& option
     make_folder(folder);  // what is there stays until the run has shown that it goes on with it
   } else {
     if (std::filesystem::exists(checkpoint_path(folder)) && !options.force)
-      throw UserError({Severity::error,
-                       "",
-                       fmt::format("`{}` holds an interrupted run", folder.string()),
-                       std::nullopt,
-                       {},
-                       "continue with --resume, or start again with --force"});
+      throw UserError(result_error("", fmt::format("`{}` holds an interrupted run", folder.string()), resume_or_replace()));
     prepare_result(folder, options.force);
     remove_file(checkpoint_path(folder));
   }

@@ -73,19 +73,13 @@ namespace {
 std::filesystem::path stored_results(Session& session, Task const& task, std::string_view verb) {
   auto folder = session.result_folder(task);
   if (std::filesystem::exists(folder / "checkpoint.cbor"))
-    throw UserError({Severity::error,
-                     "E6202",
-                     fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
-                     std::nullopt,
-                     {},
-                     fmt::format("finish it first: sysid {} FILE --resume", verb)});
+    throw UserError(result_error(
+        "E6202", fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
+        {fmt::format("finish it first: sysid {} FILE --resume", verb), fmt::format("finish it first: `resume {}`", task.name)}));
   if (!complete(folder))
-    throw UserError({Severity::error,
-                     "E6202",
-                     fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
-                     std::nullopt,
-                     {},
-                     fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb)});
+    throw UserError(result_error("E6202", fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
+                                 {fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb),
+                                  fmt::format("run it first: `run {}`", task.name)}));
   if (auto wrong = stored_otherwise(session, task, std::nullopt)) {
     wrong->code = "E6201";
     throw UserError(*wrong);

@@ -154,8 +154,7 @@ class Discover {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
-    std::string const verdict = verdict_of(findings).text;
-    return terms + "; " + verdict.substr(0, verdict.find('\n'));
+    return terms + "; " + verdict_of(findings).headline;
   }
 
   bool given(std::size_t channel) const { return !what_.noise.empty() && what_.noise[channel]; }
@@ -200,11 +199,10 @@ class Discover {
       to.name = names[j];
       to.unit = term.unit ? term.unit->text : "";
       to.kept = from.kept;
-      to.fate = from.excluded         ? "left out"
-                : term.in_target      ? "known"
-                : from.kept           ? "kept"
-                : from.dropped_in > 0 ? fmt::format("dropped in round {}", from.dropped_in)
-                                      : "dropped";
+      to.fate = from.excluded    ? TermFate{TermFate::Kind::left_out}
+                : term.in_target ? TermFate{TermFate::Kind::known}
+                : from.kept      ? TermFate{TermFate::Kind::kept}
+                                 : TermFate{TermFate::Kind::dropped, from.dropped_in};
       to.coefficient = from.coefficient / scale;
       to.sd = from.sd / scale;
       to.measure = from.measure;

@@ -189,7 +189,7 @@ class Simulate {
     Trajectory const trajectory(compiled_, experiment_, what_.solver, 0, session_.options.execution);
     auto const ended = in_rounds(session_, task_, compiled_, experiment_, what_, parameters_, noise_key_, feedbacks);
     if (!ended) {
-      session_.notices << fmt::format("{}: interrupted; --resume starts it again\n", task_.name);
+      session_.notices << fmt::format("{}: interrupted; {} starts it again\n", task_.name, to_resume(session_.options.surface));
       return ExitCode::interrupted;
     }
     require_numbers(*ended);

@@ -9,12 +9,11 @@
 
 #include "check/checked/checked.hpp"
 #include "core/text/diagnostic.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid {
 
-/// In the order of the alternatives of Task::what.
-enum class TaskKind { simulate, fit, select, discover, predict };
-
+/// TaskKind has the order of the alternatives of Task::what.
 inline constexpr std::size_t task_kind_count = std::variant_size_v<decltype(Task::what)>;
 
 struct TaskKindRow {

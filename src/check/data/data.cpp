@@ -41,11 +41,11 @@ class DataChecker {
 
   bool fresh(std::map<std::string, Span>& seen, ast::Name const& name, std::string const& what) {
     auto const [place, is_fresh] = seen.emplace(name.text, name.span);
-    if (!is_fresh) diagnostics_.add(errors::stated_twice(name.span, place->second, what + " `" + name.text + "`"));
+    if (!is_fresh) diagnostics_.add(errors::stated_twice(name.span, place->second, errors::named(what, name.text)));
     return is_fresh;
   }
 
-  std::optional<double> number(ast::Expression const& tree, Unit const& unit, std::string const& what) {
+  std::optional<double> number(ast::Expression const& tree, Unit const& unit, errors::Subject const& what) {
     auto const value = scope_.expression(tree);
     if (!value) return std::nullopt;
     if (value->kind == Typed::Kind::known)
@@ -59,7 +59,7 @@ class DataChecker {
   }
 
   void take(ast::DataFile const& tree) {
-    if (file_) diagnostics_.add(errors::stated_twice(tree.span, *file_, "the file"));
+    if (file_) diagnostics_.add(errors::stated_twice(tree.span, *file_, {"the file"}));
     file_ = tree.span;
     block_.path = tree.path.value;
     block_.path_span = tree.path.span;
@@ -74,7 +74,7 @@ class DataChecker {
     if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
     times_ = tree.span;
     Unit const unit = unit_atom(tree.step ? "s" : "Hz").value();
-    auto const value = number(tree.value, unit, tree.step ? "the sampling step" : "the sampling rate");
+    auto const value = number(tree.value, unit, {tree.step ? "the sampling step" : "the sampling rate"});
     if (!value) return;
     if (!(*value > 0) || !std::isfinite(*value)) {
       diagnostics_.add(errors::rate_not_positive(tree.value.span));
@@ -105,7 +105,7 @@ class DataChecker {
     if (!value) return;
     auto const constant = graph_.constant_value(value->node);
     if (!constant) {
-      diagnostics_.add(errors::constant_needed(tree.value.span, "a constant of an experiment"));
+      diagnostics_.add(errors::constant_needed(tree.value.span, {"a constant of an experiment"}));
       return;
     }
     block_.constants.push_back({tree.parameter.text, *constant,
@@ -115,7 +115,7 @@ class DataChecker {
   void take(ast::DataSplit const& tree) {
     for (ast::SplitPart const& part : tree.parts) {
       if (!fresh(parts_, part.name, "part")) continue;
-      auto const first = number(part.first, Unit{}, "a row"), last = number(part.last, Unit{}, "a row");
+      auto const first = number(part.first, Unit{}, {"a row"}), last = number(part.last, Unit{}, {"a row"});
       if (!first || !last) continue;
       if (*first != std::floor(*first) || *last != std::floor(*last) || *first < 1 || *last < *first || *last > 2e9) {
         diagnostics_.add(errors::bad_rows(cover(part.first.span, part.last.span)));
@@ -187,8 +187,8 @@ DeclaredNames declared_names(ast::File const& file) {
 
 void check_binding(DataBlock const& block, Model const& model, std::string const& noun, DeclaredNames const& declared, Span use,
                    Diagnostics& diagnostics) {
-  std::string const owner = fmt::format("{} `{}`", noun, model.name);
-  auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, std::string const& what) {
+  errors::Subject const owner = errors::named(noun, model.name);
+  auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, errors::Subject const& what) {
     if (!column.unit || !declared.unit) return;
     std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
     if (column.unit->dimension != declared.unit->dimension || zero_against_difference(*column.unit, *declared.unit))
@@ -213,7 +213,7 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
       if (!misnamed) diagnostics.add(errors::input_not_bound(use, input.name, owner, block.name));
       continue;
     }
-    compare_units(*bound, input, "column `" + bound->column + "`");
+    compare_units(*bound, input, errors::named("column", bound->column));
     if (!bound->rule || row_of(*bound->rule).has_rate) continue;
     for (NodeId id = 0; id < model.graph.size(); ++id) {
       Node const& node = model.graph[id];
@@ -234,7 +234,7 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
     if (channel == model.channels.end() && (!declared.all || declared.channels.contains(measured.channel))) continue;
     any = true;
     if (channel != model.channels.end())
-      compare_units(measured, *channel, "column `" + measured.column + "`");
+      compare_units(measured, *channel, errors::named("column", measured.column));
     else
       diagnostics.add_once(errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
   }
@@ -265,10 +265,10 @@ std::vector<std::optional<double>> check_constants(DataBlock const& block, Model
     } else if (!place->per_experiment) {
       diagnostics.add_once(errors::constant_of_shared(constant.span, place->span, place->name));
       good = false;
-    } else if (auto refused =
-                   constant.unit && place->unit
-                       ? refuse_number(constant.value_span, "the constant `" + place->name + "`", *constant.unit, *place->unit)
-                       : std::nullopt) {
+    } else if (auto refused = constant.unit && place->unit
+                                  ? refuse_number(constant.value_span, errors::named("the constant", place->name), *constant.unit,
+                                                  *place->unit)
+                                  : std::nullopt) {
       diagnostics.add_once(std::move(*refused));
       good = false;
     } else {

@@ -68,7 +68,7 @@ void DictionaryChecker::declare_state(ast::DictionaryState const& state) {
   // What a derivative is declared in, else what follows from the state.
   auto const rate = rate_unit(info.unit, state.primes);
   if (state.primes > 0 && unit && rate && unit->dimension != rate->dimension)
-    diagnostics_.add(errors::unit_mismatch(state.span, "`" + primed_name(state.name.text, state.primes) + "`", unit->text,
+    diagnostics_.add(errors::unit_mismatch(state.span, errors::named(primed_name(state.name.text, state.primes)), unit->text,
                                            rate->text.empty() ? format_dimension(rate->dimension) : rate->text));
   Channel channel;
   channel.name = state.channel->text;
@@ -132,7 +132,7 @@ void DictionaryChecker::definitions() {
   each<ast::Definition>([&](ast::Definition const& definition) {
     auto const value = scope_.definition(definition);
     if (value && definition.kind == ast::DefinitionKind::constant && !out_.numbers.graph.constant_value(value->node))
-      diagnostics_.add(errors::constant_needed(definition.value.span, "the value of a constant"));
+      diagnostics_.add(errors::constant_needed(definition.value.span, {"the value of a constant"}));
   });
 }
 
@@ -147,7 +147,7 @@ void DictionaryChecker::values() {
                                             {Occasion::Kind::declared, name});
     if (!value) continue;
     parameter.value = out_.numbers.graph.constant_value(adapt(out_.numbers.graph, *value, parameter.unit));
-    if (!parameter.value) diagnostics_.add(errors::constant_needed(parameter.tree->value->span, "the value of a parameter"));
+    if (!parameter.value) diagnostics_.add(errors::constant_needed(parameter.tree->value->span, {"the value of a parameter"}));
   }
 }
 

@@ -79,7 +79,7 @@ bool ArrayAlgebra::spend(Array const& array, Span span) {
   return spend(nodes, span);
 }
 
-std::optional<Array> ArrayAlgebra::fill(Array array, Shape const& shape, bool any_number, std::string const& what, Span span) {
+std::optional<Array> ArrayAlgebra::fill(Array array, Shape const& shape, bool any_number, errors::Subject const& what, Span span) {
   if (array.shape == shape) return array;
   if (is_single(array.shape) && is_single(shape)) {
     array.shape = shape;
@@ -192,7 +192,7 @@ std::optional<Array> ArrayAlgebra::each_element(ast::Name const& function, std::
     if (argument.shape.count() > shape.count() || (argument.shape.count() == shape.count() && argument.shape.rank > shape.rank))
       shape = argument.shape;
   for (Array& argument : arguments) {
-    auto filled = fill(std::move(argument), shape, true, fmt::format("an argument of `{}`", function.text), span);
+    auto filled = fill(std::move(argument), shape, true, errors::named("an argument of", function.text), span);
     if (!filled) return std::nullopt;
     argument = std::move(*filled);
   }
@@ -210,9 +210,9 @@ std::optional<Array> ArrayAlgebra::conditional(Array condition, Array then, Arra
   Shape shape;
   for (Array const* array : {&condition, &then, &otherwise})
     if (array->shape.count() > shape.count() || array->shape.rank > shape.rank) shape = array->shape;
-  auto a = fill(std::move(condition), shape, true, "the condition", span);
-  auto b = fill(std::move(then), shape, true, "the first branch", span);
-  auto c = fill(std::move(otherwise), shape, true, "the other branch", span);
+  auto a = fill(std::move(condition), shape, true, {"the condition"}, span);
+  auto b = fill(std::move(then), shape, true, {"the first branch"}, span);
+  auto c = fill(std::move(otherwise), shape, true, {"the other branch"}, span);
   if (!a || !b || !c) return std::nullopt;
   Array result{shape, {}};
   for (std::size_t i = 0; i < shape.count(); ++i)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "check/message/subject.hpp"
 #include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
 #include "syntax/shape.hpp"
@@ -43,8 +44,8 @@ class ArrayAlgebra {
   std::optional<Array> sum(Array const& array, Span span);
   std::optional<Array> dot(Array const& left, Array const& right, Span span);
 
-  /// `array` in this shape: itself, or a number that stands for every element. what: "the value of `k`", for the message.
-  std::optional<Array> fill(Array array, Shape const& shape, bool any_number, std::string const& what, Span span);
+  /// `array` in this shape: itself, or a number that stands for every element. what: for the message.
+  std::optional<Array> fill(Array array, Shape const& shape, bool any_number, errors::Subject const& what, Span span);
 
   /// Counts towards the bound; false when it is reached.
   bool spend(Array const& array, Span span);

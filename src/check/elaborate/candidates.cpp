@@ -17,7 +17,7 @@ std::optional<std::vector<ast::Expression>> values(ast::Argument const& argument
   auto const first = whole_number(*(*range)->left, {}), last = whole_number(*(*range)->right, {});
   if (!first || !last) {
     ast::Expression const& wrong = first ? *(*range)->right : *(*range)->left;
-    diagnostics.add(errors::whole_number_needed(wrong.span, "an end of this range"));
+    diagnostics.add(errors::whole_number_needed(wrong.span, {"an end of this range"}));
     return std::nullopt;
   }
   if (*last < *first || *last - *first >= static_cast<long>(most_candidates)) {

@@ -13,6 +13,7 @@
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/tree.hpp"
 #include "check/message/errors_reuse.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid {
 namespace {
@@ -111,7 +112,7 @@ class Elaborator {
   // The subject becomes the model with its arguments; what is given for a vector is given for each of its numbers.
   ast::Task elaborated(ast::Task task) {
     auto const model = environments_.main().models.find(task.subject.text);
-    if (task.verb.text == "predict" || model == environments_.main().models.end()) return task;
+    if (words::task_kind(task.verb.text) == TaskKind::predict || model == environments_.main().models.end()) return task;
     std::size_t const before = diagnostics_.all().size();
     auto const arguments = model_arguments(*model->second.tree, task.arguments, task.subject.span, {}, diagnostics_);
     check_names(*model->second.tree, task.arguments);
@@ -233,7 +234,7 @@ class Elaborator {
       }
       auto value = evaluator.evaluate(argument.value, frame);
       if (value)
-        value = evaluator.algebra().fill(std::move(*value), shape->second, true, fmt::format("the value of `{}`", shape->first),
+        value = evaluator.algebra().fill(std::move(*value), shape->second, true, errors::named("the value of", shape->first),
                                          argument.value.span);
       if (!value) continue;
       for (std::size_t i = 0; i < value->items.size(); ++i)

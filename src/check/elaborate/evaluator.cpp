@@ -76,7 +76,7 @@ std::optional<Array> Evaluator::value_of(Frame& frame, std::string const& name, 
   symbol.evaluated = true;
   if (value && symbol.shape_known) {
     std::string const path = symbol.bound() ? frame.prefix + name : name;
-    value = algebra_.fill(std::move(*value), symbol.shape, true, fmt::format("the value of `{}`", path), symbol.value->span);
+    value = algebra_.fill(std::move(*value), symbol.shape, true, errors::named("the value of", path), symbol.value->span);
   } else if (value) {
     symbol.shape = value->shape;
   }
@@ -98,7 +98,7 @@ std::optional<Array> Evaluator::element(Array array, ast::Reference const& refer
   for (std::size_t i = 0; i < reference.index.size(); ++i) {
     auto const index = whole_number(reference.index[i], frame.instance.arguments);
     if (!index) {
-      diagnostics_.add(errors::whole_number_needed(reference.index[i].span, "an index"));
+      diagnostics_.add(errors::whole_number_needed(reference.index[i].span, {"an index"}));
       return std::nullopt;
     }
     if (*index < 1 || *index > (i == 0 ? array.shape.rows : array.shape.columns)) {
@@ -139,7 +139,7 @@ std::optional<Array> Evaluator::reference(ast::Reference const& reference, Frame
     for (ast::Expression const& index : reference.index) {
       auto const number = whole_number(index, frame.instance.arguments);
       if (!number) {
-        diagnostics_.add(errors::whole_number_needed(index.span, "an index"));
+        diagnostics_.add(errors::whole_number_needed(index.span, {"an index"}));
         return std::nullopt;
       }
       indices += fmt::format("{}{}", indices.empty() ? "" : ", ", *number);
@@ -290,7 +290,7 @@ std::optional<Array> Evaluator::array_function(ast::Call const& call, std::vecto
     if (!row.takes_sizes) continue;
     auto const size = whole_number(argument.value, frame.instance.arguments);
     if (!size) {
-      diagnostics_.add(errors::whole_number_needed(argument.value.span, fmt::format("an argument of `{}`", call.function.text)));
+      diagnostics_.add(errors::whole_number_needed(argument.value.span, errors::named("an argument of", call.function.text)));
       return std::nullopt;
     }
     sizes.push_back(*size);
@@ -357,7 +357,7 @@ std::optional<std::vector<ast::Call>> Evaluator::calls(ast::Call const& call, Sh
   std::vector<ast::Call> result(shape.count(), ast::Call{{call.span}, call.function, {}});
   for (ast::Argument const& argument : call.arguments) {
     auto value = evaluate(argument.value, frame);
-    std::string const what = fmt::format("an argument of `{}`", call.function.text);
+    errors::Subject const what = errors::named("an argument of", call.function.text);
     if (value) value = algebra_.fill(std::move(*value), shape, true, what, argument.value.span);
     if (!value) return std::nullopt;
     for (std::size_t i = 0; i < result.size(); ++i)

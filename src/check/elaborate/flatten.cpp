@@ -155,7 +155,7 @@ class Flattener {
       auto values = evaluator_.evaluate(initial.value, frame);
       if (!states || !values) continue;
       values = evaluator_.algebra().fill(std::move(*values), states->shape, true,
-                                         fmt::format("the initial value of `{}`", initial.state.name.text), initial.value.span);
+                                         errors::named("the initial value of", initial.state.name.text), initial.value.span);
       if (!values) continue;
       for (std::size_t i = 0; i < states->items.size(); ++i)
         if (auto const owner = initial_owner_.find(primed(states->items[i]));
@@ -175,7 +175,7 @@ class Flattener {
       values = evaluator_.evaluate(*parameter.value, frame);
       if (values)
         values = evaluator_.algebra().fill(std::move(*values), symbol.shape, true,
-                                           fmt::format("the value of `{}`", parameter.name.name.text), parameter.value->span);
+                                           errors::named("the value of", parameter.name.name.text), parameter.value->span);
       if (!values) return;
     }
     for (std::size_t i = 0; i < symbol.shape.count(); ++i) {
@@ -194,8 +194,8 @@ class Flattener {
     if (!value) return;
     // What is reported says its size: a comma too many would else make two quantities of one.
     if (definition.kind == ast::DefinitionKind::derived && definition.name.sizes.empty() && value->shape.rank > 0) {
-      std::string const what = fmt::format("the value of `{}`", definition.name.name.text);
-      diagnostics_.add(errors::wrong_shape(definition.value.span, what, value->shape, Shape{}));
+      diagnostics_.add(errors::wrong_shape(definition.value.span, errors::named("the value of", definition.name.name.text),
+                                           value->shape, Shape{}));
       return;
     }
     for (std::size_t i = 0; i < value->items.size(); ++i)
@@ -224,9 +224,11 @@ class Flattener {
     if (!noises) return;
     if (shape->rank == 0 && !noises->front().arguments.empty())
       if (auto const* list = std::get_if<ast::Box<ast::List>>(&noises->front().arguments.front().value.node)) {
-        diagnostics_.add(errors::wrong_shape(observation.noise.arguments.front().value.span,
-                                             fmt::format("what channel `{}` measures", observation.channel.name.text),
-                                             vector_of(static_cast<int>((*list)->items.size())), Shape{}));
+        diagnostics_.add(
+            errors::wrong_shape(observation.noise.arguments.front().value.span,
+                                errors::Subject{fmt::format("what channel `{}` measures", observation.channel.name.text),
+                                                {observation.channel.name.text}},
+                                vector_of(static_cast<int>((*list)->items.size())), Shape{}));
         return;
       }
     for (std::size_t i = 0; i < noises->size(); ++i)
@@ -289,7 +291,7 @@ class Flattener {
     if (channel.sizes.size() > 1) {
       diagnostics_.add(errors::too_many_sizes(channel.span, channel.name.text));
     } else if (!size) {
-      diagnostics_.add(errors::whole_number_needed(channel.sizes.front().span, fmt::format("a size of `{}`", channel.name.text)));
+      diagnostics_.add(errors::whole_number_needed(channel.sizes.front().span, errors::named("a size of", channel.name.text)));
     } else if (*size < 1 || *size > 1000) {
       diagnostics_.add(errors::size_out_of_range(channel.sizes.front().span, channel.name.text, *size, 1000));
     } else {

@@ -35,10 +35,10 @@ std::optional<WholeNumbers> model_arguments(ast::Model const& model, std::vector
     std::optional<long> value;
     if (place != given.end()) {
       value = whole_number(place->value, known);
-      if (!value) diagnostics.add(errors::whole_number_needed(place->value.span, fmt::format("`{}`", argument.name.text)));
+      if (!value) diagnostics.add(errors::whole_number_needed(place->value.span, errors::named(argument.name.text)));
     } else if (argument.value) {
       value = whole_number(*argument.value, result);
-      if (!value) diagnostics.add(errors::whole_number_needed(argument.value->span, fmt::format("`{}`", argument.name.text)));
+      if (!value) diagnostics.add(errors::whole_number_needed(argument.value->span, errors::named(argument.name.text)));
     } else {
       diagnostics.add(errors::model_argument_missing(use, model.name.text, argument.name.text));
     }
@@ -80,7 +80,7 @@ std::optional<Shape> FrameBuilder::shape_of(Frame const& frame, ast::Declared co
   for (std::size_t i = 0; i < declared.sizes.size(); ++i) {
     auto const size = whole_number(declared.sizes[i], frame.instance.arguments);
     if (!size) {
-      diagnostics_.add(errors::whole_number_needed(declared.sizes[i].span, fmt::format("a size of `{}`", declared.name.text)));
+      diagnostics_.add(errors::whole_number_needed(declared.sizes[i].span, errors::named("a size of", declared.name.text)));
       return std::nullopt;
     }
     if (*size < 1 || *size > most_elements || sizes[0] * *size > most_elements) {

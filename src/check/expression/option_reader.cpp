@@ -86,18 +86,18 @@ std::optional<double> OptionReader::number(ast::Expression const& tree, std::str
   auto const value = scope_.expression(tree);
   if (!value) return std::nullopt;
   if (unit && value->kind == Typed::Kind::known)
-    if (auto refused = refuse_number(tree.span, "`" + name + "`", value->unit, *unit)) {
+    if (auto refused = refuse_number(tree.span, errors::named(name), value->unit, *unit)) {
       diagnostics_.add(std::move(*refused));
       return std::nullopt;
     }
   auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
   if (!constant) {
-    diagnostics_.add(errors::constant_needed(tree.span, "`" + name + "`"));
+    diagnostics_.add(errors::constant_needed(tree.span, errors::named(name)));
     return std::nullopt;
   }
   if (whole && *constant != std::floor(*constant)) {
     diagnostics_.add(
-        errors::option_kind(tree.span, name, "a whole number", fmt::format("{} = {:.0f}", name, std::round(*constant))));
+        errors::option_kind(tree.span, name, {"a whole number"}, fmt::format("{} = {:.0f}", name, std::round(*constant))));
     return std::nullopt;
   }
   if (!(*constant >= least && *constant <= most)) {
@@ -137,7 +137,7 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
         if (argument.name && argument.name->text != "rows") {
           diagnostics_.add(errors::unknown_argument(*argument.name, "estimated", {"rows"}));
         } else if (given) {
-          diagnostics_.add(errors::stated_twice(argument.span, *given, "`rows`"));
+          diagnostics_.add(errors::stated_twice(argument.span, *given, errors::named("rows")));
         } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true)) {
           rule.rows = static_cast<int>(*rows);
         }
@@ -162,7 +162,7 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
 
 bool OptionReader::solver(ast::Option const& option, SolverSettings& place) {
   if (solver_) {
-    diagnostics_.add(errors::stated_twice(option.span, *solver_, "the solver"));
+    diagnostics_.add(errors::stated_twice(option.span, *solver_, {"the solver"}));
     return true;
   }
   solver_ = option.span;
@@ -196,7 +196,7 @@ void OptionReader::unknown(ast::Option const& option, std::vector<std::string> c
 
 bool OptionReader::fresh(ast::Option const& option, std::string const& key) {
   auto const [place, is_fresh] = seen_.emplace(option.input ? "input " + key : key, option.span);
-  std::string const what = key == the_backend ? key : "`" + place->first + "`";
+  errors::Subject const what = key == the_backend ? errors::Subject{key} : errors::named(place->first);
   if (!is_fresh) diagnostics_.add(errors::stated_twice(option.span, place->second, what));
   return is_fresh;
 }
@@ -218,7 +218,7 @@ void OptionReader::settings(ast::Call const& call, std::span<SettingRow const> r
       continue;
     }
     if (auto const [place, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
-      diagnostics_.add(errors::stated_twice(argument.span, place->second, "`" + name + "`"));
+      diagnostics_.add(errors::stated_twice(argument.span, place->second, errors::named(name)));
       continue;
     }
     setting(argument, *row, values);

@@ -278,7 +278,7 @@ std::optional<Typed> Scope::other_than_sum(ast::Expression const& tree) {
       value = tagged(graph_, number->value, *unit, tree.span);
     }
   } else if (auto const* text = std::get_if<ast::Text>(&tree.node)) {
-    diagnostics_.add(errors::not_a_number(text->span, "a text"));
+    diagnostics_.add(errors::not_a_number(text->span, {"a text"}));
   } else if (auto const* name = std::get_if<ast::Reference>(&tree.node)) {
     value = reference(*name);
   } else if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) {

@@ -37,16 +37,8 @@ Names with_bare(std::string const& component) {
   return names;
 }
 
-Names names_in(std::string_view phrase) {
-  Names names;
-  for (std::size_t open = phrase.find('`'); open != std::string_view::npos;) {
-    std::size_t const close = phrase.find('`', open + 1);
-    if (close == std::string_view::npos) break;
-    for (std::string& each : with_bare(std::string(phrase.substr(open + 1, close - open - 1)))) names.push_back(std::move(each));
-    open = phrase.find('`', close + 1);
-  }
-  return names;
-}
+Subject named(std::string const& name) { return {"`" + name + "`", with_bare(name)}; }
+Subject named(std::string_view before, std::string const& name) { return {fmt::format("{} `{}`", before, name), with_bare(name)}; }
 
 std::string guess_or(std::string const& text, Names const& known, std::string fallback) {
   std::string guess = did_you_mean(text, known);

@@ -17,8 +17,6 @@ Diagnostic conflict(std::string code, Span span, std::string label, Span other, 
 Diagnostic about(Names names, Diagnostic diagnostic, std::string kind = {});
 /// What else it concerns, behind what it has.
 Diagnostic also_about(Names const& names, Diagnostic diagnostic);
-/// What stands in back quotes in a phrase that becomes part of a message: "the value of `width`". Of `y'` also `y`.
-Names names_in(std::string_view phrase);
 /// `y'` and `y`; one name where there are no primes.
 Names with_bare(std::string const& component);
 

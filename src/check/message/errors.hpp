@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "check/message/subject.hpp"
 #include "check/message/unit_slips.hpp"
 #include "core/numeric/unit.hpp"
 #include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid::errors {
-
-using Names = std::vector<std::string>;
 
 // names, functions, units (E20)
 Diagnostic unknown_name(ast::Name const& name, Names const& known);
@@ -24,14 +24,14 @@ Diagnostic definition_cycle(Span span, Names const& loop);
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what);
 Diagnostic beyond_highest(ast::Reference const& reference, int order);
 Diagnostic second_input_derivative(ast::Reference const& reference);
-Diagnostic not_a_number(Span span, std::string const& what);
-Diagnostic constant_needed(Span span, std::string const& what);
+Diagnostic not_a_number(Span span, Subject const& what);
+Diagnostic constant_needed(Span span, Subject const& what);
 /// meant: what it seems to stand for, when its letters tell; whole: the unit it stands in, as it should be written.
 Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant = std::nullopt, std::string const& whole = {});
 Diagnostic unit_exponent(Span span);
 Diagnostic list_here(Span span);
-Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted);
-Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted);
+Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& given, Unit const& wanted);
+Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, Unit const& wanted);
 
 // distributions (E21)
 Diagnostic unknown_distribution(ast::Name const& name, Names const& known);
@@ -99,28 +99,28 @@ Diagnostic implicit_in_discrete_time(Span equation, std::string const& state);
 Diagnostic no_file(ast::Name const& block);
 Diagnostic no_time(ast::Name const& block);
 Diagnostic time_and_rate(Span second, Span first);
-Diagnostic stated_twice(Span second, Span first, std::string const& what);
+Diagnostic stated_twice(Span second, Span first, Subject const& what);
 Diagnostic rule_missing(Span span, std::string const& input, Names const& rules);
 Diagnostic unknown_rule(ast::Name const& rule, Names const& known);
 Diagnostic not_a_time(Span span, Unit const& unit);
 Diagnostic rate_not_positive(Span span);
 Diagnostic bad_rows(Span span);
-// owner: "model `duffing`" or "dictionary `restoring`"
-Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data);
-Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels);
-Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs);
-Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels);
+// owner: named("model", "duffing") or named("dictionary", "restoring")
+Diagnostic input_not_bound(Span span, std::string const& input, Subject const& owner, std::string const& data);
+Diagnostic no_channel_bound(Span span, Subject const& owner, std::string const& data, Names const& channels);
+Diagnostic unknown_input(Span span, std::string const& input, Subject const& owner, Names const& inputs);
+Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels);
 /// rules: those under which the derivative exists.
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules);
-Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit);
+Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& column_unit, std::string const& declared_unit);
 
 // tasks (E60)
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
 /// A part of something named: "data `bench` has no part `trian`".
-Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::string const& kind, Names const& known);
+Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::string const& kind, Names const& known);
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
-Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example);
+Diagnostic option_kind(Span span, std::string const& option, Subject const& wanted, std::string const& example);
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most);
 /// Of an option whose 0 stands for something else.
 Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most);
@@ -162,8 +162,8 @@ Diagnostic distances_of_two_kinds(Span span, std::string const& one, Unit const&
                                   Unit const& other_unit);
 Diagnostic expressions_of_two_units(Span second, Unit const& unit, Span first, Unit const& first_unit);
 Diagnostic no_weight(Span span);
-/// own: the verb that it is for.
-Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, std::string const& own, Names const& known);
+/// own: the kind of task that it is for.
+Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, TaskKind own, Names const& known);
 Diagnostic arguments_of_candidates(Span span, std::string const& set);
 Diagnostic model_and_candidates(ast::Name const& name, Span model);
 

@@ -127,18 +127,18 @@ Diagnostic no_weight(Span span) {
   return error("E6514", span, "every channel has weight 0: nothing would be compared", "give one of them a positive weight");
 }
 
-Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, std::string const& own, Names const& known) {
-  if (verb == "select" && own == "fit")
+Diagnostic backend_of_other_verb(ast::Name const& name, std::string const& verb, TaskKind own, Names const& known) {
+  if (words::task_kind(verb) == TaskKind::select && own == TaskKind::fit)
     return about({name.text},
                  error("E6515", name.span, fmt::format("`{}` fits a single model and cannot select among several", name.text),
                        fmt::format("select with {}, or `fit` one model with `{}`", quoted(known, "or"), name.text)));
-  if (own == "select")
+  if (own == TaskKind::select)
     return about({name.text, verb},
                  error("E6515", name.span, fmt::format("`{}` selects among models and cannot be used with `{}`", name.text, verb),
                        fmt::format("write `select MODEL to DATA with {}`, or {} with {}", name.text, verb, quoted(known, "or"))));
   return about({name.text, verb}, error("E6515", name.span,
                                         fmt::format("`{}` {} and cannot be used with `{}`", name.text,
-                                                    own == "fit" ? "fits a model" : "finds terms of a dictionary", verb),
+                                                    own == TaskKind::fit ? "fits a model" : "finds terms of a dictionary", verb),
                                         fmt::format("{} with {}", verb, quoted(known, "or"))));
 }
 

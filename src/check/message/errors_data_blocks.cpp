@@ -30,9 +30,9 @@ Diagnostic time_and_rate(Span second, Span first) {
                   "remove the column or the rate");
 }
 
-Diagnostic stated_twice(Span second, Span first, std::string const& what) {
-  return about(names_in(what),
-               conflict("E4104", second, "again here", first, "first here", fmt::format("{} is given twice", what), "keep one"));
+Diagnostic stated_twice(Span second, Span first, Subject const& what) {
+  return about(what.names, conflict("E4104", second, "again here", first, "first here",
+                                    fmt::format("{} is given twice", what.words), "keep one"));
 }
 
 Diagnostic rule_missing(Span span, std::string const& input, Names const& rules) {
@@ -61,28 +61,29 @@ Diagnostic bad_rows(Span span) {
                "for example `split train = rows 1..500`");
 }
 
-Diagnostic input_not_bound(Span span, std::string const& input, std::string const& owner, std::string const& data) {
-  return also_about(names_in(owner),
-                    about({data, input},
-                          error("E4109", span, fmt::format("data block `{}` does not provide input `{}` of {}", data, input, owner),
-                                fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input))));
+Diagnostic input_not_bound(Span span, std::string const& input, Subject const& owner, std::string const& data) {
+  return also_about(
+      owner.names,
+      about({data, input},
+            error("E4109", span, fmt::format("data block `{}` does not provide input `{}` of {}", data, input, owner.words),
+                  fmt::format("add `input {} = COLUMN [unit] hold RULE` to the data block", input))));
 }
 
-Diagnostic no_channel_bound(Span span, std::string const& owner, std::string const& data, Names const& channels) {
-  return also_about(names_in(owner),
-                    about({data}, error("E4110", span, fmt::format("data block `{}` measures no channel of {}", data, owner),
+Diagnostic no_channel_bound(Span span, Subject const& owner, std::string const& data, Names const& channels) {
+  return also_about(owner.names,
+                    about({data}, error("E4110", span, fmt::format("data block `{}` measures no channel of {}", data, owner.words),
                                         fmt::format("add `measure {} = COLUMN [unit]` to the data block",
                                                     channels.empty() ? "CHANNEL" : channels.front()))));
 }
 
-Diagnostic unknown_input(Span span, std::string const& input, std::string const& owner, Names const& inputs) {
-  return also_about(names_in(owner), about({input}, error("E4115", span, fmt::format("{} has no input `{}`", owner, input),
-                                                          guess_or(input, inputs, choose(inputs, "input")))));
+Diagnostic unknown_input(Span span, std::string const& input, Subject const& owner, Names const& inputs) {
+  return also_about(owner.names, about({input}, error("E4115", span, fmt::format("{} has no input `{}`", owner.words, input),
+                                                      guess_or(input, inputs, choose(inputs, "input")))));
 }
 
-Diagnostic unknown_channel(Span span, std::string const& channel, std::string const& owner, Names const& channels) {
-  return also_about(names_in(owner), about({channel}, error("E4111", span, fmt::format("{} has no channel `{}`", owner, channel),
-                                                            guess_or(channel, channels, choose(channels, "channel")))));
+Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels) {
+  return also_about(owner.names, about({channel}, error("E4111", span, fmt::format("{} has no channel `{}`", owner.words, channel),
+                                                        guess_or(channel, channels, choose(channels, "channel")))));
 }
 
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules) {
@@ -92,10 +93,11 @@ Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, 
                         "choose " + choice_of_rules(rules)));
 }
 
-Diagnostic unit_mismatch(Span span, std::string const& what, std::string const& column_unit, std::string const& declared_unit) {
-  return about(names_in(what),
-               error("E4113", span, fmt::format("{} is in [{}], but the declared unit is [{}]", what, column_unit, declared_unit),
-                     "use units of the same dimension"));
+Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& column_unit, std::string const& declared_unit) {
+  return about(
+      what.names,
+      error("E4113", span, fmt::format("{} is in [{}], but the declared unit is [{}]", what.words, column_unit, declared_unit),
+            "use units of the same dimension"));
 }
 
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {

@@ -68,11 +68,14 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
     return about({name.text},
                  error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`"),
                  "function");
-  return about({name.text},
-               error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
-                     guess_or(function_synonyms, name.text, known,
-                              "define it: `function f(a, b) = ...`; built-in ones: sysid list functions")),
-               "function");
+  auto const help = [&](std::string const& list) {
+    return guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in ones: " + list);
+  };
+  Diagnostic result = about(
+      {name.text}, error("E2003", name.span, fmt::format("there is no function `{}`", name.text), help("sysid list functions")),
+      "function");
+  result.prompt_help = help("`list functions`");
+  return result;
 }
 
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {
@@ -124,14 +127,14 @@ Diagnostic second_input_derivative(ast::Reference const& reference) {
             "declare the derivative as a separate input"));
 }
 
-Diagnostic not_a_number(Span span, std::string const& what) {
-  return about(names_in(what), error("E2009", span, fmt::format("{} cannot be used in an expression", what),
-                                     "use numbers and names of quantities"));
+Diagnostic not_a_number(Span span, Subject const& what) {
+  return about(what.names, error("E2009", span, fmt::format("{} cannot be used in an expression", what.words),
+                                 "use numbers and names of quantities"));
 }
 
-Diagnostic constant_needed(Span span, std::string const& what) {
-  return about(names_in(what), error("E2010", span, fmt::format("{} must be a number known before the run", what),
-                                     "use numbers, constants and functions of them only"));
+Diagnostic constant_needed(Span span, Subject const& what) {
+  return about(what.names, error("E2010", span, fmt::format("{} must be a number known before the run", what.words),
+                                 "use numbers, constants and functions of them only"));
 }
 
 Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& meant, std::string const& whole) {
@@ -168,17 +171,18 @@ Diagnostic list_here(Span span) {
   return error("E2013", span, "a list cannot be used in an expression", "parentheses with a comma make a list; remove the comma");
 }
 
-Diagnostic number_of_other_kind(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
-  return about(names_in(what), error("E2014", span, fmt::format("{} is {}, but this is {}", what, measure(wanted), measure(given)),
-                                     wanted.dimensionless() ? "remove the unit" : "correct the unit, or remove it"));
+Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& given, Unit const& wanted) {
+  return about(what.names,
+               error("E2014", span, fmt::format("{} is {}, but this is {}", what.words, measure(wanted), measure(given)),
+                     wanted.dimensionless() ? "remove the unit" : "correct the unit, or remove it"));
 }
 
-Diagnostic number_in_cycles(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
+Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, Unit const& wanted) {
   return about(
-      names_in(what),
+      what.names,
       error("E4017", span,
-            fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, so they differ by a factor of 2 pi", what,
-                        measure(wanted), measure(given)),
+            fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, so they differ by a factor of 2 pi",
+                        what.words, measure(wanted), measure(given)),
             fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted))));
 }
 

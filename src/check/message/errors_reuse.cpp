@@ -16,9 +16,9 @@ Diagnostic with(Diagnostic diagnostic, Span other, std::string label) {
 
 }  // namespace
 
-Diagnostic whole_number_needed(Span span, std::string const& what) {
-  return about(names_in(what), error("E2701", span, fmt::format("{} must be a constant whole number", what),
-                                     "use numbers and arguments of the model: `3`, `n`, `n - 1`"));
+Diagnostic whole_number_needed(Span span, Subject const& what) {
+  return about(what.names, error("E2701", span, fmt::format("{} must be a constant whole number", what.words),
+                                 "use numbers and arguments of the model: `3`, `n`, `n - 1`"));
 }
 Diagnostic size_out_of_range(Span span, std::string const& name, long size, long most) {
   return about({name}, error("E2702", span, fmt::format("`{}` cannot have {} elements", name, size),
@@ -50,9 +50,9 @@ Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& lef
   if (left_span == right_span) result.primary = Label{span, {}};
   return left_span == right_span ? result : with(std::move(result), right_span, right.text());
 }
-Diagnostic wrong_shape(Span span, std::string const& what, Shape const& given, Shape const& wanted) {
-  return about(names_in(what),
-               error("E2705", span, fmt::format("{} is {}, but {} is needed", what, given.text(), wanted.text()),
+Diagnostic wrong_shape(Span span, Subject const& what, Shape const& given, Shape const& wanted) {
+  return about(what.names,
+               error("E2705", span, fmt::format("{} is {}, but {} is needed", what.words, given.text(), wanted.text()),
                      wanted.rank == 0 ? "use one element, `q[1]`, or a sum, `sum(q)`; or declare the size after the name: `name(3)`"
                                       : "write a list in parentheses with as many items, or one number for all"));
 }
@@ -146,10 +146,13 @@ Diagnostic process_of_part(Span span, std::string const& part, Span declaration)
 }
 
 Diagnostic module_not_found(ast::Name const& module, std::string const& folder, Names const& known) {
-  return about({module.text}, error("E2901", module.span,
-                                    fmt::format("there is no `{}.sysid` in {} and no module `{}` in the standard library",
-                                                module.text, folder, module.text),
-                                    guess_or(module.text, known, "`sysid list modules` lists the standard library")));
+  Diagnostic result =
+      about({module.text}, error("E2901", module.span,
+                                 fmt::format("there is no `{}.sysid` in {} and no module `{}` in the standard library", module.text,
+                                             folder, module.text),
+                                 guess_or(module.text, known, "`sysid list modules` lists the standard library")));
+  result.prompt_help = guess_or(module.text, known, "`list modules` lists the standard library");
+  return result;
 }
 Diagnostic module_cycle(Span span, Names const& loop) {
   return error("E2902", span, fmt::format("this module uses itself: {}", fmt::join(loop, " -> ")),

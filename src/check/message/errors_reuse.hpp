@@ -10,12 +10,12 @@
 namespace sysid::errors {
 
 // vectors and matrices (E27)
-Diagnostic whole_number_needed(Span span, std::string const& what);
+Diagnostic whole_number_needed(Span span, Subject const& what);
 Diagnostic size_out_of_range(Span span, std::string const& name, long size, long most);
 Diagnostic too_many_sizes(Span span, std::string const& name);
 Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& left, Span left_span, Shape const& right,
                           Span right_span);
-Diagnostic wrong_shape(Span span, std::string const& what, Shape const& given, Shape const& wanted);
+Diagnostic wrong_shape(Span span, Subject const& what, Shape const& given, Shape const& wanted);
 Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span other_span);
 Diagnostic index_out_of_range(Span span, std::string const& name, Shape const& shape);
 Diagnostic index_count(Span span, std::string const& name, Shape const& shape, std::size_t given);

@@ -1,5 +1,6 @@
 // The checker's wording about tasks, their options and their experiments.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "check/message/error_words.hpp"
 
@@ -17,11 +18,11 @@ Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names co
                kind);
 }
 
-Diagnostic unknown_member(ast::Name const& name, std::string const& owner, std::string const& kind, Names const& known) {
-  return also_about(names_in(owner), about({name.text},
-                                           error("E6001", name.span, fmt::format("{} has no {} `{}`", owner, kind, name.text),
-                                                 guess_or(name.text, known, choose(known, kind))),
-                                           kind + " of " + owner));
+Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::string const& kind, Names const& known) {
+  return also_about(owner.names, about({name.text},
+                                       error("E6001", name.span, fmt::format("{} has no {} `{}`", owner.words, kind, name.text),
+                                             guess_or(name.text, known, choose(known, kind))),
+                                       fmt::format("{} of {}", kind, fmt::join(owner.names, " "))));
 }
 
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
@@ -37,9 +38,9 @@ Diagnostic option_missing(ast::Task const& task, std::string const& option, std:
                      fmt::format("add `{}` after `with`", example)));
 }
 
-Diagnostic option_kind(Span span, std::string const& option, std::string const& wanted, std::string const& example) {
-  return also_about(names_in(wanted), about({option}, error("E6004", span, fmt::format("`{}` must be {}", option, wanted),
-                                                            fmt::format("for example `{}`", example))));
+Diagnostic option_kind(Span span, std::string const& option, Subject const& wanted, std::string const& example) {
+  return also_about(wanted.names, about({option}, error("E6004", span, fmt::format("`{}` must be {}", option, wanted.words),
+                                                        fmt::format("for example `{}`", example))));
 }
 
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most) {
@@ -66,7 +67,7 @@ Diagnostic option_choice(Span span, std::string const& option, std::string const
 }
 
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {
-  bool const selects = task.verb.text == "select";
+  bool const selects = words::task_kind(task.verb.text) == TaskKind::select;
   return error(
       "E6007", task.verb.span, fmt::format("this {} has no back end", selects ? "selection" : "fit"),
       fmt::format("add `with {}`; back ends: {}", selects ? "abc_smc(particles = 1000)" : "mh(samples = 25000)", quoted(known)));
@@ -88,9 +89,10 @@ Diagnostic data_unused(ast::Task const& task, Span data) {
 }
 
 Diagnostic not_a_fit(ast::Name const& name, std::string const& verb) {
-  return about({name.text}, error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
-                                  verb == "predict" ? "predict needs the name of a fit task"
-                                                    : "`search = near(...)` needs the name of a fit task"));
+  return about({name.text},
+               error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
+                     words::task_kind(verb) == TaskKind::predict ? "predict needs the name of a fit task"
+                                                                 : "`search = near(...)` needs the name of a fit task"));
 }
 
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration) {

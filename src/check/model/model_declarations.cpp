@@ -89,7 +89,7 @@ void ModelChecker::declare_step(ast::DiscreteTimeDeclaration const& discrete) {
   auto const value = scope_.expression(*discrete.step);
   if (!value) return;
   if (value->kind == Typed::Kind::known && value->unit.dimension != second.dimension) {
-    diagnostics_.add(errors::number_of_other_kind(discrete.step->span, "the time between samples", value->unit, second));
+    diagnostics_.add(errors::number_of_other_kind(discrete.step->span, {"the time between samples"}, value->unit, second));
     return;
   }
   auto const step = model_.graph.constant_value(adapt(model_.graph, *value, second));

@@ -18,7 +18,7 @@ void ModelChecker::parameters() {
       if (!value) continue;
       NodeId const node = adapt(model_.graph, *value, parameter.unit);
       if (!model_.graph.constant_value(node)) {
-        diagnostics_.add(errors::constant_needed(tree.value->span, "the value of a parameter"));
+        diagnostics_.add(errors::constant_needed(tree.value->span, {"the value of a parameter"}));
         continue;
       }
       parameter.value = node;
@@ -134,7 +134,7 @@ void ModelChecker::derived() {
     std::string const moving = moving_part(model_.graph, value->node);
     if (definition.kind == ast::DefinitionKind::constant) {
       if (!model_.graph.constant_value(value->node))
-        diagnostics_.add(errors::constant_needed(definition.value.span, "the value of a constant"));
+        diagnostics_.add(errors::constant_needed(definition.value.span, {"the value of a constant"}));
       return;
     }
     Derived quantity;

@@ -67,7 +67,7 @@ class PointReader {
     if (!value || value->kind == Typed::Kind::wrong) return false;
     std::optional<Unit> const& wanted = process_.inputs[column].unit;
     if (value->kind == Typed::Kind::known && wanted)
-      if (auto wrong = refuse_number(tree.span, "`" + name_ + "`", value->unit, *wanted)) return refuse(std::move(*wrong));
+      if (auto wrong = refuse_number(tree.span, errors::named(name_), value->unit, *wanted)) return refuse(std::move(*wrong));
     Graph& graph = scope_.graph();
     auto const number = graph.constant_value(adapt(graph, with_own_unit(*value), wanted));
     if (!number) {

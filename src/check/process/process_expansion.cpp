@@ -132,7 +132,7 @@ class Expander {
       if (!given) return false;
       auto const number = graph_.constant_value(adapt(graph_, *given, input.unit));
       if (!number || !std::isfinite(*number)) {
-        refuse(errors::constant_needed(item.span, "an end of the range of a function"));
+        refuse(errors::constant_needed(item.span, {"an end of the range of a function"}));
         return false;
       }
       bound[end] = *number;

@@ -53,7 +53,7 @@ class DistanceChecker {
   void weights() {
     ast::Call const* call = as_call(options_.weights->value);
     if (call == nullptr || call->arguments.empty()) {
-      diagnostics_.add(errors::option_kind(options_.weights->span, "weights", "a weight for each channel",
+      diagnostics_.add(errors::option_kind(options_.weights->span, "weights", {"a weight for each channel"},
                                            "weights(" + rule_.channels.front() + " = 1)"));
       return;
     }
@@ -65,11 +65,11 @@ class DistanceChecker {
       }
       std::size_t const k = index_of(argument.name->text);
       if (k == rule_.channels.size()) {
-        diagnostics_.add(errors::unknown_member(*argument.name, "this selection", "measured channel", rule_.channels));
+        diagnostics_.add(errors::unknown_member(*argument.name, {"this selection"}, "measured channel", rule_.channels));
         continue;
       }
       if (auto const [place, fresh] = given.emplace(argument.name->text, argument.span); !fresh) {
-        diagnostics_.add(errors::stated_twice(argument.span, place->second, "`" + argument.name->text + "`"));
+        diagnostics_.add(errors::stated_twice(argument.span, place->second, errors::named(argument.name->text)));
         continue;
       }
       if (auto const value = reader_.number(argument.value, argument.name->text, Unit{}, 0, 1e300)) {
@@ -215,8 +215,8 @@ class DistanceChecker {
     }
     auto const [place, fresh] = found_.emplace(*read.begin(), Item{&tree, with_own_unit(*value)});
     if (!fresh)
-      diagnostics_.add(
-          errors::stated_twice(tree.span, place->second.tree->span, "the distance of `" + rule_.channels[place->first] + "`"));
+      diagnostics_.add(errors::stated_twice(tree.span, place->second.tree->span,
+                                            errors::named("the distance of", rule_.channels[place->first])));
   }
 
   // The expressions in the leaves of a model; 0 for a channel of no weight.

@@ -66,7 +66,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
   ast::Call const* call = as_call(option.value);
   std::vector<std::string> const names = signal_names();
   if (call == nullptr) {
-    diagnostics.add(errors::option_kind(option.value.span, "input " + input.name, "a generated signal", "gaussian(sd = 10)"));
+    diagnostics.add(errors::option_kind(option.value.span, "input " + input.name, {"a generated signal"}, "gaussian(sd = 10)"));
     return std::nullopt;
   }
   auto const row =
@@ -87,7 +87,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
     } else if (place == row->arguments.end() && name != "hold") {
       diagnostics.add(errors::unknown_argument(*argument.name, call->function.text, known));
     } else if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
-      diagnostics.add(errors::stated_twice(argument.span, first->second, "`" + name + "`"));
+      diagnostics.add(errors::stated_twice(argument.span, first->second, errors::named(name)));
     } else if (name == "hold") {
       std::string const word = as_word(argument.value).value_or("");
       if (auto const rule = find_input_rule(word))

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "check/expression/option_reader.hpp"
+#include "check/message/subject.hpp"
 #include "check/task/tasks.hpp"
 
 namespace sysid {
@@ -34,8 +35,8 @@ class TaskChecker {
   bool simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task);
   // Each argument of `values(m = 1, ...)`, `noise(displacement = 0.1 [mm])` with the index of its name among `known`, once.
   // owner, member: "model `duffing`", "parameter".
-  void each_named(ast::Call const& call, std::string const& owner, std::string const& member, std::vector<std::string> const& known,
-                  std::function<void(ast::Argument const&, std::size_t)> const& visit);
+  void each_named(ast::Call const& call, errors::Subject const& owner, std::string const& member,
+                  std::vector<std::string> const& known, std::function<void(ast::Argument const&, std::size_t)> const& visit);
   // Whether the option names a back end, known or not.
   bool backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
                       std::string& backend, Settings& settings);

@@ -29,7 +29,7 @@ void TaskChecker::discover_method(ast::Option const& option, std::string const& 
     for (ast::Argument const& argument : arguments) {
       if (!argument.name || argument.name->text != "derivatives") continue;
       if (first)
-        diagnostics_.add(errors::stated_twice(argument.span, *first, "`derivatives`"));
+        diagnostics_.add(errors::stated_twice(argument.span, *first, errors::named("derivatives")));
       else
         derivatives(argument.value, task);
       first = argument.span;
@@ -44,11 +44,13 @@ void TaskChecker::noise(ast::Call const& call, CheckedDictionary const& dictiona
   std::vector<std::string> known;
   for (Channel const& channel : dictionary.measured.channels) known.push_back(channel.name);
   task.noise.resize(known.size());
-  each_named(call, "dictionary `" + dictionary.name + "`", "channel", known, [&](ast::Argument const& argument, std::size_t index) {
-    std::optional<Unit> unit = dictionary.measured.channels[index].unit;
-    if (unit) unit->offset = 0;  // an sd is a difference
-    if (auto const value = options_.number(argument.value, argument.name->text, unit, 1e-300, 1e300)) task.noise[index] = *value;
-  });
+  each_named(call, errors::named("dictionary", dictionary.name), "channel", known,
+             [&](ast::Argument const& argument, std::size_t index) {
+               std::optional<Unit> unit = dictionary.measured.channels[index].unit;
+               if (unit) unit->offset = 0;  // an sd is a difference
+               if (auto const value = options_.number(argument.value, argument.name->text, unit, 1e-300, 1e300))
+                 task.noise[index] = *value;
+             });
 }
 
 void TaskChecker::require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task) {

@@ -5,6 +5,7 @@
 
 #include "check/data/data.hpp"
 #include "check/message/errors.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid {
 namespace {
@@ -34,14 +35,14 @@ std::optional<ExperimentUse> TaskChecker::experiment(ast::DataReference const& r
     if (place == block.parts.end()) {
       std::vector<std::string> known;
       for (DataPart const& each : block.parts) known.push_back(each.name);
-      diagnostics_.add(errors::unknown_member(*reference.part, "data `" + block.name + "`", "part", known));
+      diagnostics_.add(errors::unknown_member(*reference.part, errors::named("data", block.name), "part", known));
       return std::nullopt;
     }
     use.part = static_cast<int>(place - block.parts.begin());
   }
   if (model == nullptr) return std::nullopt;
-  check_binding(block, *model, tree_.verb.text == "discover" ? "dictionary" : "model", names_.declared, reference.span,
-                diagnostics_);
+  check_binding(block, *model, words::task_kind(tree_.verb.text) == TaskKind::discover ? "dictionary" : "model", names_.declared,
+                reference.span, diagnostics_);
   use.constants = check_constants(block, *model, names_.declared, reference.span, diagnostics_);
   return use;
 }

@@ -43,7 +43,8 @@ void TaskChecker::search(ast::Option const& option, std::optional<int>& near) {
                         ? std::get_if<ast::Reference>(&call->arguments[0].value.node)
                         : nullptr;
   if (fit == nullptr)
-    diagnostics_.add(errors::option_kind(option.value.span, "search", "`everywhere` or near a fit", "search = near(posterior)"));
+    diagnostics_.add(errors::option_kind(option.value.span, "search", {"`everywhere` or near a fit", {"everywhere"}},
+                                         "search = near(posterior)"));
   else
     near = fitted_task({{fit->span}, fit->name.text}, false);
 }

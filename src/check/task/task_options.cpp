@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/setting/table.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid {
 namespace {
@@ -39,13 +40,13 @@ constexpr TaskOptionRow noise_of_discovery = {
     "noise", "noise(displacement = 0.1 [mm])", "standard deviation of the noise of a channel, if it is known", {}};
 
 using Names = std::vector<std::string_view>;
-std::map<std::string_view, Names> const& by_verb() {
-  static std::map<std::string_view, Names> const all = {
-      {"simulate", {"values", "input", "noise", "samples", "rate", "step", "solver", "substeps", "seed", "file"}},
-      {"fit", {"start", "solver", "substeps", "prediction", "search", "seed"}},
-      {"select", {"distance", "weights", "start", "solver", "substeps", "prediction", "seed"}},
-      {"discover", {"noise", "top", "candidates", "refit", "seed"}},
-      {"predict", {"draws", "redraw", "start", "prediction", "seed"}}};
+std::map<TaskKind, Names> const& by_kind() {
+  static std::map<TaskKind, Names> const all = {
+      {TaskKind::simulate, {"values", "input", "noise", "samples", "rate", "step", "solver", "substeps", "seed", "file"}},
+      {TaskKind::fit, {"start", "solver", "substeps", "prediction", "search", "seed"}},
+      {TaskKind::select, {"distance", "weights", "start", "solver", "substeps", "prediction", "seed"}},
+      {TaskKind::discover, {"noise", "top", "candidates", "refit", "seed"}},
+      {TaskKind::predict, {"draws", "redraw", "start", "prediction", "seed"}}};
   return all;
 }
 
@@ -53,10 +54,10 @@ std::map<std::string_view, Names> const& by_verb() {
 
 std::vector<TaskOptionRow> task_options(std::string_view verb) {
   std::vector<TaskOptionRow> all;
-  auto const names = by_verb().find(verb);
-  if (names == by_verb().end()) return all;
-  for (std::string_view const name : names->second)
-    all.push_back(verb == "discover" && name == "noise" ? noise_of_discovery : *row_named(rows, name));
+  auto const kind = words::task_kind(verb);
+  if (!kind) return all;
+  for (std::string_view const name : by_kind().at(*kind))
+    all.push_back(kind == TaskKind::discover && name == "noise" ? noise_of_discovery : *row_named(rows, name));
   return all;
 }
 

@@ -73,7 +73,7 @@ PredictTask TaskChecker::predict() {
                                          ? &call->arguments[0].value
                                          : nullptr;
       if (count == nullptr)
-        diagnostics_.add(errors::option_kind(option.span, "draws", "a number of posterior draws", "draws(200)"));
+        diagnostics_.add(errors::option_kind(option.span, "draws", {"a number of posterior draws"}, "draws(200)"));
       else if (auto const value = options_.number(*count, "draws", Unit{}, 1, 1e7, true))
         task.draws = static_cast<int>(*value);
     } else if (option.key && key == "redraw") {

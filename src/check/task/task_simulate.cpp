@@ -90,7 +90,7 @@ void TaskChecker::simulate_input(ast::Option const& option, SimulateOptions& opt
   if (place == inputs.end()) {
     std::vector<std::string> known;
     for (Quantity const& input : inputs) known.push_back(input.name);
-    diagnostics_.add(errors::unknown_member(*option.key, "model `" + options.model.name + "`", "input", known));
+    diagnostics_.add(errors::unknown_member(*option.key, errors::named("model", options.model.name), "input", known));
     return;
   }
   auto const index = static_cast<std::size_t>(place - inputs.begin());
@@ -113,7 +113,7 @@ void TaskChecker::simulate_samples(TaskChecker& checker, ast::Option const& opti
 
 void TaskChecker::simulate_spacing(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
   std::string const key = key_of(option);
-  if (options.spacing) checker.diagnostics_.add(errors::stated_twice(option.span, *options.spacing, "the time between samples"));
+  if (options.spacing) checker.diagnostics_.add(errors::stated_twice(option.span, *options.spacing, {"the time between samples"}));
   options.spacing = option.span;
   if (auto const value = checker.options_.number(option.value, key, unit_of(key == "rate" ? "Hz" : "s"), 1e-300, 1e300))
     options.task.step = key == "rate" ? 1 / *value : *value;
@@ -132,7 +132,7 @@ void TaskChecker::simulate_file(TaskChecker& checker, ast::Option const& option,
     options.task.file = text->value;
   else
     checker.diagnostics_.add(
-        errors::option_kind(option.value.span, key_of(option), "a file name in quotes, without folders", "file = \"truth.csv\""));
+        errors::option_kind(option.value.span, key_of(option), {"a file name in quotes, without folders"}, "file = \"truth.csv\""));
 }
 
 void TaskChecker::complete_simulation(SimulateOptions const& options) {
@@ -161,7 +161,7 @@ void TaskChecker::complete_simulation(SimulateOptions const& options) {
 void TaskChecker::values(ast::Call const& call, Model const& model, SimulateTask& task) {
   std::vector<std::string> known;
   for (Parameter const& parameter : model.parameters) known.push_back(parameter.name);
-  each_named(call, "model `" + model.name + "`", "parameter", known, [&](ast::Argument const& argument, std::size_t index) {
+  each_named(call, errors::named("model", model.name), "parameter", known, [&](ast::Argument const& argument, std::size_t index) {
     if (model.parameters[index].value && !model.parameters[index].per_experiment) {
       diagnostics_.add(errors::fixed_parameter(*argument.name, model.parameters[index].span));
       return;

@@ -87,7 +87,7 @@ bool TaskChecker::simulation_option(ast::Option const& option, std::string const
   return true;
 }
 
-void TaskChecker::each_named(ast::Call const& call, std::string const& owner, std::string const& member,
+void TaskChecker::each_named(ast::Call const& call, errors::Subject const& owner, std::string const& member,
                              std::vector<std::string> const& known,
                              std::function<void(ast::Argument const&, std::size_t)> const& visit) {
   std::map<std::string, Span> given;
@@ -102,7 +102,7 @@ void TaskChecker::each_named(ast::Call const& call, std::string const& owner, st
       continue;
     }
     if (auto const [first, is_fresh] = given.emplace(argument.name->text, argument.span); !is_fresh)
-      diagnostics_.add(errors::stated_twice(argument.span, first->second, "`" + argument.name->text + "`"));
+      diagnostics_.add(errors::stated_twice(argument.span, first->second, errors::named(argument.name->text)));
     else
       visit(argument, static_cast<std::size_t>(place - known.begin()));
   }
@@ -114,12 +114,11 @@ bool TaskChecker::backend_option(ast::Option const& option, std::string const& k
   BackendSettings const* const row = row_named(known, key);
   if (row == nullptr) {
     auto const among = [&](std::span<BackendSettings const> rows) { return row_named(rows, key) != nullptr; };
-    std::string const own = among(backends_.fitting)       ? "fit"
-                            : among(backends_.selecting)   ? "select"
-                            : among(backends_.discovering) ? "discover"
-                                                           : "";
-    diagnostics_.add(!own.empty()
-                         ? errors::backend_of_other_verb({{head_span(option.value)}, key}, tree_.verb.text, own, names_of(known))
+    std::optional<TaskKind> own;
+    if (among(backends_.discovering)) own = TaskKind::discover;
+    if (among(backends_.selecting)) own = TaskKind::select;
+    if (among(backends_.fitting)) own = TaskKind::fit;
+    diagnostics_.add(own ? errors::backend_of_other_verb({{head_span(option.value)}, key}, tree_.verb.text, *own, names_of(known))
                          : errors::unknown_backend({{head_span(option.value)}, key}, names_of(known)));
     backend = key;  // said once is enough
     return true;

@@ -130,7 +130,7 @@ bool zero_against_difference(Unit const& a, Unit const& b) {
   return a.dimension == b.dimension && ((a.offset != 0 && measures_differences(b)) || (b.offset != 0 && measures_differences(a)));
 }
 
-std::optional<Diagnostic> refuse_number(Span span, std::string const& what, Unit const& given, Unit const& wanted) {
+std::optional<Diagnostic> refuse_number(Span span, errors::Subject const& what, Unit const& given, Unit const& wanted) {
   if (given.dimension != wanted.dimension || zero_against_difference(given, wanted))
     return errors::number_of_other_kind(span, what, given, wanted);
   if (cycles_against_radians(given, wanted)) return errors::number_in_cycles(span, what, given, wanted);

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "check/message/subject.hpp"
 #include "core/numeric/unit.hpp"
 #include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
@@ -18,8 +19,8 @@ Unit difference(Unit unit);
 /// the other. [K] measures both.
 bool zero_against_difference(Unit const& a, Unit const& b);
 /// What forbids a number in unit `given` where one in `wanted` is meant: another kind of quantity, a temperature for a difference
-/// of two, cycles for radians. what: "`rate`", "the constant `w`".
-std::optional<Diagnostic> refuse_number(Span span, std::string const& what, Unit const& given, Unit const& wanted);
+/// of two, cycles for radians. what: errors::named("rate").
+std::optional<Diagnostic> refuse_number(Span span, errors::Subject const& what, Unit const& given, Unit const& wanted);
 /// A declared unit of time measures time.
 void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics);
 

@@ -186,6 +186,14 @@ std::string excerpt(Diagnostic const& diagnostic, Source const& source, Paint pa
   return out;
 }
 
+/// What a message says, whatever its words. One mistake may be met from several places: only its own counts.
+using Matter = std::tuple<std::uint32_t, std::uint32_t, std::string, std::vector<std::string>, std::string, std::string>;
+
+Matter matter_of(Diagnostic const& each) {
+  Span const place = each.primary ? each.primary->span : Span{~0U, ~0U};
+  return {place.begin, place.end, each.code, each.names, each.kind, each.function};
+}
+
 /// In the order in which they are shown.
 std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
   std::vector<Diagnostic const*> out;
@@ -196,14 +204,24 @@ std::vector<Diagnostic const*> sorted(Diagnostics const& diagnostics) {
   });
   // A statement that stands for several (the elements of a vector, the uses of a model) may be found wrong several times.
   std::vector<Diagnostic const*> once;
-  std::set<std::tuple<std::uint32_t, std::uint32_t, std::string_view, std::string_view>> said;
+  std::set<Matter> said;
   for (Diagnostic const* each : out)
-    if (!each->primary || said.emplace(each->primary->span.begin, each->primary->span.end, each->code, each->message).second)
-      once.push_back(each);
+    if (!each->primary || said.insert(matter_of(*each)).second) once.push_back(each);
   return once;
 }
 
 }  // namespace
+
+Diagnostic result_error(std::string code, std::string message, Help help) {
+  Diagnostic result{Severity::error, std::move(code), std::move(message), std::nullopt, {}, std::move(help.command_line)};
+  result.prompt_help = std::move(help.prompt);
+  return result;
+}
+
+bool same_matter(Diagnostic const& a, Diagnostic const& b) {
+  if (a.code.empty() && !a.primary && a.names.empty()) return false;
+  return matter_of(a) == matter_of(b);
+}
 
 void Diagnostics::add_once(Diagnostic diagnostic) {
   bool const said = std::any_of(all_.begin(), all_.end(), [&](Diagnostic const& other) {
@@ -217,7 +235,7 @@ bool Diagnostics::has_errors(std::size_t from) const {
                      [](Diagnostic const& d) { return d.severity == Severity::error; });
 }
 
-std::string render(Diagnostic const& diagnostic, Source const& source, bool colour) {
+std::string render(Diagnostic const& diagnostic, Source const& source, bool colour, Surface read_at) {
   Paint const paint{colour};
   // A message that has neither a place nor a code is about files and options, not about the text.
   std::string where = diagnostic.primary || !diagnostic.code.empty() ? source.name() : "sysid";
@@ -231,18 +249,21 @@ std::string render(Diagnostic const& diagnostic, Source const& source, bool colo
   std::string out = fmt::format("{}{}{}: {}\n", paint("1", where), where.empty() ? "" : ": ",
                                 paint.severity(diagnostic.severity, kind), paint("1", shortened(diagnostic.message)));
   if (diagnostic.primary) out += excerpt(diagnostic, source, paint);
-  if (!diagnostic.help.empty()) out += fmt::format("{} {}\n", paint("1;32", "help:"), shortened(diagnostic.help));
-  if (!diagnostic.code.empty()) out += fmt::format("{} sysid explain {}\n", paint("1", "more:"), diagnostic.code);
+  bool const at_prompt = read_at == Surface::prompt;
+  std::string const& help = at_prompt && !diagnostic.prompt_help.empty() ? diagnostic.prompt_help : diagnostic.help;
+  if (!help.empty()) out += fmt::format("{} {}\n", paint("1;32", "help:"), shortened(help));
+  if (!diagnostic.code.empty())
+    out += fmt::format("{} {} {}\n", paint("1", "more:"), at_prompt ? "help" : "sysid explain", diagnostic.code);
   return out;
 }
 
-std::string render(Diagnostics const& diagnostics, Source const& source, bool colour) {
+std::string render(Diagnostics const& diagnostics, Source const& source, bool colour, Surface read_at) {
   std::string out;
   std::size_t errors = 0;
   for (Diagnostic const* diagnostic : sorted(diagnostics)) {
     if (diagnostic->severity == Severity::error && ++errors > shown_errors) continue;
     if (!out.empty()) out += '\n';
-    out += render(*diagnostic, source, colour);
+    out += render(*diagnostic, source, colour, read_at);
   }
   if (errors > shown_errors) out += fmt::format("\n... and {} more\n", errors - shown_errors);
   return out;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/text/source.hpp"
+#include "core/text/surface.hpp"
 
 namespace sysid {
 
@@ -30,8 +31,16 @@ struct Diagnostic {
   std::vector<std::string> names = {};      // as the user wrote them; where something is unknown or lacks something, that first
   std::string kind = {};                    // what the first of `names` was looked up as: "function", "fit"; empty: a name
   std::vector<std::string> suggested = {};  // names offered in place of an unknown one
+  std::string prompt_help = {};             // in place of `help` where it is read at the prompt; empty: `help` holds there too
   std::string function = {};                // in whose body it was found, when it is told at a call of it
 };
+
+/// An error about stored results: it has no place in the text.
+Diagnostic result_error(std::string code, std::string message, Help help);
+
+/// What a message says, apart from its wording: code, places, names. Of a message without a code nothing but its place and its
+/// names is known, so where it has neither, no two are the same.
+bool same_matter(Diagnostic const& a, Diagnostic const& b);
 
 /// Collects diagnostics of one source, in the order of detection.
 class Diagnostics {
@@ -56,9 +65,11 @@ class Diagnostics {
 
 /// `file:line:col: error[E2103]: message`, the lines with carets, `help:` and `more:` lines. Sorted by place, those without one
 /// last; of one that has no code either, `sysid` stands for the file. The first 20 errors, then how many more there are. colour:
-/// ANSI colours.
-std::string render(Diagnostics const& diagnostics, Source const& source, bool colour = false);
-std::string render(Diagnostic const& diagnostic, Source const& source, bool colour = false);
+/// ANSI colours. read_at: for the commands that help names.
+std::string render(Diagnostics const& diagnostics, Source const& source, bool colour = false,
+                   Surface read_at = Surface::command_line);
+std::string render(Diagnostic const& diagnostic, Source const& source, bool colour = false,
+                   Surface read_at = Surface::command_line);
 
 /// For programs (`--error-format=json`): one JSON object per diagnostic and line, all of them, in the order of `render`.
 std::string render_json(Diagnostics const& diagnostics, Source const& source);

@@ -10,6 +10,7 @@
 #include "syntax/entry.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/parse.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid::repl {
 namespace {
@@ -39,6 +40,8 @@ Span own_name(ast::Item const& item) {
 }
 
 }  // namespace
+
+std::string title_of(ItemKind kind, std::string_view name) { return std::string(word_of(kind)) + " " + std::string(name); }
 
 std::string_view word_of(ItemKind kind) {
   switch (kind) {
@@ -90,13 +93,14 @@ std::vector<ItemReference> references_of(ast::Item const& item) {
     for (ast::CandidateStatement const& statement : set->statements)
       if (auto const* candidate = std::get_if<ast::Candidate>(&statement)) add(ItemKind::model, candidate->model);
   } else if (auto const* task = std::get_if<ast::Task>(&item)) {
-    if (task->verb.text == "predict") {
+    auto const kind = words::task_kind(task->verb.text);
+    if (kind == TaskKind::predict) {
       add(ItemKind::task, task->subject);
-    } else if (task->verb.text == "discover") {
+    } else if (kind == TaskKind::discover) {
       add(ItemKind::dictionary, task->subject);
     } else {
       add(ItemKind::model, task->subject);
-      if (task->verb.text == "select") add(ItemKind::candidates, task->subject);
+      if (kind == TaskKind::select) add(ItemKind::candidates, task->subject);
     }
     for (ast::DataReference const& data : task->data) add(ItemKind::data, data.data);
     for (ast::Option const& option : task->options) {

@@ -14,6 +14,9 @@ namespace sysid::repl {
 enum class ItemKind { use, model, data, candidates, dictionary, function, task };
 std::string_view word_of(ItemKind kind);
 
+/// "model duffing": tells the statements of a file apart.
+std::string title_of(ItemKind kind, std::string_view name);
+
 /// A part of a text that stands word for word in what was typed.
 struct TypedPart {
   Span in_text;

@@ -26,10 +26,13 @@ std::string equation_name(DiscoveryReport const& discovery, std::string_view wha
   return discovery.equations.size() == 1 ? std::string(what) : fmt::format("{}_{}", what, equation + 1);
 }
 
-bool offered(DiscoveredTerm const& term) { return term.fate != "known" && term.fate != "left out"; }
+bool offered(DiscoveredTerm const& term) {
+  return term.fate.kind != TermFate::Kind::known && term.fate.kind != TermFate::Kind::left_out;
+}
 
 bool has_density(DiscoveredTerm const& term) {
-  return term.kept && term.fate != "known" && std::isfinite(term.coefficient) && std::isfinite(term.sd) && term.sd > 0;
+  return term.kept && term.fate.kind != TermFate::Kind::known && std::isfinite(term.coefficient) && std::isfinite(term.sd) &&
+         term.sd > 0;
 }
 
 /// The terms that were offered, those with the largest measure first.

@@ -154,14 +154,15 @@ Figure surface_figure(RestoringForce const& force) {
              y = axis(force.grid_velocity.front(), force.grid_velocity.back(), 3, edge), z = axis(low, high, 4, 0.02);
   bool const has_data = !force.data.force.empty();
   std::string_view const point_colour = has_data ? data : contrast;
-  Surface const surface{figure_name("surface", force),
-                        {{{Key::points, point_colour, has_data ? "data" : "trajectory of the model"}, {Key::line, model, "model"}}},
-                        {x, axis_label(force.displacement, force.displacement_unit, x)},
-                        {y, axis_label(force.velocity, force.velocity_unit, y)},
-                        {z, axis_label(force_name(force), force.force_unit, z)},
-                        mesh_of(force, x, y, z),
-                        points_of(has_data ? force.data : force.model, x, y, z),
-                        point_colour};
+  plot::Surface const surface{
+      figure_name("surface", force),
+      {{{Key::points, point_colour, has_data ? "data" : "trajectory of the model"}, {Key::line, model, "model"}}},
+      {x, axis_label(force.displacement, force.displacement_unit, x)},
+      {y, axis_label(force.velocity, force.velocity_unit, y)},
+      {z, axis_label(force_name(force), force.force_unit, z)},
+      mesh_of(force, x, y, z),
+      points_of(has_data ? force.data : force.model, x, y, z),
+      point_colour};
   Figure out{surface.name, fmt::format("Restoring-force surface of {} on {}", force.displacement, force.experiment), "",
              script(surface), Topic::fit};
   out.caption = fmt::format(

@@ -31,10 +31,10 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
   if (discovery.measure == "contribution") table.header.pop_back();
   for (DiscoveredTerm const& term : equation.terms) {
     auto const [value, sd] = coefficient_text(term.coefficient, term.sd);
-    bool const offered = term.fate != "left out";
+    bool const offered = term.fate.kind != TermFate::Kind::left_out;
     // Of the target it is known that it is there, not how large its coefficient is.
-    table.rows.push_back({term.text, term.fate == "known" ? "always kept" : term.fate, term.kept ? value : "", term.kept ? sd : "",
-                          term.unit, offered ? probability_text(term.measure) : ""});
+    table.rows.push_back({term.text, term.fate.kind == TermFate::Kind::known ? "always kept" : word(term.fate),
+                          term.kept ? value : "", term.kept ? sd : "", term.unit, offered ? probability_text(term.measure) : ""});
     if (discovery.measure != "contribution") table.rows.back().push_back(term.kept ? significant(term.contribution, 3) : "");
   }
   return table;
@@ -98,7 +98,7 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
                        {"name", term.name},
                        {"unit", term.unit},
                        {"kept", term.kept},
-                       {"fate", term.fate},
+                       {"fate", word(term.fate)},
                        {"coefficient", term.coefficient},
                        {"sd", term.sd},
                        {"measure", term.measure},
@@ -130,9 +130,9 @@ std::vector<std::pair<std::string, std::string>> discovery_files(Report const& r
   for (DiscoveredEquation const& equation : discovery.equations)
     for (DiscoveredTerm const& term : equation.terms)
       terms += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(equation.target), csv_field(term.text),
-                           csv_field(term.name), csv_field(term.unit), term.fate, term.kept ? 1 : 0, shortest(term.coefficient),
-                           shortest(term.sd), shortest(term.measure), shortest(term.mean), shortest(term.mean_sd),
-                           shortest(term.contribution), shortest(term.inflation));
+                           csv_field(term.name), csv_field(term.unit), word(term.fate), term.kept ? 1 : 0,
+                           shortest(term.coefficient), shortest(term.sd), shortest(term.measure), shortest(term.mean),
+                           shortest(term.mean_sd), shortest(term.contribution), shortest(term.inflation));
   std::vector<std::pair<std::string, std::string>> files = {{"terms.csv", std::move(terms)}};
   if (discovery.validation)
     for (auto& file : validation_files(report, *discovery.validation)) files.push_back(std::move(file));

@@ -34,12 +34,7 @@ std::string take_cell(std::string_view& line) {
 }
 
 UserError damaged(std::filesystem::path const& path, std::string const& what) {
-  return UserError({Severity::error,
-                    "",
-                    fmt::format("`{}` is damaged: {}", path.string(), what),
-                    std::nullopt,
-                    {},
-                    "run the task again with --force"});
+  return UserError(result_error("", fmt::format("`{}` is damaged: {}", path.string(), what), run_again()));
 }
 
 }  // namespace

@@ -225,6 +225,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedStructure, terms, equations, of_regr
                                    probability, residual_over_noise, draws, bounded, follows, coefficients, channels)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidationReport, structures, segments, shortest, longest, whole, step, horizon, horizon_rows,
                                    window_rows, held_out, held_out_seen, solver)
+void to_json(json& out, TermFate const& fate) { out = word(fate); }
+void from_json(json const& stored, TermFate& fate) {
+  auto const read = term_fate(stored.get<std::string>());
+  if (!read) throw json::other_error::create(501, "a fate of a term that there is not", &stored);
+  fate = *read;
+}
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredTerm, text, unit, name, fate, kept, coefficient, sd, measure, mean, mean_sd,
                                    contribution, inflation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredSupport, terms, probability, log_evidence)
@@ -256,9 +262,11 @@ std::uint32_t checksum(std::vector<std::uint8_t> const& bytes) {
 }
 
 UserError unusable(std::filesystem::path const& path, std::string const& why) {
-  return UserError(
-      {Severity::error, "", fmt::format("`{}` {}", path.string(), why), std::nullopt, {}, "run the task again with --force"});
+  return UserError(result_error("", fmt::format("`{}` {}", path.string(), why), run_again()));
 }
+
+/// Records of before have the findings below the headline.
+std::string headline_alone(std::string const& stored) { return stored.substr(0, stored.find('\n')); }
 
 }  // namespace
 
@@ -278,7 +286,9 @@ Report read_record(std::string const& bytes, std::filesystem::path const& path) 
       stored.value("crc32", std::uint32_t{0}) != checksum(stored["report"].get_binary()))
     throw unusable(path, "is damaged");
   try {
-    return json::from_cbor(stored["report"].get_binary()).get<Report>();
+    Report report = json::from_cbor(stored["report"].get_binary()).get<Report>();
+    report.verdict = headline_alone(report.verdict);
+    return report;
   } catch (json::exception const&) {
     throw unusable(path, other);
   }

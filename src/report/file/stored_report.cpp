@@ -35,12 +35,8 @@ class Columns {
 
  private:
   UserError other(std::string const& what) const {
-    return UserError({Severity::error,
-                      "",
-                      fmt::format("`{}` does not belong to this result: it {}", path_.string(), what),
-                      std::nullopt,
-                      {},
-                      "run the task again with --force"});
+    return UserError(
+        result_error("", fmt::format("`{}` does not belong to this result: it {}", path_.string(), what), run_again()));
   }
   fs::path path_;
   NumberTable table_;
@@ -125,12 +121,8 @@ void read_particles(fs::path const& path, SelectedModel& model) {
 Report read_result(fs::path const& folder) {
   fs::path const path = folder / "report.cbor";
   if (!fs::exists(path) && fs::exists(folder / "summary.json"))
-    throw UserError({Severity::error,
-                     "",
-                     fmt::format("the results in `{}` have no `report.cbor`", folder.string()),
-                     std::nullopt,
-                     {},
-                     "they were written by an earlier version of sysid, or the file was lost: run the task again with --force"});
+    throw UserError(result_error("", fmt::format("the results in `{}` have no `report.cbor`", folder.string()),
+                                 run_again("they were written by an earlier version of sysid, or the file was lost: ")));
   Report report = read_record(read_file(path), path);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
     read_chain(folder / draws_file(c), report.draws, report.draws.chains[c]);

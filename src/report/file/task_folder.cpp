@@ -71,12 +71,7 @@ bool holds_result(fs::path const& folder) { return !files_of_result(folder).empt
 
 void prepare_result(fs::path const& folder, bool force) {
   if (!force && holds_result(folder))
-    throw UserError({Severity::error,
-                     "",
-                     fmt::format("`{}` holds results already", folder.string()),
-                     std::nullopt,
-                     {},
-                     "add --force to replace them, or -o DIR to write elsewhere"});
+    throw UserError(result_error("", fmt::format("`{}` holds results already", folder.string()), replace_results()));
   remove_files(folder);
   make_folder(folder);
 }

@@ -92,8 +92,7 @@ std::string verdict_words(Report const& report) {
   std::string missing;
   for (DiscoveredEquation const& each : report.discovery->equations)
     if (each.equation.empty()) missing += fmt::format("{}`{}`", missing.empty() ? "nothing found for " : ", ", each.target);
-  std::string const verdict = verdict_of(report.findings).text;
-  return missing + (missing.empty() ? "" : "; ") + verdict.substr(0, verdict.find('\n'));
+  return missing + (missing.empty() ? "" : "; ") + verdict_of(report.findings).headline;
 }
 
 std::string verdict_meaning(Report const& report) {

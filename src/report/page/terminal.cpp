@@ -77,7 +77,7 @@ std::string ledger_text(Report const& report) {
 
 }  // namespace
 
-std::string terminal_summary(Report const& report) {
+std::string terminal_summary(Report const& report, Surface read_at) {
   std::string out = report.task;
   if (!report.what.empty()) out += ": " + report.what;
   std::string const draws = draws_line(report.draws);
@@ -92,11 +92,8 @@ std::string terminal_summary(Report const& report) {
   for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what(), scores_line(line));
   facts += evidence_line(report) + ledger_text(report);
   if (!facts.empty()) out += "\n" + facts;
-  if (has_verdict(report)) {
-    std::string const verdict = verdict_of(report.findings).text;
-    std::string const list = verdict.substr(std::min(verdict.find('\n'), verdict.size()));
-    out += fmt::format("\nverdict: {}{}\n", verdict_headline(report), list);
-  }
+  if (has_verdict(report))
+    out += fmt::format("\nverdict: {}\n{}", verdict_headline(report), findings_list(report.findings, read_at));
   return out;
 }
 

@@ -6,7 +6,8 @@
 
 namespace sysid {
 
-/// What was done, the summary table, further tables, fit, failures and the verdict in plain words.
-std::string terminal_summary(Report const& report);
+/// What was done, the summary table, further tables, fit, failures and the verdict in plain words. read_at: for what the
+/// verdict says is to be typed.
+std::string terminal_summary(Report const& report, Surface read_at = Surface::command_line);
 
 }  // namespace sysid
