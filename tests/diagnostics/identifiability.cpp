@@ -64,7 +64,9 @@ std::vector<LocalSlopes> draws(int parameters, Directions const& directions) {
 
 std::vector<ParameterWords> const names = {{"m", "kg", 1}, {"c", "N s/m", 1}, {"k", "N/m", 1}, {"k3", "N/m^3", 1}, {"b", "", 1}};
 
-std::string said(NullSpace const& space, std::size_t index = 0) { return words(space.directions.at(index), names, "displacement"); }
+std::string said(NullSpace const& space, std::size_t index = 0) {
+  return direction_words(space.directions.at(index), names, "displacement");
+}
 
 }  // namespace
 

@@ -72,11 +72,13 @@ std::string simulation_text(Model const& model, FitTask const& what, std::string
 std::string resolved_fit(Session const& session, Task const& task, FitTask const& what, Settings const& settings,
                          SolverSettings const& solver, std::uint64_t seed) {
   Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
+  // An accuracy that the run chose is chosen again: a search with it from the beginning would end some digits away.
+  std::string const solver_words = what.refine_solver ? without_accuracy(what.solver) : solver.text();
   return fmt::format(
       "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
       "{}{}, seed = {}\n",
       task.name, without_tasks(session, &what), task.name, model.name, data_names(session.file, what.experiments),
-      settings_text(what.backend, settings), simulation_text(model, what, solver.text()),
+      settings_text(what.backend, settings), simulation_text(model, what, solver_words),
       what.near ? ", search = " + search_text(session.file, what) : std::string(), seed);
 }
 
@@ -137,7 +139,7 @@ std::map<std::string, int> modules_beside(Source const& source) {
   return found;
 }
 
-std::string resolved_module(std::string const& name) { return "resolved_" + name; }
+std::string resolved_module(std::string const& name) { return name.starts_with("resolved_") ? name : "resolved_" + name; }
 
 // A text of the language with data named from `folder`, and modules by the names that they have there.
 std::string moved(std::string const& text, Session const& session, fs::path const& folder,

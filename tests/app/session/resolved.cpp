@@ -9,9 +9,9 @@ using namespace sysid;
 
 namespace {
 
-std::string const spring = "function hardening(y [m], k [N/m], k3 [N/m^3]) [N] = k*y + k3*y^3\n";
+std::string const spring = "function hardening(y, k, k3) = k*y + k3*y^3\n";
 // A module that uses a module.
-std::string const law = "use spring\nfunction law(y [m], k [N/m], k3 [N/m^3]) [N] = hardening(y, k, k3)\n";
+std::string const law = "use spring\nfunction law(y, k, k3) = hardening(y, k, k3)\n";
 
 std::string const model_and_data = R"(use law
 model cubic {
@@ -27,6 +27,15 @@ model cubic {
 }
 data bench { file "records/a record.csv"; time t [s]; input x = x [N] hold zero_order; measure displacement = displacement [m] }
 )";
+
+// The draws of a task without the line that names the file of the data.
+std::string draws(std::filesystem::path const& folder) {
+  std::istringstream in(read_file(folder / "draws_1.csv"));
+  std::string out;
+  for (std::string line; std::getline(in, line);)
+    if (!line.starts_with("# data = ")) out += line + "\n";
+  return out;
+}
 
 struct Written {
   TemporaryFolder folder;
@@ -66,13 +75,12 @@ struct Written {
 
 TEST_CASE("a resolved fit runs where it lies and repeats its draws to the byte") {
   Written const written(
-      "chains = fit cubic to bench with mh(samples = 200, burn_in = 200, chains = 2), seed = 3\n"
+      "chains = fit cubic to bench with mh(samples = 400, burn_in = 200, chains = 2), seed = 3\n"
       "summit = fit cubic to bench with map, seed = 4\n");
   for (std::string const task : {"chains", "summit"}) {
     CAPTURE(task);
     std::filesystem::path const again = written.again(task);
-    CHECK(read_file(again / "draws_1.csv") == read_file(written.results / task / "draws_1.csv"));
-    // What it says of itself is the same file, one folder further down.
+    CHECK(draws(again) == draws(written.results / task));
     CHECK(std::filesystem::exists(again / "resolved_law.sysid"));
   }
   CHECK(read_file(written.results / "chains/resolved_law.sysid").find("use resolved_spring") != std::string::npos);
