@@ -388,14 +388,14 @@ TEST_CASE("a damaged table of draws is named, not read as numbers that are missi
 TEST_CASE("a warning is shown once for each statement that it stands in, whatever moves before it") {
   Dialogue d;
   std::string const rest =
-      "  state y [m]\n  initial y = 1\n  y' = -y/1 [s]\n  observe z ~ normal(y, sd = 1 [m])\n  parameter k ~ normal(0, 1)\n}";
+      "  state y [m]\n  initial y = 1\n  y' = -y/1 [s]\n  observe z ~ normal(y, sd = 1 [m])\n  parameter k ~ normal(0, sd = 1)\n}";
   d.enter("model a {\n" + rest);
   CHECK(has(d.messages(), "uses the parameter `k`"));
   d.enter("model b {\n" + rest);
   CHECK(has(d.messages(), "uses the parameter `k`"));
   d.enter("model c {\n  state y [m]\n  initial y = 1\n  y' = -y/1 [s]\n  observe z ~ normal(y, sd = 1 [m])\n}");
   CHECK_FALSE(has(d.messages(), "uses the parameter `k`"));
-  write_file(d.path("loaded.sysid"), "// a comment\nmodel d {\n" + rest + "\n");
+  write_file(d.path("loaded.sysid"), "# a comment\nmodel d {\n" + rest + "\n");
   d.enter("load " + d.path("loaded.sysid"));
   CHECK(has(d.messages(), "uses the parameter `k`"));
   d.enter("model e {\n  state y [m]\n  initial y = 1\n  y' = -y/1 [s]\n  observe z ~ normal(y, sd = 1 [m])\n}");
