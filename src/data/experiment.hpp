@@ -51,6 +51,8 @@ class InputSignal {
 
   /// Rows [first, first + count), counted from 0, of the same curve: the rest of the record still shapes it near their ends.
   InputSignal view(int first, int count) const;
+  /// The same samples under another rule; nothing where that needs equal steps and these are not.
+  std::optional<InputSignal> under(InputRule rule) const;
   /// The signal `samples` sampling steps later (negative: earlier), as samples under the same rule: what the input would be had it
   /// been recorded that much out of step. New sample i is the old curve at t_i - samples (t_i - t_(i-1)). A zero_order curve is
   /// replaced by its average over the shifted step, read as the line between neighbours: half a sample gives the mean of two.

@@ -1,4 +1,5 @@
-// An input record under its rule: builds the polynomials, reads them, and shifts the record for the "half a sample" question.
+// An input record under its rule: builds the polynomials, reads them, and makes the records of the questions
+// "half a sample later?" and "another rule?".
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +10,15 @@
 namespace sysid {
 namespace {
 
-void require_equal_steps(std::vector<double> const& time) {
+double mean_step(std::vector<double> const& time) { return (time.back() - time.front()) / static_cast<double>(time.size() - 1); }
+
+/// The first sample whose step from the one before differs from the mean; 0: none.
+std::size_t unequal_step(std::vector<double> const& time) {
   constexpr double tolerance = 1e-6;
-  double const usual = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    double const step = time[i] - time[i - 1];
-    if (!(std::fabs(step - usual) <= tolerance * usual))
-      throw UserError(data_errors::unequal_steps(static_cast<int>(i) + 1, step, usual, std::nullopt));
-  }
+  double const usual = mean_step(time);
+  for (std::size_t i = 1; i < time.size(); ++i)
+    if (!(std::fabs(time[i] - time[i - 1] - usual) <= tolerance * usual)) return i;
+  return 0;
 }
 
 }  // namespace
@@ -24,7 +26,9 @@ void require_equal_steps(std::vector<double> const& time) {
 InputSignal::InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples) {
   if (time.size() < 2 || time.size() != samples.size()) throw InternalError("an input signal needs two samples, each with a time");
   InputRuleRow const& row = row_of(rule);
-  if (row.equal_steps) require_equal_steps(time);
+  if (row.equal_steps)
+    if (std::size_t const i = unequal_step(time); i > 0)
+      throw UserError(data_errors::unequal_steps(static_cast<int>(i) + 1, time[i] - time[i - 1], mean_step(time), std::nullopt));
   auto record = std::make_shared<Record>();
   record->rule = rule;
   record->degree = row.degree;
@@ -63,6 +67,11 @@ InputSignal InputSignal::view(int first, int count) const {
   result.first_ += first;
   result.rows_ = count;
   return result;
+}
+
+std::optional<InputSignal> InputSignal::under(InputRule rule) const {
+  if (row_of(rule).equal_steps && unequal_step(record_->time) > 0) return std::nullopt;
+  return InputSignal(rule, record_->time, record_->samples).view(first_, rows_);
 }
 
 InputSignal InputSignal::shifted(double samples) const {

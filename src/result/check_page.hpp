@@ -40,7 +40,7 @@ struct DictionaryPage {
 struct CoveragePage {
   std::string name, file, made_by;  // made_by: the simulate task that makes the file, when it is not there yet
   int rows = 0, first = 0, last = 0, scored = 0, start_rows = 0;
-  double rate = 0;              // Hz, mean
+  double rate = 0;              // Hz, mean; 0: rows that no time orders
   bool equal = true;            // steps
   std::string time_unit = "s";  // in which the record counts its time,
   double time_scale = 1;        // [s] one of these
@@ -48,6 +48,9 @@ struct CoveragePage {
     std::string name, unit, rule;  // rule: between samples; empty where the model reads none there
     double low = 0, high = 0;      // Hz: between them lies 99 % of the power
     bool constant = false;
+    double top = 0;     // share of its power above 0.4 of the sampling rate
+    double chords = 0;  // rms of what straight lines between samples leave out of the spline through them, over the input's sd
+    bool cut_by_lines = false;  // smooth, and `chords` is not little
   };
   std::vector<Input> inputs;
   struct Channel {

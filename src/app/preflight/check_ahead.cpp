@@ -44,7 +44,9 @@ Findings check_prior_size(Session& session, FitTask const& what, std::vector<Exp
     Preflight const preflight(session, what, data, page);
     describe_prior(preflight, draw_prior(preflight));
   }
-  std::erase_if(page.findings, [](Finding const& each) { return each.code != FindingCode::prior_far_from_data; });
+  std::erase_if(page.findings, [](Finding const& each) {
+    return each.code != FindingCode::prior_far_from_data && each.code != FindingCode::prior_at_rest;
+  });
   return page.findings;
 }
 

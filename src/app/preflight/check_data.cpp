@@ -1,49 +1,11 @@
 // What a record holds for a task: rows, gaps, rate, and where the power of its inputs lies.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "app/preflight/check_file.hpp"
-#include "core/numeric/fourier.hpp"
+#include "data/input_spectrum.hpp"
 
 namespace sysid {
-namespace {
-
-constexpr double excluded_share = 0.005;  // of the power, at either end of the band
-
-// The band that holds all but a share of the power at either end, from a periodogram of the samples less their mean.
-void fill_band(InputSignal const& signal, double rate, CoveragePage::Input& input) {
-  auto const rows = static_cast<std::size_t>(signal.rows());
-  double mean = 0, square = 0;
-  for (std::size_t i = 0; i < rows; ++i) mean += signal.sample(static_cast<int>(i)) / static_cast<double>(rows);
-  std::size_t const size = std::max<std::size_t>(4, std::bit_ceil(rows));
-  Fourier::Parts re(size, 0.0), im(size, 0.0);
-  int const bits = std::countr_zero(size);
-  for (std::size_t i = 0; i < rows; ++i) {
-    std::size_t reversed = 0;
-    for (int b = 0; b < bits; ++b) reversed |= ((i >> b) & 1U) << (bits - 1 - b);
-    double const value = signal.sample(static_cast<int>(i)) - mean;
-    re[reversed] = value;
-    square += value * value;
-  }
-  input.constant = !(square > 1e-20 * mean * mean * static_cast<double>(rows));
-  if (input.constant) return;
-  Fourier(size).from_reversed(re, im);
-  std::vector<double> power(size / 2 + 1);
-  double total = 0;
-  for (std::size_t k = 0; k < power.size(); ++k) total += power[k] = re[k] * re[k] + im[k] * im[k];
-  double sum = 0;
-  bool begun = false;
-  for (std::size_t k = 0; k < power.size(); ++k) {
-    sum += power[k];
-    double const frequency = rate * static_cast<double>(k) / static_cast<double>(size);
-    if (!begun && sum > excluded_share * total) begun = true, input.low = frequency;
-    input.high = frequency;
-    if (sum >= (1 - excluded_share) * total) break;
-  }
-}
-
-}  // namespace
 
 CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& block, StartRule start, Model const& model) {
   Experiment const& experiment = data.experiment;
@@ -62,7 +24,8 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
     shortest = std::min(shortest, time[i] - time[i - 1]);
     longest = std::max(longest, time[i] - time[i - 1]);
   }
-  page.rate = static_cast<double>(time.size() - 1) / (time.back() - time.front());
+  bool const timed = model.dynamics != Dynamics::none;
+  if (timed) page.rate = static_cast<double>(time.size() - 1) / (time.back() - time.front());
   page.equal = longest - shortest <= 1e-3 * shortest;
   if (experiment.time_unit) {
     page.time_unit = experiment.time_unit->text;
@@ -73,7 +36,15 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
     input.name = model.inputs[i].name;
     input.unit = model.inputs[i].unit_text();
     if (model.dynamics == Dynamics::continuous) input.rule = rule_name(experiment.inputs[i].rule());
-    fill_band(experiment.inputs[i], page.rate, input);
+    if (timed) {
+      InputSpectrum const spectrum = input_spectrum(experiment.inputs[i], page.rate);
+      input.constant = spectrum.constant;
+      input.low = spectrum.low;
+      input.high = spectrum.high;
+      input.top = spectrum.top;
+      input.chords = spectrum.chords;
+      input.cut_by_lines = cut_by_lines(spectrum);
+    }
     page.inputs.push_back(std::move(input));
   }
   for (std::size_t c = 0; c < model.channels.size(); ++c) {

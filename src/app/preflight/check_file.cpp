@@ -5,6 +5,7 @@
 
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "experiment/experiments.hpp"
 #include "syntax/parse.hpp"
@@ -54,6 +55,35 @@ void check_bands(TaskPage& page) {
              "check whether it was held between the samples, or sampled without an anti-aliasing filter"});
 }
 
+// Where the samples of an input contradict the curve that its rule draws through them. What was held cannot be told from what was
+// sampled by the samples alone, so of `zero_order` nothing is said.
+void check_rules(TaskPage& page) {
+  constexpr double rough = 0.1;
+  for (CoveragePage const& coverage : page.coverage)
+    for (CoveragePage::Input const& input : coverage.inputs) {
+      if (!coverage.equal) break;
+      auto const rule = find_input_rule(input.rule);
+      if (!rule || input.constant || (*rule != InputRule::linear && *rule != InputRule::cubic)) continue;
+      if (*rule == InputRule::linear && input.cut_by_lines)
+        page.findings.push_back(
+            {FindingCode::input_rule,
+             Severity::note,
+             {input.name, coverage.name, "cubic"},
+             fmt::format("{} of {} is smooth, and the straight lines of `hold linear` leave out {} % of its sd between samples",
+                         input.name, coverage.name, significant(100 * input.chords, 2)),
+             "write `hold cubic` if the input was sampled from a smooth signal"});
+      else if (input.top > rough)
+        page.findings.push_back(
+            {FindingCode::input_rule,
+             Severity::note,
+             {input.name, coverage.name, "zero_order"},
+             fmt::format("{:.0f} % of the power of {} of {} is above 0.4 of the sampling rate: its samples do not show the curve "
+                         "between them",
+                         100 * input.top, input.name, coverage.name),
+             "write `hold zero_order` if a generator held the input between its samples; else sample it faster"});
+    }
+}
+
 // Each candidate as the fit of it would be, unless the selection cannot begin.
 void preflight_candidates(Session& session, Task const& task, SelectTask const& selection, TaskPage& page) {
   std::vector<std::vector<ExperimentData>> data;
@@ -87,6 +117,7 @@ void preflight_fit(Session& session, Task const& task, TaskDataList const& data,
   page.what = fmt::format("fit {} to {} with {}", model.name, data_names(session.file, what.experiments), what.backend);
   auto const experiments = cover(session, data.front(), page);
   check_bands(page);
+  check_rules(page);
   if (experiments && !refusal(task, what, model, *experiments))
     run_preflight(session, what, *experiments, page.preflights.emplace_back());
 }
@@ -98,6 +129,7 @@ void preflight_select(Session& session, Task const& task, TaskDataList const& da
                           data_names(session.file, what.fits.front().experiments), what.backend);
   auto const experiments = cover(session, data.front(), page);
   check_bands(page);
+  check_rules(page);
   if (experiments) preflight_candidates(session, task, what, page);
 }
 
@@ -108,6 +140,7 @@ void preflight_discover(Session& session, Task const& task, TaskDataList const& 
                           data_names(session.file, what.experiments), what.selector, what.form);
   cover(session, data.front(), page);
   check_bands(page);
+  check_rules(page);
 }
 
 void preflight_predict(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {
@@ -140,7 +173,7 @@ void tell_once(std::vector<TaskPage>& pages) {
   Findings told;
   for (TaskPage& page : pages)
     std::erase_if(page.findings, [&](Finding const& each) {
-      if (each.code != FindingCode::looks_missing) return false;
+      if (!tells_of_data(each.code)) return false;
       if (std::find(told.begin(), told.end(), each) != told.end()) return true;
       told.push_back(each);
       return false;

@@ -34,6 +34,12 @@ PriorPage counts(Preflight const& preflight, PriorSimulations const& simulations
   return page;
 }
 
+// What a data block may have in a wrong unit so that simulations fail.
+std::string units_that_scale(Model const& model) {
+  std::string const time = "the unit of time in the data block";
+  return model.inputs.empty() ? time : "the units of the " + plural("input", model.inputs.size()) + ", " + time;
+}
+
 void check_failures(Preflight const& preflight) {
   PriorPage const& page = *preflight.page.prior;
   double const share = static_cast<double>(page.failed) / page.draws;
@@ -41,7 +47,7 @@ void check_failures(Preflight const& preflight) {
   if (page.failed == page.draws)
     preflight.add(FindingCode::prior_fails, Severity::error, {},
                   fmt::format("the simulation fails at all {} prior draws", page.draws),
-                  "check the priors, the units of the input and the named part of the equation");
+                  fmt::format("check the priors, {} and the named part of the equation", units_that_scale(preflight.model())));
   else if (share > many_failures)
     preflight.add(
         FindingCode::prior_fails, !preflight.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},
@@ -59,8 +65,39 @@ void check_failures(Preflight const& preflight) {
                     preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations"));
 }
 
-void check_ranges(Preflight const& preflight, PriorPage::Channel const& line, double apart) {
-  if (line.middle == 0) return;  // held constant by the model, in whatever unit
+// Whether a channel reads a state, so that its prediction is expected to move.
+bool follows_states(Model const& model, Channel const& channel) {
+  return std::any_of(channel.noise.arguments.begin(), channel.noise.arguments.end(), [&](NodeId argument) {
+    return model.graph.depends(argument, [](Node const& node) {
+      return node.operation == Operation::leaf && (node.leaf_kind == LeafKind::state || node.leaf_kind == LeafKind::unknown);
+    });
+  });
+}
+
+// Nothing moves the model at any draw: no other check has a response to look at.
+void check_motion(Preflight const& preflight, PriorPage::Channel const& line, Channel const& channel) {
+  if (line.high > 0 || !follows_states(preflight.model(), channel)) return;
+  std::vector<std::string> still;
+  for (std::size_t i = 0; i < preflight.model().inputs.size(); ++i)
+    if (std::all_of(preflight.experiments.begin(), preflight.experiments.end(), [&](Experiment const& each) {
+          InputSignal const& input = each.inputs[i];
+          for (int row = 1; row < input.rows(); ++row)
+            if (input.sample(row) != input.sample(0)) return false;
+          return true;
+        }))
+      still.push_back(preflight.model().inputs[i].name);
+  bool const driven = !preflight.model().inputs.empty(), dead = driven && still.size() == preflight.model().inputs.size();
+  preflight.add(FindingCode::prior_at_rest, Severity::warning, {line.name},
+                fmt::format("{} does not move in the simulation of any prior draw, but its measured range is {}{}", line.name,
+                            significant(line.measured, 2), line.unit.empty() ? "" : " " + line.unit),
+                dead     ? fmt::format("{} constant in the data: check the column, or give initial values other than zero",
+                                       quoted(still) + (still.size() == 1 ? " is" : " are"))
+                : driven ? "check that an equation of this state reads an input"
+                         : "the model has no input: give initial values other than zero, or the input that drove the motion");
+}
+
+void check_ranges(Preflight const& preflight, PriorPage::Channel const& line, Channel const& channel, double apart) {
+  if (line.middle == 0) return check_motion(preflight, line, channel);
   double const ratio = line.middle / line.measured;
   std::string size;
   if (ratio > wild || ratio < 1 / wild)
@@ -110,7 +147,7 @@ void compare(Preflight const& preflight, int first, int end, LaneArray const& ce
                           channel.from_si(quantile(finite, 0.5)),
                           channel.from_si(quantile(finite, 0.95)),
                           channel.from_si(measured)};
-  if (measured > 0) check_ranges(preflight, line, apart / static_cast<double>(finite.size()));
+  if (measured > 0) check_ranges(preflight, line, channel, apart / static_cast<double>(finite.size()));
   preflight.page.prior->channels.push_back(std::move(line));
 }
 

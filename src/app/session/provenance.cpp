@@ -9,6 +9,7 @@
 #include "core/system/digest.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "experiment/dead_columns.hpp"
 #include "experiment/placeholders.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"
@@ -109,10 +110,21 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   return info;
 }
 
+Findings data_findings(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  Findings all = find_placeholders(file, data, model);
+  for (Findings const& more : {find_constant_columns(file, data, model), find_time_gaps(file, data, model)})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
 }  // namespace
 
+bool tells_of_data(FindingCode code) {
+  return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap;
+}
+
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {
-  for (Finding& each : find_placeholders(file, data, model))
+  for (Finding& each : data_findings(file, data, model))
     if (std::find(findings.begin(), findings.end(), each) == findings.end()) findings.push_back(std::move(each));
 }
 
@@ -122,11 +134,12 @@ void add_data(CheckedFile const& file, ExperimentData const& data, Model const& 
 }
 
 void print_data_findings(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model) {
-  for (ExperimentData const& each : data) print_findings(session, task, find_placeholders(session.file, each, model));
+  for (ExperimentData const& each : data) print_findings(session, task, data_findings(session.file, each, model));
 }
 
 void print_findings(Session& session, Task const& task, Findings const& findings) {
-  for (Finding const& each : findings) session.notices << fmt::format("{}: warning: {}\n", task.name, each.message);
+  for (Finding const& each : findings)
+    if (each.severity != Severity::note) session.notices << fmt::format("{}: warning: {}\n", task.name, each.message);
 }
 
 }  // namespace sysid

@@ -6,13 +6,16 @@
 
 namespace sysid {
 
+/// Whether a finding is one of the numbers of a record, whichever task reads it.
+bool tells_of_data(FindingCode code);
+
 /// Adds what the numbers that a model reads give to think, unless it is there.
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings);
 
 /// Adds file, digest, rows and columns of one experiment to the report, and what its numbers give to think (`look_at_data`).
 void add_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Report& report);
 
-/// Prints findings as notices before the part of a task that takes time.
+/// Prints findings, but not notes, as notices before the part of a task that takes time.
 void print_findings(Session& session, Task const& task, Findings const& findings);
 /// Of the numbers of a task's records.
 void print_data_findings(Session& session, Task const& task, std::vector<ExperimentData> const& data, Model const& model);

@@ -51,9 +51,18 @@ Json coverage_object(CoveragePage const& data) {
                         {"measured", channel.measured},
                         {"missing", channel.missing},
                         {"range", channel.range}});
-  return {{"name", data.name},    {"file", data.file},         {"made_by", data.made_by}, {"rows", data.rows},
-          {"first", data.first},  {"last", data.last},         {"scored", data.scored},   {"start_rows", data.start_rows},
-          {"rate_hz", data.rate}, {"equal_steps", data.equal}, {"inputs", inputs},        {"channels", channels}};
+  return {{"name", data.name},
+          {"file", data.file},
+          {"made_by", data.made_by},
+          {"rows", data.rows},
+          {"first", data.first},
+          {"last", data.last},
+          {"scored", data.scored},
+          {"start_rows", data.start_rows},
+          {"rate_hz", data.rate > 0 ? Json(data.rate) : Json(nullptr)},
+          {"equal_steps", data.equal},
+          {"inputs", inputs},
+          {"channels", channels}};
 }
 
 Json prior_object(PriorPage const& prior) {

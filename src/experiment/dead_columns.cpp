@@ -1,0 +1,122 @@
+// A cable that came off gives a constant, a recorder that was stopped a gap; neither is an error of the table.
+#include "experiment/dead_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/numeric/statistics.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::size_t enough_samples = 10;
+
+/// The one number of so many values; nothing where they differ.
+std::optional<double> only_number(std::vector<double> const& values) {
+  if (values.size() < enough_samples) return std::nullopt;
+  bool const alike = std::all_of(values.begin(), values.end(), [&](double value) { return value == values.front(); });
+  return alike ? std::optional(values.front()) : std::nullopt;
+}
+
+// As the file has it.
+std::string number_in(ColumnUse const& column, Quantity const& quantity, double si) {
+  double value = quantity.from_si(si);
+  std::string unit = quantity.unit_text();
+  if (column.unit && quantity.unit) {
+    value = convert(value, *quantity.unit, *column.unit);
+    unit = column.unit->text;
+  }
+  return fmt::format("{:.6g}", value) + (unit.empty() || unit == "-" ? "" : " " + unit);
+}
+
+Finding constant_channel(ExperimentData const& data, ColumnUse const& column, Channel const& channel, double value,
+                         std::size_t samples) {
+  return {FindingCode::column_constant,
+          Severity::warning,
+          {channel.name, data.experiment.name},
+          fmt::format("{}, column `{}` of {}, is {} in all {} scored samples: a sensor that gave nothing?", channel.name,
+                      column.column, data.experiment.name, number_in(column, channel, value), samples),
+          "check the column and the sensor; a channel that does not change gives no information about the dynamics"};
+}
+
+Finding constant_input(ExperimentData const& data, ColumnUse const& column, Quantity const& input, double value, bool whole_file) {
+  return {FindingCode::column_constant,
+          whole_file ? Severity::warning : Severity::note,
+          {input.name, data.experiment.name},
+          fmt::format("input {}, column `{}` of {}, is {} in {}{}", input.name, column.column, data.experiment.name,
+                      number_in(column, input, value), whole_file ? "all rows of its file" : "all rows that are used",
+                      whole_file ? ": a sensor that gave nothing?" : ""),
+          "check the column; if the input was not measured, or is a constant of the test, make it a parameter or "
+          "`constant` of the model"};
+}
+
+}  // namespace
+
+Findings find_constant_columns(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  if (model.dynamics == Dynamics::none) return {};
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  Experiment const& experiment = data.experiment;
+  Findings findings;
+  auto const samples_of = [](InputSignal const& signal) {
+    std::vector<double> values;
+    for (int row = 0; row < signal.rows(); ++row) values.push_back(signal.sample(row));
+    return values;
+  };
+  for (DataInputUse const& column : block.inputs)
+    for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+      if (model.inputs[i].name != column.input) continue;
+      if (auto const value = only_number(samples_of(experiment.inputs[i])))
+        findings.push_back(
+            constant_input(data, column, model.inputs[i], *value, only_number(samples_of(data.record.inputs[i])).has_value()));
+    }
+  for (DataMeasureUse const& column : block.measured)
+    for (std::size_t c = 0; c < model.channels.size(); ++c) {
+      Channel const& channel = model.channels[c];
+      if (channel.name != column.channel || (channel.noise.row != nullptr && channel.noise.row->discrete)) continue;
+      std::vector<double> values;
+      for (std::size_t i = 0; i < experiment.measured[c].size(); ++i)
+        if (experiment.is_scored(c, i)) values.push_back(experiment.measured[c][i]);
+      if (auto const value = only_number(values))
+        findings.push_back(constant_channel(data, column, channel, *value, values.size()));
+    }
+  return findings;
+}
+
+Findings find_time_gaps(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  constexpr double wide = 10, regular = 0.1, most = 0.9;
+  if (model.dynamics != Dynamics::continuous) return {};
+  Experiment const& experiment = data.experiment;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < experiment.time.size(); ++i) steps.push_back(experiment.time[i] - experiment.time[i - 1]);
+  if (steps.size() < enough_samples) return {};
+  double const usual = median(steps);
+  auto const alike =
+      std::count_if(steps.begin(), steps.end(), [&](double each) { return std::fabs(each - usual) <= regular * usual; });
+  auto const longest = std::max_element(steps.begin(), steps.end());
+  if (static_cast<double>(alike) < most * static_cast<double>(steps.size()) || *longest <= wide * usual) return {};
+  auto const gaps = std::count_if(steps.begin(), steps.end(), [&](double each) { return each > wide * usual; });
+  double const scale = experiment.time_unit ? experiment.time_unit->scale : 1;
+  std::string const unit = experiment.time_unit ? experiment.time_unit->text : "s";
+  int const row = experiment.first_row + static_cast<int>(longest - steps.begin());
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  std::string const others = gaps > 1 ? fmt::format(" (and {} more)", gaps - 1) : "";
+  return {{FindingCode::time_gap,
+           Severity::warning,
+           {data.experiment.name},
+           fmt::format("the time of {} has a gap of {:.3g} {} between rows {} and {}{}; the usual step is {:.3g} {}",
+                       experiment.name, *longest / scale, unit, row, row + 1, others, usual / scale, unit),
+           model.inputs.empty()
+               ? fmt::format("the simulation goes on through the gap; if the recording began anew there, give the "
+                             "rows after it a part of their own in `split` of `{}`",
+                             block.name)
+               : fmt::format("no rule between samples knows the input there: give the rows before and after the gap "
+                             "parts of their own in `split` of `{}`, and fit both",
+                             block.name)}};
+}
+
+}  // namespace sysid
