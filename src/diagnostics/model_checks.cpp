@@ -1,4 +1,4 @@
-// Populations, parameters without use, and the timing of the inputs.
+// Populations, and parameters without use.
 #include "diagnostics/model_checks.hpp"
 
 #include <fmt/format.h>
@@ -6,27 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "data/input_rule.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/residual_checks.hpp"
 #include "likelihood/output.hpp"
-#include "search/refit.hpp"
 
 namespace sysid {
-namespace {
-
-constexpr double gain_per_sample = 0.2;  // nats
-constexpr double gain_at_least = 20;
-
-/// Over all channels, as a likelihood reads them.
-int scored_samples(Experiment const& experiment) {
-  int count = 0;
-  for (std::size_t c = 0; c < experiment.measured.size(); ++c)
-    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) count += experiment.is_scored(c, i) ? 1 : 0;
-  return count;
-}
-
-}  // namespace
 
 Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found) {
   auto const estimated = [&](NodeId argument) {
@@ -91,37 +75,6 @@ Findings check_use(Model const& model, StartRule const& start) {
                           {name},
                           fmt::format("{} is used in no equation, no channel and no prior: its posterior equals its prior", name),
                           "remove it, or use it in an equation"});
-  }
-  return findings;
-}
-
-Findings check_input_timing(TargetOf const& target_of, Model const& model, std::vector<Experiment> const& experiments,
-                            ObjectiveKind objective_kind, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
-  Findings findings;
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    int const scored = scored_samples(experiments[e]);
-    for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-      double best_gain = 0, best_shift = 0;
-      for (double const shift : {-0.5, 0.5}) {
-        std::vector<Experiment> moved = experiments;
-        moved[e].inputs[i] = moved[e].inputs[i].shifted(shift);
-        std::unique_ptr<Target> const other = target_of(std::move(moved));
-        std::vector<Mode> const refitted = refit(*other, objective_kind, {mode}, seed, ledger);
-        double const gain = refitted.front().log_density - mode.log_density;
-        if (gain > best_gain) best_gain = gain, best_shift = shift;
-      }
-      if (best_gain <= gain_at_least || best_gain <= gain_per_sample * scored) continue;
-      findings.push_back(
-          {FindingCode::input_timing,
-           Severity::warning,
-           {model.inputs[i].name, experiments[e].name},
-           fmt::format(
-               "the fit is much better with input {}{} shifted half a sample {} (log posterior higher by {:.0f} for {} samples)",
-               model.inputs[i].name, experiments.size() == 1 ? "" : " on " + experiments[e].name,
-               best_shift > 0 ? "later" : "earlier", best_gain, scored),
-           fmt::format("check the rule between input samples (hold {}) and the delay of the recording",
-                       fmt::join(input_rule_names(), ", "))});
-    }
   }
   return findings;
 }

@@ -21,11 +21,12 @@ TEST_CASE("a sound fit raises no finding") {
   CHECK(sound_fit().summary.at("posterior").at("findings").empty());
 }
 
-TEST_CASE("an input held in the record but interpolated in the fit raises the half-sample hint") {
+TEST_CASE("an input held in the record but interpolated in the fit has its rule named") {
   // The generator holds the force; a straight line between its samples acts half a sample earlier.
   Fitted const fitted = run_file(with(sound(), "hold zero_order", "hold linear"), seeded(7));
-  CHECK(fitted.found("posterior", "input_timing"));
-  CHECK_FALSE(sound_fit().found("posterior", "input_timing"));
+  CHECK(fitted.found("posterior", "input_rule"));
+  CHECK_FALSE(fitted.found("posterior", "input_timing"));
+  CHECK_FALSE(sound_fit().found("posterior", "input_rule"));
 }
 
 TEST_CASE("a prior that ends below the truth raises the bound warning") {

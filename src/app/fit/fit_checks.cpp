@@ -7,6 +7,7 @@
 
 #include "app/session/fit_end.hpp"
 #include "diagnostics/bound_check.hpp"
+#include "diagnostics/input_checks.hpp"
 #include "diagnostics/model_checks.hpp"
 #include "diagnostics/tolerance.hpp"
 
@@ -36,17 +37,21 @@ std::string without_timing(FinishedFit const& fit) {
   if (model.inputs.empty()) return "the model has no input";
   if (fit.preparation.modes.empty()) return "the search found no mode";
   bool const explains = std::none_of(fit.report.findings.begin(), fit.report.findings.end(), [](Finding const& each) {
-    return each.code == FindingCode::worse_than_the_mean || each.code == FindingCode::explains_little;
+    return each.code == FindingCode::worse_than_the_mean;
   });
-  return explains ? "" : "the fit explains too little of the record";
+  return explains ? "" : "the fit explains nothing of a channel";
 }
 
 Findings input_timing(FinishedFit& fit) {
-  TargetOf const target_of = [&](std::vector<Experiment> experiments) {
-    return fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
-  };
-  return check_input_timing(target_of, fit.likelihood.model(), experiments_of(fit.data), fit.objective_kind,
-                            fit.preparation.modes.front(), fit.seed, fit.extra);
+  SolverSettings const& solver = fit.preparation.solver;
+  FitOfExperiments const remade{[&](std::vector<Experiment> experiments) {
+                                  return fit.likelihood.make_target(std::move(experiments), solver, fit.session.interruptible());
+                                },
+                                [&](std::vector<Experiment> const& experiments, std::vector<double> const& sampled) {
+                                  return fit.likelihood.log_densities(experiments, solver, sampled);
+                                }};
+  return check_inputs(remade, fit.likelihood.model(), experiments_of(fit.data), fit.objective_kind, fit.preparation.modes.front(),
+                      fit.seed, fit.extra);
 }
 
 // --- the solver and unknown functions

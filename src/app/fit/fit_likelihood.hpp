@@ -32,6 +32,10 @@ class FitLikelihood {
   virtual ParameterSpace const& space() const = 0;
   virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution) const = 0;
+  /// Log densities of the samples of these experiments that are scored, one series for each experiment and channel, with these
+  /// values of the sampled parameters, declared; empty where samples are not independent given the trajectory.
+  virtual std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
+                                                         std::vector<double> const& sampled) const = 0;
   /// The target of the fit's own experiments, which the functions below read.
   virtual Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) = 0;
 

@@ -10,6 +10,7 @@
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "inference/table.hpp"
+#include "likelihood/pointwise.hpp"
 #include "likelihood/trajectory.hpp"
 #include "mechanics/restoring_force.hpp"
 
@@ -33,6 +34,17 @@ class IndependentLikelihood : public FitLikelihood {
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {
     return make_fit_target(session_, what_, compiled_, space_, std::move(experiments), solver, execution);
+  }
+
+  std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
+                                                 std::vector<double> const& sampled) const override {
+    std::vector<std::vector<double>> all;
+    for (int e = 0; e < static_cast<int>(experiments.size()); ++e) {
+      PointwiseLikelihood const pointwise(compiled_, experiments[static_cast<std::size_t>(e)], solver, start_rows(what_.start),
+                                          session_.interruptible());
+      for (auto& channel : pointwise.run(parameters_at(sampled, e))) all.push_back(std::move(channel.front()));
+    }
+    return all;
   }
 
   Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) override {

@@ -43,6 +43,11 @@ class ProcessLikelihood : public FitLikelihood {
     return process_target(what_, model_, std::move(experiments), solver, execution);
   }
 
+  std::vector<std::vector<double>> log_densities(std::vector<Experiment> const&, SolverSettings const&,
+                                                 std::vector<double> const&) const override {
+    return {};
+  }
+
   Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) override {
     solver_ = solver;
     target_ = process_target(what_, model_, experiments_of(data_), solver, execution);

@@ -99,8 +99,8 @@ TEST_CASE("every check of a fit runs or says why it does not apply, with a proce
 
 TEST_CASE("an input with the wrong rule between samples is found beside a process") {
   json const wrong = fitted_with_hold("linear"), right = fitted_with_hold("zero_order");
-  CHECK(says(wrong, "input_timing"));
-  CHECK_FALSE(says(right, "input_timing"));
+  CHECK(says(wrong, "input_rule"));
+  CHECK_FALSE(says(right, "input_rule"));
   CHECK(check(right, "input_timing").at("ran") == true);
 }
 

@@ -1,0 +1,38 @@
+// Whether the inputs of a fit act when, and between their samples as, the data block has it.
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "data/experiment.hpp"
+#include "likelihood/target.hpp"
+#include "model/model.hpp"
+#include "result/finding.hpp"
+#include "result/mode.hpp"
+#include "search/objective_kind.hpp"
+
+namespace sysid {
+
+/// What a fit makes of other experiments.
+struct FitOfExperiments {
+  std::function<std::unique_ptr<Target>(std::vector<Experiment>)> target;
+  /// Log densities of the samples that are scored, one series for each experiment and channel, at declared values [P] of the
+  /// sampled parameters; empty where samples are not independent of one another.
+  std::function<std::vector<std::vector<double>>(std::vector<Experiment> const&, std::vector<double> const&)> log_densities;
+};
+
+/// Every input of every experiment under each other rule between its samples, and half a sample earlier and later: a short search
+/// follows the mode to each. What explains the record clearly better is a warning, `input_rule` or `input_timing`, at most one for
+/// an input of an experiment. Clearly better, with G the gain in log posterior and n the scored samples of the experiment:
+///
+///   G > 20 and G > 0.2 n,   or, of a rule,   G > 10 and mean(g) > 3.2 sd(g)/sqrt(16)
+///
+/// Of `linear` on an input that is smooth by its samples (cut_by_lines) also a warning: `cubic` that explains the record as well,
+/// G > -3, and moves a parameter by more than one of its sds.
+///
+/// g: the gains of the log likelihood in 16 successive parts of the record. A gain that is chance, however correlated the residuals
+/// are in time, comes from few parts of it. mode: the best one of the density that `objective_kind` names.
+Findings check_inputs(FitOfExperiments const& fit, Model const& model, std::vector<Experiment> const& experiments,
+                      ObjectiveKind objective_kind, Mode const& mode, std::uint64_t seed, Ledger& ledger);
+
+}  // namespace sysid
