@@ -41,6 +41,8 @@ constexpr Row rows[] = {
      "look for an input that was not recorded, a state that is missing, or add terms"},
     {Kind::correlated, Severity::warning, FindingCode::residual_correlated,
      "the sds are underestimated and the probabilities overconfident; a longer record, or the terms that are missing, may help"},
+    {Kind::other_rule, Severity::warning, FindingCode::input_rule,
+     "write that rule in the data block if the input acted so, and run again: the terms and coefficients may be wrong as they are"},
     {Kind::smoothed, Severity::note, FindingCode::derivative_smoothed,
      "measure that derivative, or leave the term out, if it matters"},
     {Kind::missing, Severity::note, FindingCode::windows_missing, ""},

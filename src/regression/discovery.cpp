@@ -8,6 +8,8 @@
 
 #include "regression/choice/triangle.hpp"
 #include "regression/column/dependence.hpp"
+#include "regression/input_rules.hpp"
+#include "regression/propagated_noise.hpp"
 
 namespace sysid::regression {
 namespace {
@@ -17,6 +19,8 @@ constexpr int most_choices = 5;
 /// Residual against noise from which on something is missing in the dictionary, and the least share that makes it worth a word.
 constexpr double unexplained_above = 2;
 constexpr double unexplained_share = 1e-3;
+/// The same of forms on samples, whose derivatives are not exact.
+constexpr double unexplained_sampled = 3, unexplained_share_sampled = 0.03;
 /// Whitened residuals: over so many lags; chi^2 of as many degrees exceeds this once in a million; a row is worth less than half.
 constexpr Eigen::Index lags = 20;
 constexpr double far_from_white = 66, correlated_above = 2;
@@ -259,6 +263,32 @@ class Finder {
   Eigen::VectorXd weights_;  // [J], those that whitened_ was last whitened with
 };
 
+// Of forms that know no covariance: the size of the residual alone, and more of it than a derivative may be off.
+void check_against_noise(Dictionary const& dictionary, std::span<Experiment const> experiments, Method const& method,
+                         Projection const& projection, Discovery& discovery) {
+  std::vector<Columns> const noise =
+      noise_of_columns(dictionary, experiments, *method.form, method.form_settings, projection, method.seed);
+  for (std::size_t e = 0; e < discovery.equations.size(); ++e) {
+    FoundEquation& found = discovery.equations[e];
+    Columns const& columns = projection.columns(static_cast<int>(e));
+    if (!found.found || noise[e].known.size() == 0) continue;
+    Eigen::VectorXd left = columns.known, expected = noise[e].known;
+    for (std::size_t k = 0; k < found.chosen.terms.size(); ++k) {
+      double const coefficient = found.chosen.coefficient(static_cast<Eigen::Index>(k));
+      left -= coefficient * columns.terms.col(found.chosen.terms[k]);
+      expected -= coefficient * noise[e].terms.col(found.chosen.terms[k]);
+    }
+    double const ratio = left.norm() / expected.norm(), share = left.norm() / columns.known.norm();
+    if (!(ratio > unexplained_sampled) || share < unexplained_share_sampled) continue;
+    Concern concern{.kind = Concern::Kind::unexplained, .value = ratio};
+    concern.clause = fmt::format(
+        "the residual is {:.3g} times what the measurement noise explains: a forcing or a term is missing, or the derivatives are "
+        "not accurate",
+        ratio);
+    found.concerns.push_back(std::move(concern));
+  }
+}
+
 }  // namespace
 
 Discovery discover(Dictionary const& dictionary, std::span<Experiment const> experiments, Method const& method) {
@@ -267,9 +297,15 @@ Discovery discover(Dictionary const& dictionary, std::span<Experiment const> exp
   discovery.noise_sd = projection->noise_sd();
   discovery.half_width = projection->half_width();
   for (std::size_t e = 0; e < dictionary.equations.size(); ++e) {
-    discovery.equations.push_back(Finder(dictionary.equations[e], *projection, static_cast<int>(e), method).find());
+    int const index = static_cast<int>(e);
+    discovery.equations.push_back(Finder(dictionary.equations[e], *projection, index, method).find());
+    FoundEquation& found = discovery.equations.back();
+    if (found.found)
+      if (auto concern = better_rule(dictionary, experiments, method, index, projection->columns(index), found))
+        found.concerns.push_back(std::move(*concern));
     discovery.interrupted = discovery.interrupted || (method.interrupted && method.interrupted());
   }
+  if (!projection->calibrated()) check_against_noise(dictionary, experiments, method, *projection, discovery);
   return discovery;
 }
 

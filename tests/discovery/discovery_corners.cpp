@@ -66,6 +66,27 @@ TEST_CASE("a forcing that was not recorded, and a term that the dictionary lacks
   CHECK_FALSE(term.finding("unexplained_residual").is_null());
 }
 
+TEST_CASE("an input read under the wrong rule between its samples is named with the right one, in every form") {
+  std::string const held = "input u = u [N] hold zero_order; ", lines = "input u = u [N] hold linear; ";
+  for (std::string const form : {"weak", "central", "savitzky_golay"}) {
+    CAPTURE(form);
+    std::string const options = "spike_slab(derivatives = " + form + "), seed = 1";
+    DiscoveryAnswer const right = run(file(oscillator, options, held)), wrong = run(file(oscillator, options, lines));
+    CHECK(right.finding("input_rule").is_null());
+    REQUIRE_FALSE(wrong.finding("input_rule").is_null());
+    CHECK(wrong.finding("input_rule").at("names") == json{"u", "zero_order"});
+  }
+}
+
+TEST_CASE("a forcing that was not recorded is missed by forms on samples too, and nothing is where all is there") {
+  std::string const without_force = without(
+      file("target = y''\nterms = y', y, y^2, y^3, 1", "spike_slab(derivatives = savitzky_golay), seed = 1", ""), "input u [N]\n");
+  json const finding = run(without_force).finding("unexplained_residual");
+  REQUIRE_FALSE(finding.is_null());
+  CHECK(contains(finding.at("message"), "or the derivatives are not accurate"));
+  CHECK(run(file(oscillator, "spike_slab(derivatives = savitzky_golay), seed = 1")).finding("unexplained_residual").is_null());
+}
+
 TEST_CASE("terms that are one on this record are named, and the first stays") {
   DiscoveryAnswer const repeats = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^3, abs(y)*sign(y)"));
   CHECK(repeats.exit == 0);

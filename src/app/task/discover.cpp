@@ -234,6 +234,11 @@ class Discover {
         std::vector<std::string> names;
         for (int const term : concern.terms) names.push_back(dictionary_.equations[e].terms[static_cast<std::size_t>(term)].text);
         Finding finding = finding_of(concern, found.equations.size() > 1 ? equation.name : "", std::move(names));
+        if (concern.input >= 0) {
+          std::string const& input = dictionary_.measured.inputs[static_cast<std::size_t>(concern.input)].name;
+          finding.names = {input, std::string(rule_name(concern.rule))};
+          finding.message = fmt::format("input {}: {}", input, finding.message);
+        }
         if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));
       }
     }

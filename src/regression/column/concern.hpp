@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "data/input_rule.hpp"
+
 namespace sysid::regression {
 
 struct Concern {
@@ -24,6 +26,7 @@ struct Concern {
     interchangeable,   // terms of which one is needed, but not which; value: probability that at least one is in
     unexplained,       // value: residual sd over that expected of the measurement noise: a forcing or a term is missing
     correlated,        // value: how many rows are worth one independent one
+    other_rule,        // input, rule: the residual is far smaller with it; value: by which factor the squares
     smoothed,          // terms that needed a smoothed derivative inside the weak form
     missing,           // value: share of windows lost to missing samples
     no_convergence,    // value: iterations
@@ -32,6 +35,8 @@ struct Concern {
   Kind kind = Kind::unexplained;
   std::vector<int> terms = {};  // of the equation
   int channel = -1;             // where one is meant
+  int input = -1;               // the same
+  InputRule rule = InputRule::zero_order;
   double value = 0;
   std::string clause = {};  // one plain sentence, lower case, no full stop, naming terms and numbers
 };
