@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "result/visits.hpp"
@@ -93,6 +94,26 @@ Along arguments_along(Model const& model, Experiment const& experiment, SolverSe
   return along;
 }
 
+struct Extent {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+
+  void include(Extent const& other) { low = std::fmin(low, other.low), high = std::fmax(high, other.high); }
+};
+
+// From where to where an argument goes in the scored rows, in the median of the runs that did not fail.
+Extent middle_extent(std::vector<std::vector<double>> const& values, Experiment const& experiment) {
+  std::vector<double> lows, highs;
+  for (std::vector<double> const& run : values) {
+    Extent extent;
+    for (std::size_t i = 0; i < run.size(); ++i)
+      if (experiment.scored[i] != 0 && !std::isnan(run[i])) extent.include({run[i], run[i]});
+    if (!(extent.low <= extent.high)) continue;
+    lows.push_back(extent.low);
+    highs.push_back(extent.high);
+  }
+  return lows.empty() ? Extent() : Extent{median(lows), median(highs)};
+}
+
 }  // namespace
 
 Findings check_ranges(Model const& model, Experiment const& experiment, SolverSettings const& solver, int start_rows,
@@ -104,6 +125,49 @@ Findings check_ranges(Model const& model, Experiment const& experiment, SolverSe
     Reading reading;
     for (std::vector<double> const& values : along.values[k]) reading.add(along.arguments[k].input, values);
     if (reading.beyond > 0) findings.push_back(outside(along.arguments[k], reading, experiment.name));
+  }
+  return findings;
+}
+
+Findings check_reach(Model const& model, std::vector<RunsAlong> const& fitted, RunsAlong const& predicted,
+                     SolverSettings const& solver, ExecutionOptions const& options) {
+  constexpr double tolerated = 0.1;
+  constexpr int runs = 20;
+  if (model.expansions.empty() || fitted.empty() || predicted.parameters.width() == 0) return {};
+  auto const along = [&](RunsAlong const& each) {
+    return arguments_along(model, each.experiment, solver, each.start_rows,
+                           some(each.parameters, std::min(each.parameters.width(), runs)), options);
+  };
+  std::vector<Along> seen;
+  for (RunsAlong const& each : fitted) seen.push_back(along(each));
+  Along const there = along(predicted);
+  Findings findings;
+  for (std::size_t k = 0; k < there.arguments.size(); ++k) {
+    auto const& [expansion, input] = there.arguments[k];
+    // What the fit has seen of this input, by whichever application.
+    Extent visited;
+    for (std::size_t e = 0; e < seen.size(); ++e)
+      for (std::size_t other = 0; other < seen[e].arguments.size(); ++other)
+        if (&seen[e].arguments[other].input == &input) visited.include(middle_extent(seen[e].values[other], fitted[e].experiment));
+    Extent const reached = middle_extent(there.values[k], predicted.experiment);
+    double const width = visited.high - visited.low, beyond = std::max(reached.high - visited.high, visited.low - reached.low);
+    bool const inside = reached.low >= input.low && reached.high <= input.high;
+    bool const told = std::any_of(findings.begin(), findings.end(), [&](Finding const& each) {
+      return each.names.front() == expansion.name && each.names[1] == input.name;
+    });
+    if (!inside || told || !(beyond > tolerated * width)) continue;
+    findings.push_back(
+        {FindingCode::far_outside,
+         Severity::warning,
+         {expansion.name, input.name, predicted.experiment.name},
+         fmt::format("`{}` is evaluated far from the fitted data along {}: {} goes from {} to {}{}, in the fitted rows "
+                     "from {} to {}",
+                     expansion.name, predicted.experiment.name, input.name, significant(input.from_si(reached.low), 3),
+                     significant(input.from_si(reached.high), 3),
+                     input.unit ? fmt::format(" [{}]", input.unit->text) : std::string(),
+                     significant(input.from_si(visited.low), 3), significant(input.from_si(visited.high), 3)),
+         "there the values and the band follow from the prior of the kernel, not from data: fit a record that "
+         "reaches as far"});
   }
   return findings;
 }

@@ -16,6 +16,7 @@
 #include "diagnostics/function_ranges.hpp"
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
+#include "experiment/fitted_rows.hpp"
 #include "mechanics/restoring_force.hpp"
 
 namespace sysid {
@@ -64,6 +65,8 @@ class PredictSelection {
                          leading.data->experiment, report.forces);
     add_prediction_rule(leading.model(), what_.prediction, report);
     add_data(session_.file, *leading.data, leading.model(), report);
+    for (Finding& finding : find_fitted_rows(session_.file, *leading.data, select_.fits[lead].experiments, select_task_.name))
+      report.findings.push_back(std::move(finding));
     add_ranges(lead, leading, report);
     int const leading_failed = leading.result.failed();
     std::vector<int> const& counts = trajectories_.counts();

@@ -31,6 +31,25 @@ std::vector<std::string> PosteriorTrajectories::drawn_from_prior(int e) const {
   return names;
 }
 
+std::vector<RunsAlong> PosteriorTrajectories::fitted_runs() const {
+  std::vector<RunsAlong> runs;
+  try {
+    std::vector<ExperimentData> const data = load_experiments(
+        session_, fit_.experiments, session_.file.models[static_cast<std::size_t>(fit_.model)], fit_.start, fit_.prediction);
+    LaneArray const declared = spread(fitted_.draws, wanted_);
+    for (std::size_t e = 0; e < data.size(); ++e) {
+      LaneArray own(static_cast<int>(model().parameters.size()), declared.width());
+      space_->select(space_->values_of_declared(declared), static_cast<int>(e), own);
+      runs.push_back({data[e].experiment, fit_.start.kind == StartRule::Kind::estimated ? fit_.start.rows : 0, std::move(own)});
+    }
+  } catch (IoError const&) {  // stored draws outlive their data
+    return {};
+  } catch (UserError const&) {
+    return {};
+  }
+  return runs;
+}
+
 LaneArray PosteriorTrajectories::parameters(int e) const {
   LaneArray const declared = spread(fitted_.draws, what_.redraw_each_step ? static_cast<int>(fitted_.draws.total()) : wanted_);
   int const fitted = what_.fitted[static_cast<std::size_t>(e)];

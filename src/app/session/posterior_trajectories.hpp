@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/session/session.hpp"
+#include "diagnostics/function_ranges.hpp"
 #include "experiment/experiments.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -22,6 +23,8 @@ class PosteriorTrajectories {
   int wanted() const { return wanted_; }
   int start_rows() const { return free_start_ ? what_.start.rows : 0; }
 
+  /// The experiments of the fit with the parameters of the draws there; none where their records are gone.
+  std::vector<RunsAlong> fitted_runs() const;
   /// Parameters that experiment e was not fitted with and draws from their prior given the shared ones, by name.
   std::vector<std::string> drawn_from_prior(int e) const;
   /// Parameters of the model in experiment e for each draw that is used, SI [parameters x draws].

@@ -20,6 +20,7 @@
 #include "diagnostics/function_ranges.hpp"
 #include "diagnostics/verdict.hpp"
 #include "experiment/experiments.hpp"
+#include "experiment/fitted_rows.hpp"
 #include "mechanics/restoring_force.hpp"
 
 namespace sysid {
@@ -58,6 +59,8 @@ class Predict {
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
       add_data(session_.file, data_[static_cast<std::size_t>(e)], model_, report);
       predict(e, report);
+      for (Finding& finding : find_fitted_rows(session_.file, data_[static_cast<std::size_t>(e)], fit_.experiments, fit_task_.name))
+        report.findings.push_back(std::move(finding));
     }
     add_source(session_.result_folder(fit_task_), report);
     report.settings = {{"draws", static_cast<std::int64_t>(trajectories_.wanted())},
@@ -91,6 +94,10 @@ class Predict {
     for (Finding& finding : check_ranges(model_, experiment, trajectories_.fitted().solver, trajectories_.start_rows(), draws,
                                          session_.options.execution))
       report.findings.push_back(std::move(finding));
+    if (!model_.expansions.empty())
+      for (Finding& finding : check_reach(model_, trajectories_.fitted_runs(), {experiment, trajectories_.start_rows(), draws},
+                                          trajectories_.fitted().solver, session_.options.execution))
+        report.findings.push_back(std::move(finding));
     // Parameters that change from step to step have no force of their own.
     if (!what_.redraw_each_step) add_restoring_forces(model_, trajectory.quantities(), result, draws, experiment, report.forces);
     for (Finding& finding : drift_findings(session_.source, model_, result, experiment.name))

@@ -1,11 +1,14 @@
 // What predictions say of the trajectories that their bands leave out.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/running.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -114,4 +117,73 @@ again = predict line_fit on bench with draws(200), seed = 1
         "margin is undefined somewhere along " + std::to_string(below) + " of 200 trajectories; its band contains only the others");
   CHECK(finding_in(run.summary("again"), "failed_predictions").is_null());
   CHECK_FALSE(finding_in(run.summary("line_fit"), "undefined_in_band").is_null());
+}
+
+TEST_CASE("scores on rows that were fitted are called so; scores on others are not") {
+  std::string const parts = with(growth, "past = fit growth to short",
+                                 "data cut { file \"long.csv\"; time t [s]; measure o = o; "
+                                 "split train = rows 1..6, test = rows 7..9 }\n"
+                                 "past = fit growth to cut.train");
+  auto const predicted = [&](std::string const& on) {
+    CaseRun const run(parts + "forecast = predict past on " + on + " with draws(20), seed = 1\n",
+                      {early, {"long.csv", rows_to(8)}});
+    return finding_in(run.summary("forecast"), "fitted_rows_predicted");
+  };
+  json const same = predicted("cut.train");
+  REQUIRE_FALSE(same.is_null());
+  CHECK(same.at("severity") == "note");
+  CHECK(same.at("message") ==
+        "all 6 scored rows of cut.train are rows that `past` was fitted to: the scores do not show how well it predicts");
+  CHECK(predicted("cut.test").is_null());
+  // Another block of the same file.
+  json const overlapping = predicted("long");
+  REQUIRE_FALSE(overlapping.is_null());
+  CHECK(overlapping.at("message").get<std::string>().starts_with("6 of 9 scored rows of long"));
+}
+
+namespace {
+
+// A spring of unknown law under a force of this amplitude, followed by Euler's steps of 1 ms.
+std::string pulled(double amplitude) {
+  std::string text = "t,x,o\n";
+  double y = 0, v = 0;
+  Stream noise({3, Purpose::noise, 0, 0});
+  for (int i = 0; i < 200; ++i) {
+    double const t = 0.05 * i, x = amplitude * elementary::sin(0.9 * t) * elementary::sin(0.17 * t + 1);
+    text += fmt::format("{:.6g},{:.9g},{:.9g}\n", t, x, y + 0.002 * noise.normal());
+    for (int k = 0; k < 50; ++k) {
+      double const at = t + 0.001 * k;
+      v += 0.001 * (amplitude * elementary::sin(0.9 * at) * elementary::sin(0.17 * at + 1) - 1.5 * v - 4 * y - 2 * y * y * y);
+      y += 0.001 * v;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a function inside an equation is named where a prediction uses it beyond what was fitted") {
+  std::string const text = R"(
+model spring {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter c [N s/m] ~ log_uniform(0.1, 10)
+  function f(y) ~ gp(squared_exponential(amplitude = 4 [N], length = 0.6 [m]), zero_at = 0, within = (-2 [m], 2 [m]))
+  1 [kg]*y'' + c*y' + f(y) = x
+  observe o [m] ~ normal(y, sd = 0.002 [m])
+}
+data small { file "small.csv"; time t [s]; input x = x [N] hold cubic; measure o = o [m] }
+data same  { file "same.csv"; time t [s]; input x = x [N] hold cubic; measure o = o [m] }
+data large { file "large.csv"; time t [s]; input x = x [N] hold cubic; measure o = o [m] }
+best = fit spring to small with map, seed = 1
+near = predict best on same with draws(50), seed = 1
+far = predict best on large with draws(50), seed = 1
+)";
+  CaseRun const run(text, {{"small.csv", pulled(2)}, {"same.csv", pulled(1.9)}, {"large.csv", pulled(5)}});
+  json const far = finding_in(run.summary("far"), "far_outside");
+  REQUIRE_FALSE(far.is_null());
+  CHECK(far.at("names").at(0) == "f");
+  CHECK(finding_in(run.summary("near"), "far_outside").is_null());
+  CHECK(finding_in(run.summary("far"), "outside_range").is_null());
 }

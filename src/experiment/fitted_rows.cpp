@@ -1,0 +1,44 @@
+// Rows are compared by file and number: two blocks may name one file.
+#include "experiment/fitted_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text/words.hpp"
+
+namespace sysid {
+
+Findings find_fitted_rows(CheckedFile const& file, ExperimentData const& predicted, std::vector<ExperimentUse> const& fitted,
+                          std::string const& task) {
+  std::string const& path = file.data[static_cast<std::size_t>(predicted.use.data)].path;
+  auto const was_fitted = [&](int row) {
+    return std::any_of(fitted.begin(), fitted.end(), [&](ExperimentUse const& use) {
+      DataBlock const& block = file.data[static_cast<std::size_t>(use.data)];
+      if (block.path != path) return false;
+      if (use.part < 0) return true;
+      DataPart const& part = block.parts[static_cast<std::size_t>(use.part)];
+      return row >= part.first && (part.last == 0 || row <= part.last);
+    });
+  };
+  Experiment const& experiment = predicted.experiment;
+  int scored = 0, seen = 0;
+  for (std::size_t i = 0; i < experiment.scored.size(); ++i) {
+    bool any = false;
+    for (std::size_t c = 0; c < experiment.measured.size() && !any; ++c) any = experiment.is_scored(c, i);
+    if (!any) continue;
+    ++scored;
+    if (was_fitted(experiment.first_row + static_cast<int>(i))) ++seen;
+  }
+  if (seen == 0) return {};
+  std::string const rows =
+      seen == scored ? fmt::format("all {} scored rows", scored) : fmt::format("{} of {} scored rows", seen, scored);
+  return {{FindingCode::fitted_rows_predicted,
+           Severity::note,
+           {experiment.name, task},
+           fmt::format("{} of {} are rows that `{}` was fitted to: the scores do not show how well it predicts", rows,
+                       experiment.name, task),
+           "predict rows that were held out of the fit: `split` in the data block"}};
+}
+
+}  // namespace sysid
