@@ -300,7 +300,7 @@ Discovery discover(Dictionary const& dictionary, std::span<Experiment const> exp
     int const index = static_cast<int>(e);
     discovery.equations.push_back(Finder(dictionary.equations[e], *projection, index, method).find());
     FoundEquation& found = discovery.equations.back();
-    if (found.found)
+    if (found.found && !(method.interrupted && method.interrupted()))
       if (auto concern = better_rule(dictionary, experiments, method, index, projection->columns(index), found))
         found.concerns.push_back(std::move(*concern));
     discovery.interrupted = discovery.interrupted || (method.interrupted && method.interrupted());
