@@ -213,7 +213,7 @@ TEST_CASE("an input that is constant stands for the constant, and is named with 
   for (double& value : steady.u) value = 0;
   DiscoveryAnswer const zero = run(file("target = u\nterms = y'', y', y, y^3"), steady.csv());
   CHECK(zero.exit == 1);
-  CHECK(zero.codes() == Texts{"nothing_to_explain"});
+  CHECK(zero.codes() == Texts{"column_constant", "nothing_to_explain"});
 }
 
 TEST_CASE("noise that is given takes the place of the estimate") {

@@ -102,7 +102,8 @@ TEST_CASE("a run tells of a dead column before it searches and in its verdict") 
   CaseRun const run(still_text, {{"record.csv", dead_table([](int, Row& all) { all.force = 0; })}});
   CHECK(run.result.notices.find("warning: input u, column `force`") != std::string::npos);
   int found = 0;
-  for (auto const& each : run.summary("posterior").at("findings")) found += each.at("code") == "column_constant";
+  auto const summary = run.summary("posterior");
+  for (auto const& each : summary.at("findings")) found += each.at("code") == "column_constant";
   CHECK(found == 1);
 }
 

@@ -58,13 +58,13 @@ void check_bands(TaskPage& page) {
 // Where the samples of an input contradict the curve that its rule draws through them. What was held cannot be told from what was
 // sampled by the samples alone, so of `zero_order` nothing is said.
 void check_rules(TaskPage& page) {
-  constexpr double rough = 0.1;
+  constexpr double rough = 0.1, much = 0.02;
   for (CoveragePage const& coverage : page.coverage)
     for (CoveragePage::Input const& input : coverage.inputs) {
       if (!coverage.equal) break;
       auto const rule = find_input_rule(input.rule);
       if (!rule || input.constant || (*rule != InputRule::linear && *rule != InputRule::cubic)) continue;
-      if (*rule == InputRule::linear && input.cut_by_lines)
+      if (*rule == InputRule::linear && input.cut_by_lines && input.chords > much)
         page.findings.push_back(
             {FindingCode::input_rule,
              Severity::note,

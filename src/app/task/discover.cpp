@@ -114,6 +114,7 @@ class Discover {
     for (ExperimentData const& each : data_) add_data(session_.file, each, dictionary_.measured, report);
     DiscoveryReport discovery = described(found, selector);
     add_findings(found, report.findings);
+    say_once(report.findings);
     if (validation) {
       temper_by_simulation(validation->report, report.findings);
       report.findings.insert(report.findings.end(), validation->findings.begin(), validation->findings.end());
@@ -155,6 +156,18 @@ class Discover {
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
     return terms + "; " + verdict_of(findings).headline;
+  }
+
+  // A channel at rest is a channel that is constant.
+  void say_once(Findings& findings) const {
+    if (std::none_of(findings.begin(), findings.end(),
+                     [](Finding const& each) { return each.code == FindingCode::record_at_rest; }))
+      return;
+    std::erase_if(findings, [&](Finding const& each) {
+      return each.code == FindingCode::column_constant &&
+             std::any_of(dictionary_.measured.channels.begin(), dictionary_.measured.channels.end(),
+                         [&](Channel const& channel) { return channel.name == each.names.front(); });
+    });
   }
 
   bool given(std::size_t channel) const { return !what_.noise.empty() && what_.noise[channel]; }
