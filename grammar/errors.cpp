@@ -45,6 +45,11 @@ Diagnostic semicolon_in_brackets(Span where) {
   return expected(where, "`,` or the closing bracket", "`;`", "separate items in brackets by commas; `;` ends a statement");
 }
 
+Diagnostic comma_missing(Token const& before, Token const& behind) {
+  return expected(behind.span, "`,`", fmt::format("`{}`", behind.text),
+                  fmt::format("write a comma before it: `{}, {}`", before.text, behind.text));
+}
+
 Diagnostic unclosed(Token const& opener, Span noticed) {
   Diagnostic out = error("E1102", noticed, fmt::format("the {} opened with `{}` is not closed", noun(opener.text), opener.text),
                          fmt::format("close it with `{}`", closer(opener.text)));
@@ -67,11 +72,12 @@ Diagnostic mismatched(Token const& opener, Token const& closing) {
   return out;
 }
 
-Diagnostic no_operator_between(Token const& left, Token const& right) {
+Diagnostic no_operator_between(Token const& left, Token const& right, std::string_view instead) {
   std::string help = "multiplication is written with `*`";
   if (left.kind != TokenKind::symbol && right.kind != TokenKind::symbol) help += fmt::format(": `{}*{}`", left.text, right.text);
   if (left.kind == TokenKind::word && right.kind == TokenKind::word && !left.text.ends_with('\''))
     help += fmt::format("; if `{0}` is a function, write `{0}({1})`", left.text, right.text);
+  if (!instead.empty()) help = fmt::format("{}; {}", instead, help);
   return error("E1105", cover(left.span, right.span),
                fmt::format("there is no operator between `{}` and `{}`", left.text, right.text), std::move(help));
 }
@@ -85,6 +91,11 @@ Diagnostic chained_comparison(Token const& first, Token const& second) {
 
 Diagnostic dot_without_digits(Span number, std::string_view repaired) {
   return error("E1107", number, "a number needs digits on both sides of its dot", fmt::format("write `{}`", repaired));
+}
+
+Diagnostic fortran_exponent(Span number, std::string_view digits, std::string_view exponent) {
+  return error("E1129", number, fmt::format("the exponent of `{}{}` is written as in Fortran", digits, exponent),
+               fmt::format("write `{0}e{1}`; a product is written `{0}*{2}`", digits, exponent.substr(1), exponent));
 }
 
 Diagnostic number_out_of_range(Span number, std::string_view text) {
@@ -115,10 +126,12 @@ Diagnostic double_equals(Span where) {
   return error("E1112", where, "`==` is a comparison, not an equation or a definition", "write a single `=`");
 }
 
-Diagnostic tilde_missing(Span where, std::string_view keyword) {
+Diagnostic tilde_missing(Span where, std::string_view keyword, std::string_view repaired) {
+  std::string_view const what = keyword == "observe" ? "an observation" : "a prior",
+                         form = keyword == "observe" ? "observe channel ~ normal(model, sd = 1)"
+                                                     : "parameter name ~ normal(0, sd = 1)";
   return error("E1113", where, "`~` is missing before the distribution",
-               keyword == "observe" ? "an observation is written `observe channel ~ normal(model, sd = 1)`"
-                                    : "a prior is written `parameter name ~ normal(0, 1)`");
+               fmt::format("{} is written `{}`", what, repaired.empty() ? form : repaired));
 }
 
 Diagnostic tilde_without_keyword(Span where) {
@@ -134,7 +147,7 @@ Diagnostic stray_byte(Span where, unsigned char byte) {
   std::string_view const help = byte == '|' ? "an absolute value is written `abs(y)`; arguments are separated by commas"
                                 : byte == '?'
                                     ? "a value that depends on a condition is written `if condition then value else value`"
-                                : byte == ':'  ? "a range is written `1..500`, a definition `let a = b`"
+                                : byte == ':'  ? "a range is written `1..500`, a value `parameter m = 1`, a definition `let a = b`"
                                 : byte == '\\' ? "formulas are plain text: `y''` for a second derivative, `sqrt(a)` for a root"
                                                : "remove it";
   return error("E1115", where, fmt::format("the character {} has no meaning here", name), std::string(help));

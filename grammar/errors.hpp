@@ -13,6 +13,8 @@ namespace sysid::grammar::errors {
 Diagnostic expected(Span where, std::string_view wanted, std::string_view found, std::string help = "");
 /// E1101: `log_uniform(1; 10)`.
 Diagnostic semicolon_in_brackets(Span where);
+/// E1101: `with mh(samples = 100) seed = 1`, `normal(y sd = 1)`.
+Diagnostic comma_missing(Token const& before, Token const& behind);
 /// E1102: a bracket never closed; `noticed` is where it had to be closed at the latest.
 Diagnostic unclosed(Token const& opener, Span noticed);
 /// E1103
@@ -20,11 +22,14 @@ Diagnostic unclosed_text(Span text);
 /// E1104: `(a]`.
 Diagnostic mismatched(Token const& opener, Token const& closer);
 /// E1105: `2 y`; left and right are the tokens on both sides of the gap.
-Diagnostic no_operator_between(Token const& left, Token const& right);
+/// instead: what may be meant in place of a product, empty where only that can be.
+Diagnostic no_operator_between(Token const& left, Token const& right, std::string_view instead = {});
 /// E1106: `a < b < c`.
 Diagnostic chained_comparison(Token const& first, Token const& second);
 /// E1107: `1.` and `.5`; `repaired` is how it is written.
 Diagnostic dot_without_digits(Span number, std::string_view repaired);
+/// E1129: `1d-3`; digits: `1`, exponent: `d-3`.
+Diagnostic fortran_exponent(Span number, std::string_view digits, std::string_view exponent);
 /// E1108
 Diagnostic number_out_of_range(Span number, std::string_view text);
 /// E1109: `paramter m ~ ...` in a model, `fiel "a.csv"` in a data block. place: "a model".
@@ -36,7 +41,8 @@ Diagnostic unknown_verb(Token const& word);
 /// E1112: `m*y'' == x`.
 Diagnostic double_equals(Span where);
 /// E1113: `parameter m log_uniform(1, 2)`; `where` is what stands where `~` had to stand.
-Diagnostic tilde_missing(Span where, std::string_view keyword);
+/// repaired: the statement with it, empty where that is not known.
+Diagnostic tilde_missing(Span where, std::string_view keyword, std::string_view repaired);
 /// E1114: `m ~ normal(0, 1)` without its keyword.
 Diagnostic tilde_without_keyword(Span where);
 /// E1115

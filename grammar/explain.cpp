@@ -147,14 +147,20 @@ class Failure {
     bool const value_before = previous() != nullptr && ends_value(*previous());
     bool const wants_name = wanted_ == wanted::name || wanted_ == wanted::column;
     if (found().is("'")) return errors::prime_apart(found().span);
-    if (found().is("[") && value_before && !wanted_.starts_with("a ")) return errors::bracket_out_of_place(found().span);
+    if (found().is("[") && previous() != nullptr && is_word(*previous()) && found_ == first_ + 1 && has("~"))
+      return errors::tilde_without_keyword(found().span);
+    bool const column = found().is("[") && wanted_ == wanted::equals && (begins_with("measure") || begins_with("input"));
+    if (found().is("[") && value_before && !wanted_.starts_with("a ") && !column) return errors::bracket_out_of_place(found().span);
     if (is_reserved(found()) && wants_name) return errors::reserved_word(found());
+    if (found().is("<") && wanted_ == wanted::equals && next() != nullptr && next()->is("-") &&
+        next()->span.begin == found().span.end)
+      return errors::left_arrow(cover(found().span, next()->span));
     if (is_symbol(found(), comparisons)) return at_comparison();
     if (wanted_ == wanted::operator_between && previous() != nullptr) return side_by_side();
     if (found().is("=") && wanted_ == wanted::end_of_statement) return second_equals();
-    if (begins_with("observe") && wanted_ == wanted::tilde) return errors::tilde_missing(span(), "observe");
-    if (begins_with("parameter") && wanted_ == wanted::end_of_statement && is_word(found()) && value_before)
-      return errors::tilde_missing(span(), "parameter");
+    if (begins_with("observe") && wanted_ == wanted::tilde) return errors::tilde_missing(span(), "observe", with_tilde());
+    if (begins_with("parameter") && wanted_ == wanted::end_of_statement && is_word(found()) && value_before && unit_here().empty())
+      return errors::tilde_missing(span(), "parameter", with_tilde());
     if (found().is("~") && value_before && !begins_with("parameter") &&
         (wanted_ == wanted::equals || wanted_ == wanted::end_of_statement))
       return errors::tilde_without_keyword(found().span);
@@ -170,11 +176,31 @@ class Failure {
     return std::nullopt;
   }
 
+  bool has(std::string_view symbol) const {
+    for (std::size_t i = first_; i < tokens_.size() && tokens_[i].statement == statement_; ++i)
+      if (tokens_[i].is(symbol)) return true;
+    return false;
+  }
+
+  std::string unit_here() const { return unit_without_brackets(gap()); }
+
+  /// `parameter m [kg] ~ normal(...)` of `parameter m [kg] normal(0, sd = 1)`, `observe y ~ normal(...)` of `observe y =
+  /// normal(...)`.
+  std::string with_tilde() const {
+    std::size_t const distribution = found().is("=") ? found_ + 1 : found_;
+    bool const call = distribution + 1 < tokens_.size() && is_word(tokens_[distribution]) && tokens_[distribution + 1].is("(") &&
+                      tokens_[distribution + 1].statement == statement_;
+    return call ? fmt::format("{} ~ {}(...)", written(tokens_[first_], *previous()), tokens_[distribution].text) : std::string();
+  }
+
   /// `k*y =` and on the next line `m*y'' = x`: one statement with two `=`.
   std::optional<Diagnostic> second_equals() const {
     for (std::size_t i = found_; i-- > first_;)
       if (tokens_[i + 1].newline_before && is_symbol(tokens_[i], unfinished))
         return errors::statement_incomplete(tokens_[i], tokens_[i + 1]);
+    for (std::size_t i = found_; i-- > first_;)
+      if (tokens_[i].newline_before && i > first_ && (tokens_[i].is("-") || tokens_[i].is("+")))
+        return errors::begins_with_sign(tokens_[i]);
     return std::nullopt;
   }
 
@@ -199,7 +225,19 @@ class Failure {
       if (!equation || declares || !nearest(word.text, words::list(words::model_statements)).empty())
         return errors::unknown_statement(word, "a model", words::model_statements);
     }
-    return errors::no_operator_between(word, found());
+    if (names_argument()) return errors::comma_missing(word, found());
+    return errors::no_operator_between(word, found(), instead_of_product(gap()));
+  }
+
+  /// `mh(samples = 100) seed = 1`, `normal(y sd = 1)`: named things in a list, which begins in brackets or behind `with`.
+  bool names_argument() const {
+    std::size_t const name = found().is("input") ? found_ + 1 : found_;
+    bool const named = name + 1 < tokens_.size() && is_word(tokens_[name]) && tokens_[name + 1].is("=") &&
+                       tokens_[name + 1].statement == statement_;
+    int depth = 0;
+    for (std::size_t i = first_; i < found_; ++i)
+      depth += tokens_[i].is("(") ? 1 : tokens_[i].is(")") ? -1 : tokens_[i].is("with") ? 1 : 0;
+    return named && (depth > 0 || begins_with("initial"));
   }
 
   bool in_model() const {

@@ -7,7 +7,7 @@ namespace sysid::grammar {
 inline constexpr x3::rule<struct expression_tag, ast::Expression> expression = wanted::value;
 /// name(arguments); fails where no parenthesis follows a name.
 inline constexpr x3::rule<struct call_tag, ast::Call> call = "a function";
-inline constexpr x3::rule<struct distribution_tag, ast::Call> distribution = "a distribution such as `normal(0, 1)`";
+inline constexpr x3::rule<struct distribution_tag, ast::Call> distribution = "a distribution such as `normal(0, sd = 1)`";
 /// `value`, `name = value`.
 inline constexpr x3::rule<struct argument_tag, ast::Argument> argument = "an argument";
 /// `[...]`.

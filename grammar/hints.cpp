@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/numeric/unit.hpp"
 #include "grammar/explain.hpp"
 #include "syntax/words.hpp"
 
@@ -31,14 +32,18 @@ bool begins_with_verb(Gap const& gap) {
   return gap.statement.size() > verb && words::contains(words::verbs, gap.statement[verb].text);
 }
 
-constexpr std::array<Situation, 29> situations{{
+constexpr std::array<Situation, 35> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
      "in a dictionary a parameter is unknown or has a value, but no prior: `parameter m [kg]`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
      "a prior is written `parameter name ~ uniform(lower, upper)`"},
+    {[](Gap const& g) { return g.wanted.starts_with("a distribution") && g.begins_with("parameter"); },
+     "a prior is a distribution with its arguments in parentheses: `~ log_uniform(lower, upper)`; a value is written with `=`"},
     {[](Gap const& g) { return g.wanted.starts_with("a distribution"); },
      "write the distribution of the data around the model: `~ normal(y, sd = sigma)`"},
-    {[](Gap const& g) { return g.wanted == wanted::name && g.begins_with("model") && found(g, "{"); },
+    {[](Gap const& g) {
+       return g.wanted == wanted::name && g.begins_with("model") && (found(g, "{") || found_kind(g, TokenKind::text));
+     },
      "a model has a name: `model oscillator {`"},
     {[](Gap const& g) { return g.begins_with("split"); }, "rows are written `split train = rows 1..500`"},
     {[](Gap const& g) { return g.wanted == "a text in quotes" || (found(g, "'") && g.begins_with("file")); },
@@ -58,8 +63,25 @@ constexpr std::array<Situation, 29> situations{{
      "units are multiplied with a blank or `*`: `[N s/m]`"},
     {[](Gap const& g) { return (g.wanted == "`]`" || g.wanted == "']'") && found(g, "-"); },
      "units are multiplied with a blank or `*`, a power is written with `^`: `[N s/m]`, `[m s^-2]`"},
+    {[](Gap const& g) {
+       constexpr std::array<std::string_view, 5> operators{"+", "*", "/", "^", "-"};
+       return g.wanted == wanted::value && g.found != nullptr && g.before() != nullptr &&
+              words::contains(operators, g.found->text) && words::contains(operators, g.before()->text);
+     },
+     "two operators stand side by side: remove one, or write what belongs between them"},
+    {[](Gap const& g) { return g.wanted == wanted::end_of_statement && (found(g, "prob") || found(g, "weight")) && g.at == 1; },
+     "the prior probability of a candidate is written `NAME probability 0.5`"},
     {[](Gap const& g) { return found(g, "=") && g.at == 0; }, "an equation has two sides: `left = right`"},
-    {[](Gap const& g) { return found(g, "%") && g.at == 0; }, "a comment begins with `#` or `//`"},
+    {[](Gap const& g) { return found(g, "%") && g.before() != nullptr && g.before()->kind == TokenKind::number; },
+     "a share in percent is written `1 [percent]`"},
+    {[](Gap const& g) {
+       return (found(g, "%") && (g.at == 0 || g.wanted == wanted::end_of_statement)) || (found(g, "*") && g.at == 0);
+     },
+     "a comment begins with `#` or `//`"},
+    {[](Gap const& g) { return found(g, "=") && g.before() != nullptr && g.before()->is("hold"); },
+     "the rule follows `hold` without `=`: `hold linear`"},
+    {[](Gap const& g) { return found(g, ")") && (g.wanted == wanted::equals || g.wanted == wanted::end_of_statement); },
+     "no `(` is open here: remove the `)`, or open one before it"},
     {[](Gap const& g) { return g.begins_with("initial") && g.wanted == wanted::equals && found(g, "("); },
      "write an initial value without the time: `initial y = 0`"},
     {[](Gap const& g) { return declares(g) && g.wanted == "')'" && found(g, "="); },
@@ -106,9 +128,132 @@ std::string grouped_digits(Gap const& gap) {
   return gap.found->text.front() == '_' ? digits : std::string();
 }
 
+/// `fit m to d mh(samples = 100)`, `fit m to d, seed = 1`: options whose `with` is missing.
+std::string options_without_with(Gap const& gap) {
+  if (gap.found == nullptr || (gap.wanted != wanted::with_or_end && gap.wanted != wanted::preposition_or_end)) return {};
+  bool const behind_comma =
+      (gap.found->is("(") || gap.found->is("=")) && gap.before() != nullptr && gap.before(2) != nullptr && gap.before(2)->is(",");
+  std::size_t const option = behind_comma ? gap.at - 1 : gap.at;
+  if (gap.statement[option].kind != TokenKind::word || option + 1 >= gap.statement.size()) return {};
+  Token const& next = gap.statement[option + 1];
+  if (!next.is("(") && !next.is("=")) return {};
+  return fmt::format("options follow `with`: write `with {}{}`{}", gap.statement[option].text, next.is("(") ? "(...)" : " = ...",
+                     behind_comma ? " in place of the comma" : "");
+}
+
+/// `2,5`: the comma between two whole numbers that no blank holds apart.
+std::string decimal_comma(Gap const& gap) {
+  Token const* const left = gap.before();
+  if (!found(gap, ",") || left == nullptr || gap.at + 1 >= gap.statement.size()) return {};
+  Token const& right = gap.statement[gap.at + 1];
+  bool const digits = left->kind == TokenKind::number && right.kind == TokenKind::number &&
+                      right.text.find_first_not_of("0123456789") == std::string_view::npos &&
+                      left->text.find_first_not_of("0123456789") == std::string_view::npos;
+  bool const close = left->span.end == gap.found->span.begin && gap.found->span.end == right.span.begin;
+  return digits && close ? fmt::format("a number has a decimal point: write `{}.{}`", left->text, right.text) : std::string();
+}
+
+/// The tokens from `from` on that are a unit on paper, `N s/m^2`: one past the last; `from` where there is none.
+std::size_t end_of_unit(std::span<Token const> statement, std::size_t from) {
+  std::size_t end = from;
+  bool factor = true;  // one may come next
+  for (std::size_t i = from; i < statement.size(); ++i) {
+    Token const& token = statement[i];
+    bool const power = i > from && statement[i - 1].is("^");
+    if (token.kind == TokenKind::word && !power && unit_atom(token.text)) {
+      if (i + 1 < statement.size() && statement[i + 1].is("(")) break;
+      end = i + 1;
+      factor = false;
+    } else if (token.kind == TokenKind::number && power) {
+      end = i + 1;
+    } else if (factor || !(token.is("/") || token.is("*") || token.is("^"))) {
+      break;
+    } else {
+      factor = !token.is("^");
+    }
+  }
+  return end;
+}
+
+/// What lacks one sign: the statement with it.
+std::string repaired_statement(Gap const& gap) {
+  Token const* const before = gap.before();
+  if (gap.found == nullptr || before == nullptr) return {};
+  std::string_view const so_far = written(gap.statement[0], *before);
+  bool const binds = std::any_of(gap.statement.begin(), gap.statement.begin() + static_cast<std::ptrdiff_t>(gap.at),
+                                 [](Token const& each) { return each.is("=") || each.is("~"); });
+  bool const list = gap.begins_with("state") || gap.begins_with("input") || gap.begins_with("shared");
+  if (gap.wanted == wanted::end_of_statement && list && !binds && gap.found->kind == TokenKind::word && !gap.found->is("hold") &&
+      (before->is("]") || gap.begins_with("shared")))
+    return fmt::format("separate the names by commas: `{}, {}`", so_far, gap.found->text);
+  bool const declared = gap.begins_with("parameter") || gap.begins_with("constant");
+  if (declared && !binds && gap.found->kind == TokenKind::number && before->kind != TokenKind::number &&
+      (gap.wanted == wanted::end_of_statement || gap.wanted == wanted::equals))
+    return fmt::format("a value is written with `=`: `{} = {}`", so_far, gap.found->text);
+  bool const bound = gap.begins_with("measure") || gap.begins_with("input");
+  if (bound && gap.wanted == wanted::equals && gap.statement.size() > 1 && gap.at == 2)
+    return fmt::format("the column stands behind `=`: `{} NAME = {}`", gap.statement[0].text, before->text);
+  bool const settings = gap.begins_with("exclude") || gap.begins_with("terms") || gap.begins_with("target");
+  if (settings && gap.wanted == wanted::equals) return fmt::format("write `{} = {}`", so_far, gap.found->text);
+  // `y (mm)` of a column or a declared name.
+  if (gap.found->is("(") && gap.wanted == wanted::end_of_statement && gap.at + 1 < gap.statement.size()) {
+    std::size_t const end = end_of_unit(gap.statement, gap.at + 1);
+    if (end > gap.at + 1 && end < gap.statement.size() && gap.statement[end].is(")"))
+      return fmt::format("a unit is written in brackets: `{} [{}]`", before->text,
+                         written(gap.statement[gap.at + 1], gap.statement[end - 1]));
+  }
+  return {};
+}
+
 }  // namespace
 
+std::string_view written(Token const& first, Token const& last) {
+  return {first.text.data(), static_cast<std::size_t>(last.text.data() + last.text.size() - first.text.data())};
+}
+
+std::string unit_without_brackets(Gap const& gap) {
+  if (!found_kind(gap, TokenKind::word) || gap.before() == nullptr || gap.before()->kind == TokenKind::symbol) return {};
+  if (found(gap, "in") && gap.begins_with("parameter")) return {};  // of a range
+  std::size_t const end = end_of_unit(gap.statement, gap.at);
+  if (end == gap.at) return {};
+  return fmt::format("[{}]", written(*gap.found, gap.statement[end - 1]));
+}
+
+std::string instead_of_product(Gap const& gap) {
+  Token const* const left = gap.before();
+  if (left == nullptr || gap.found == nullptr) return {};
+  int depth = 0;
+  for (std::size_t i = 0; i < gap.at; ++i) depth += gap.statement[i].is("(") ? 1 : gap.statement[i].is(")") ? -1 : 0;
+  bool const begins_argument = gap.before(2) != nullptr && (gap.before(2)->is("(") || gap.before(2)->is(","));
+  if (left->kind == TokenKind::number && gap.found->kind == TokenKind::number) {
+    std::string const comma = fmt::format("arguments are separated by commas: `{}, {}`", left->text, gap.found->text);
+    std::string const grouped = gap.found->text.size() == 3 && gap.found->text.find_first_not_of("0123456789") == std::string::npos
+                                    ? fmt::format("digits are not grouped: write `{}{}`", left->text, gap.found->text)
+                                    : std::string();
+    return depth == 0 ? grouped : grouped.empty() ? comma : comma + "; " + grouped;
+  }
+  // In an equation a number stands before a name more often than before a unit.
+  bool const declaration = words::contains(words::model_statements, gap.statement[0].text) ||
+                           words::contains(words::data_statements, gap.statement[0].text) || begins_with_verb(gap);
+  if (left->kind == TokenKind::number && declaration)
+    if (std::string const unit = unit_without_brackets(gap); !unit.empty())
+      return fmt::format("a unit is written in brackets: `{} {}`", left->text, unit);
+  if (left->kind == TokenKind::word && depth > 0 && begins_argument && gap.found->kind != TokenKind::symbol)
+    return fmt::format("a named argument is written `{} = {}`", left->text, gap.found->text);
+  // An option of a task stands behind `with` or a comma.
+  bool const option = gap.before(2) != nullptr && (gap.before(2)->is(",") || gap.before(2)->is("with"));
+  if (left->kind == TokenKind::word && begins_with_verb(gap) && option && gap.found->kind == TokenKind::number)
+    return fmt::format("an option is written `{} = {}`", left->text, gap.found->text);
+  return {};
+}
+
 std::string hint(Gap const& gap) {
+  if (std::string options = options_without_with(gap); !options.empty()) return options;
+  if (std::string point = decimal_comma(gap); !point.empty()) return point;
+  if (std::string repaired = repaired_statement(gap); !repaired.empty()) return repaired;
+  if (gap.wanted == wanted::end_of_statement && gap.before() != nullptr)
+    if (std::string const unit = unit_without_brackets(gap); !unit.empty())
+      return fmt::format("a unit is written in brackets: `{} {}`", gap.before()->text, unit);
   if (std::string const digits = grouped_digits(gap); !digits.empty())
     return fmt::format("digits are not grouped: write `{}`", digits);
   if (gap.begins_with("parameter") && gap.statement.size() > 1 && words::contains(types, gap.statement[1].text) && gap.at == 2)

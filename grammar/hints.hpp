@@ -21,6 +21,15 @@ struct Gap {
   bool begins_with(std::string_view word) const { return !statement.empty() && statement[0].is(word); }
 };
 
+/// What the user wrote from one token to a later one.
+std::string_view written(Token const& first, Token const& last);
+
+/// `[N/mm]` where the words of a unit were found without brackets, or empty.
+std::string unit_without_brackets(Gap const& gap);
+
+/// Two values without an operator that are no product on paper: "a unit is written in brackets: `9.81 [m/s^2]`", or empty.
+std::string instead_of_product(Gap const& gap);
+
 /// Help for the user, or empty.
 std::string hint(Gap const& gap);
 

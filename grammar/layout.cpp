@@ -84,10 +84,7 @@ class LayoutPass {
       else if (begins_declaration(i))
         close_unclosed(i);
       // To the rules all that follows stands in the block.
-      if (!open_.empty() && tokens_[open_.back()].is("{") && begins_task(i)) {
-        leave_block(i);
-        all_spoilt_from_ = std::min(all_spoilt_from_, i);
-      }
+      if (!open_.empty() && tokens_[open_.back()].is("{") && begins_task(i)) leave_block(i);
     }
     close_unclosed(tokens_.size());
     if (!open_.empty()) unclosed_block(open_.back(), tokens_.size());
@@ -104,6 +101,7 @@ class LayoutPass {
   void leave_block(std::size_t found) {
     unclosed_block(open_.front(), found);
     open_.clear();
+    all_spoilt_from_ = std::min(all_spoilt_from_, found);
   }
 
   /// `fit duffing`, `posterior = fit duffing`: two words that no statement of a block may have there.

@@ -175,6 +175,7 @@ class Scanner {
         digits();
       }
     }
+    if (fortran_exponent(begin)) return;
     std::string_view const number = text_.substr(begin, at_ - begin);
     double value = 0;
     if (std::from_chars(number.data(), number.data() + number.size(), value).ec == std::errc::result_out_of_range)
@@ -183,6 +184,22 @@ class Scanner {
       ++at_;
       mistake(errors::dot_without_digits(from(begin), with_digits_behind(number)));
     }
+  }
+
+  /// `1d-3`, `1.5D3`: with what follows, it is one number to whoever wrote it.
+  bool fortran_exponent(std::size_t begin) {
+    if (peek() != 'd' && peek() != 'D') return false;
+    std::size_t const sign = peek(1) == '+' || peek(1) == '-' ? 1 : 0;
+    if (!words::is_digit(peek(1 + sign))) return false;
+    std::size_t const letter = at_;
+    at_ += 1 + sign;
+    digits();
+    if (words::continues_name(peek())) {  // `2d3x` is a product with a name
+      at_ = letter;
+      return false;
+    }
+    mistake(errors::fortran_exponent(from(begin), text_.substr(begin, letter - begin), text_.substr(letter, at_ - letter)));
+    return true;
   }
 
   static std::string with_digits_behind(std::string_view number) {

@@ -36,6 +36,51 @@ std::string column_names(std::vector<std::string> const& names) {
   return first_listed(marked, 20);
 }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Digits in groups between the signs of dates and times: `2024-05-01 12:00:00.5`, `1.5.2024`, `5/1/24 3:00 PM`, `12:00:01`.
+bool is_time_stamp(std::string_view text) {
+  if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.size() - 2);
+  if (text.find_first_not_of("0123456789-/.:,+ TZAPMapm") != std::string_view::npos || text.empty() || !is_digit(text[0]))
+    return false;
+  auto const count = [&](char sign) { return std::count(text.begin(), text.end(), sign); };
+  std::size_t const dash = text.find('-', 1);
+  bool const by_dashes = count('-') >= 2 && dash != std::string_view::npos && is_digit(text[dash - 1]);
+  return count(':') > 0 || count('/') == 2 || by_dashes ||
+         (count('.') == 2 && text.size() <= 10 && text.find_first_of(",' ") == std::string_view::npos &&
+          text.rfind('.') + 5 == text.size());
+}
+
+/// `1,234.5`, `1.234,5`, `1'234`: a number whose digits stand in groups of three, as it is to be written; else empty.
+std::string without_groups(std::string_view text) {
+  if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.size() - 2);
+  std::string out;
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
+    if (text.front() == '-') out += '-';
+    text.remove_prefix(1);
+  }
+  std::size_t const first = text.find_first_not_of("0123456789");
+  if (first == 0 || first > 3 || first == std::string_view::npos ||
+      std::string_view(",.' ").find(text[first]) == std::string_view::npos)
+    return {};
+  out += text.substr(0, first);
+  std::size_t at = first;
+  int groups = 0;
+  for (; at < text.size() && text[at] == text[first]; at += 4, ++groups) {
+    for (std::size_t i = at + 1; i <= at + 3; ++i)
+      if (i >= text.size() || !is_digit(text[i])) return {};
+    out += text.substr(at + 1, 3);
+  }
+  if (at < text.size() && (text[at] == '.' || text[at] == ',')) {
+    out += '.';
+    ++at;
+  } else if (groups == 1 && text[first] == '.') {
+    return {};
+  }
+  if (text.substr(std::min(at, text.size())).find_first_not_of("0123456789eE+-") != std::string_view::npos) return {};
+  return out + std::string(text.substr(std::min(at, text.size())));
+}
+
 }  // namespace
 
 Diagnostic no_header(std::string const& file, Mention mention) {
@@ -95,11 +140,36 @@ Diagnostic repeated_column(std::string const& file, std::string const& column, M
 
 Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention) {
   bool const decimal_comma =
-      std::count(text.begin(), text.end(), ',') == 1 && text.find_first_not_of("0123456789+-eE,") == std::string_view::npos;
-  return error("E4010", mention, fmt::format("{}: `{}` is not a number", place(cell), shown(text)),
-               decimal_comma
-                   ? "write a decimal point instead of the comma"
-                   : "a missing sample of a measured column is an empty cell or NA; an input needs a number in every row");
+      std::count(text.begin(), text.end(), ',') == 1 && text.find_first_not_of("\"0123456789+-eE,") == std::string_view::npos;
+  std::string const grouped = without_groups(text);
+  std::string help = "a missing sample of a measured column is an empty cell or NA; an input needs a number in every row";
+  if (is_time_stamp(text))
+    help =
+        "dates and times of day are not read: write the seconds since the start in this column, or `rate` with the sampling rate "
+        "in "
+        "place of the time column";
+  else if (std::size_t const d = text.find_first_of("dD");
+           d != std::string_view::npos && text.find_first_not_of("0123456789+-.dD") == std::string_view::npos)
+    help = fmt::format("write the exponent with `e`: `{}e{}`", text.substr(0, d), text.substr(d + 1));
+  else if (decimal_comma)
+    help = "write a decimal point instead of the comma";
+  if (!grouped.empty())
+    help = decimal_comma ? fmt::format("{}, or `{}` where it groups digits", help, grouped)
+                         : fmt::format("write it without groups of digits: `{}`", grouped);
+  return error("E4010", mention, fmt::format("{}: `{}` is not a number", place(cell), shown(text)), std::move(help));
+}
+
+Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention) {
+  return error("E4010", mention,
+               fmt::format("{} holds words, not numbers: a row of units under the header, as it seems",
+                           place(cell.file, cell.row, cell.line)),
+               fmt::format("delete this line; units are written in the data block: `{} [{}]`", cell.column, shown(text)));
+}
+
+Diagnostic unknown_separator(std::string const& file, int line, std::string_view separator, Mention mention) {
+  return error("E4002", mention,
+               fmt::format("line {} of `{}` names the separator `{}`, which is not read", line, file, shown(separator)),
+               "separate the columns by commas, semicolons or tabs");
 }
 
 Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention) {

@@ -34,6 +34,10 @@ Diagnostic missing_column(std::string const& file, std::string const& column, st
                           Mention mention);
 Diagnostic repeated_column(std::string const& file, std::string const& column, Mention mention);
 Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention);
+/// E4010: text in each cell of the first row: the units, as some programs write them.
+Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention);
+/// E4002: `sep=|`.
+Diagnostic unknown_separator(std::string const& file, int line, std::string_view separator, Mention mention);
 Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention);
 Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention);
 /// what: "an input" or "the time".

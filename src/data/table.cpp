@@ -150,6 +150,13 @@ class Lines {
   char end_character_;
 };
 
+/// `sep=;`, which spreadsheets write above the header: what follows `sep=`.
+std::optional<std::string_view> stated_separator(std::string_view line) {
+  if (line.size() >= 2 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
+  if (line.size() < 5 || !(line.starts_with("sep=") || line.starts_with("SEP=") || line.starts_with("Sep="))) return std::nullopt;
+  return line.size() == 5 || trimmed(line, blanks).size() == 5 ? std::optional(line.substr(4)) : std::nullopt;
+}
+
 bool all_numbers(std::vector<std::string> const& names) {
   return std::all_of(names.begin(), names.end(), [](std::string const& name) {
     double ignored = 0;
@@ -170,14 +177,21 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
 
   Lines line(table.bytes_, table.bytes_.starts_with("\xef\xbb\xbf") ? 3 : 0);
   bool header_found = false;
+  std::optional<char> stated;
   while (!header_found && line.next()) {
     std::string_view const text = trimmed(line.text(), blanks);
+    if (auto const separator = stated_separator(line.text()); separator && line.number == 1) {
+      if (std::string_view(",;\t").find(separator->front()) == std::string_view::npos)
+        throw UserError(data_errors::unknown_separator(table.name_, line.number, *separator, mention));
+      stated = separator->front();
+      continue;
+    }
     if (text.starts_with('#')) table.comments_.emplace_back(trimmed(text.substr(1), blanks));
     header_found = !text.empty() && !text.starts_with('#');
   }
   if (!header_found) throw UserError(data_errors::no_header(table.name_, mention));
   table.header_line_ = line.number;
-  char const separator = find_separator(line.text());
+  char const separator = stated ? *stated : find_separator(line.text());
   bool closed = split(table.bytes_, line.begin, line.end, separator, [&](std::size_t begin, std::size_t end) {
     table.columns_.push_back(unquoted(std::string_view(table.bytes_).substr(begin, end - begin)));
   });
@@ -217,6 +231,21 @@ std::string_view Table::cell(int row, int column) const {
   return std::string_view(bytes_).substr(cells_[at], cells_[at + 1] - 1 - cells_[at]);
 }
 
+bool Table::names_units() const {
+  if (rows_ < 2) return false;
+  auto const kind = [&](int row, int column) {
+    double ignored = 0;
+    return parse_number(cell(row, column), ignored);
+  };
+  bool numbers_follow = false;
+  for (int column = 0; column < static_cast<int>(columns_.size()); ++column) {
+    Kind const first = kind(1, column);
+    if (first != Kind::text && first != Kind::missing) return false;
+    numbers_follow = numbers_follow || (first == Kind::text && kind(2, column) == Kind::number);
+  }
+  return numbers_follow;
+}
+
 std::vector<double> Table::numbers(std::string const& column, std::optional<Span> mention) const {
   auto const found = std::find(columns_.begin(), columns_.end(), column);
   if (found == columns_.end() || column.empty()) throw UserError(data_errors::missing_column(name_, column, columns_, mention));
@@ -235,6 +264,7 @@ std::vector<double> Table::numbers(std::string const& column, std::optional<Span
     }
     data_errors::Cell const place{name_, row, line(row), column};
     std::string_view const shown = trimmed(text, blanks);
+    if (kind == Kind::text && row == 1 && names_units()) throw UserError(data_errors::row_of_units(place, shown, mention));
     throw UserError(kind == Kind::not_finite     ? data_errors::not_finite(place, shown, mention)
                     : kind == Kind::out_of_range ? data_errors::out_of_range(place, shown, mention)
                                                  : data_errors::not_a_number(place, shown, mention));

@@ -12,8 +12,9 @@
 namespace sysid {
 
 /// Comma, semicolon or tab separated, whichever divides the header most often; one header line with the names (quoted or not),
-/// before it any number of empty lines and of comment lines that begin with `#`. Line ends LF, CRLF or CR; a UTF-8 byte order mark
-/// is skipped. Cells are kept as text: only columns that are asked for need to hold numbers.
+/// before it any number of empty lines and of comment lines that begin with `#`, and as the first line of all `sep=;`. Line ends
+/// LF, CRLF or CR; a UTF-8 byte order mark is skipped. Cells are kept as text: only columns that are asked for need to hold
+/// numbers.
 class Table {
  public:
   /// IoError when the file cannot be read, UserError (at `mention`) when it is no such table.
@@ -38,6 +39,8 @@ class Table {
 
  private:
   std::string_view cell(int row, int column) const;
+  /// The first row holds words where the second holds numbers.
+  bool names_units() const;
 
   std::string name_, bytes_, digest_;
   std::vector<std::string> columns_, comments_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "core/text/words.hpp"
@@ -22,10 +23,11 @@ struct Worst {
   bool empty() const { return names.empty(); }
 };
 Worst worst(std::vector<Summary> const& summaries, std::function<double(Summary const&)> const& badness,
-            std::function<std::string(Summary const&)> const& show, double bar) {
+            std::function<std::string(Summary const&)> const& show, double bar,
+            double below = std::numeric_limits<double>::infinity()) {
   std::vector<Summary const*> bad;
   for (Summary const& s : summaries)
-    if (badness(s) > bar) bad.push_back(&s);
+    if (badness(s) > bar && badness(s) <= below) bad.push_back(&s);
   std::stable_sort(bad.begin(), bad.end(), [&](Summary const* a, Summary const* b) { return badness(*a) > badness(*b); });
   Worst found;
   std::vector<std::string> shown;
@@ -84,10 +86,13 @@ void check_agreement(ChainReport const& report, Findings& findings) {
   auto const show = [](Summary const& s) { return fmt::format("{:.3f}", s.rhat); };
   Worst const bad = worst(report.summaries, rhat_of, show, rhat_threshold);
   if (bad.empty()) return;
-  bool const far_above = !worst(report.summaries, rhat_of, show, rhat_far_above).empty();
+  Worst const far = worst(report.summaries, rhat_of, show, rhat_far_above),
+              near = worst(report.summaries, rhat_of, show, rhat_threshold, rhat_far_above);
+  bool const far_above = !far.empty();
   findings.push_back(
       {far_above ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
-       far_above ? fmt::format("the chains disagree: R-hat of {} is far above {}", bad.text, rhat_threshold)
+       far_above ? fmt::format("the chains disagree: R-hat of {} is far above {}{}", far.text, rhat_threshold,
+                               near.empty() ? "" : fmt::format(", that of {} is above it", near.text))
                  : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_threshold),
        far_above ? "do not use the means and sds; run longer chains, and check for a second mode or for parameters that "
                    "the data cannot separate"

@@ -17,13 +17,15 @@ struct Spelling {
   int unit_power;  // the argument's unit is u^power, u the unit of the variate: mean 1, variance 2, precision -2, rate -1, shape 0
   /// The canonical argument from this spelling; nullptr: it is canonical.
   NodeId (*to_canonical)(Graph&, NodeId given, std::span<NodeId const> canonical_before);
+  bool logarithm = false;  // of the number that the canonical argument is in the unit of the variate
 };
 
-/// Arguments with one spelling may be positional; an argument with several spellings must be named.
+/// Arguments with one spelling may be positional; an argument with several spellings must be named, unless it says otherwise.
 struct ArgumentRow {
   std::span<Spelling const> spellings;  // the canonical one first
   /// Default when left out, as a number in the unit of the variate; NaN: it must be given.
   double fallback;
+  bool by_position = false;  // is the first of its spellings then
 };
 
 /// Which side of a quantile a probability is counted on: in its own tail it keeps all its digits.

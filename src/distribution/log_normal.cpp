@@ -5,20 +5,21 @@
 namespace sysid {
 namespace {
 
-constexpr Spelling median[] = {{"median", 1, nullptr}};
-constexpr Spelling sd[] = {{"sd", 0, nullptr}, {"variance", 0, &sd_from_variance}, {"precision", 0, &sd_from_precision}};
-constexpr ArgumentRow arguments[] = {{median, must_be_given}, {sd, must_be_given}};
+constexpr Spelling median[] = {{"median", 1, nullptr}, {"log_mean", 0, nullptr, true}};
+constexpr Spelling sd[] = {
+    {"sd", 0, nullptr}, {"log_sd", 0, nullptr}, {"variance", 0, &sd_from_variance}, {"precision", 0, &sd_from_precision}};
+constexpr ArgumentRow arguments[] = {{median, must_be_given, true}, {sd, must_be_given}};
 
 Term constant(Term x, Term s) { return -half_log_two_pi - log(s) - log(x); }
 
-/// log of the density of x where log(x / median) is normal with mean 0 and the given sd; `log_normal(median, sd | variance |
-/// precision = ...)`.
+/// log of the density of x where log(x / median) is normal with mean 0 and the given sd; `log_normal(median | log_mean = ..., sd |
+/// log_sd | variance | precision = ...)`.
 ///
 ///   log p = -1/2 log(2 pi) - log sd - log x - 1/2 (log(x / median)/sd)^2                Johnson, Kotz, Balakrishnan 1994,
 ///   eq. 14.2'
 ///
 /// x > 0 and median > 0: unit u; sd, variance, precision: of the logarithm, pure numbers; sd > 0. The median is exp of the usual
-/// mu, so that it has x's unit.
+/// mu, so that it has x's unit; log_mean is mu of the number that x is in its declared unit.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const value(graph, x), s(graph, a[1]);
   Term const r = log(value) - log(Term(graph, a[0]));
@@ -57,7 +58,7 @@ DistributionRow log_normal_distribution() {
           .draw = &draw,
           .quantile = &quantile,
           .refuse = &refuse,
-          .summary = "log-normal, by its median and the sd, variance or precision of the logarithm"};
+          .summary = "log-normal, by its median or log_mean and the sd (log_sd), variance or precision of the logarithm"};
 }
 
 }  // namespace sysid

@@ -17,6 +17,7 @@ namespace {
 /// Choice and whitening go on until a support repeats; at most this often, should two take turns.
 constexpr int most_choices = 5;
 /// Residual against noise from which on something is missing in the dictionary, and the least share that makes it worth a word.
+constexpr double settled_probability = 0.99, settled_sd = 0.05;  // of the coefficient
 constexpr double unexplained_above = 2;
 constexpr double unexplained_share = 1e-3;
 /// The same of forms on samples, whose derivatives are not exact.
@@ -204,8 +205,9 @@ class Finder {
           found_.joint(usable_[a], usable_[b]) = choice.joint(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
       add_interchangeable(equation_, found_.joint, found_.concerns);
     }
-    Concerns const near = near_dependence(equation_, whitened_, found_.chosen.terms);
-    found_.concerns.insert(found_.concerns.end(), near.begin(), near.end());
+    for (Concern& near : near_dependence(equation_, whitened_, found_.chosen.terms))
+      if (std::any_of(near.terms.begin(), near.terms.end(), [&](int j) { return !is_settled(j); }))
+        found_.concerns.push_back(std::move(near));
     if (projection_.calibrated()) {
       Columns const by_channels = found_.own_noise > 0 ? projection_.whitened(index_, weights_, 0) : whitened_;
       Eigen::VectorXd against_noise = by_channels.known;
@@ -219,6 +221,13 @@ class Finder {
       concern.clause = fmt::format("the selection of terms did not converge in {} iterations", choice.iterations);
       found_.concerns.push_back(std::move(concern));
     }
+  }
+
+  // A large condition index is harmless where the data are good enough: the term is needed, by its probability, and known.
+  bool is_settled(int j) const {
+    FoundTerm const& term = found_.terms[static_cast<std::size_t>(j)];
+    bool const needed = found_.joint.size() > 0 && found_.joint(j, j) > settled_probability;
+    return needed && term.sd < settled_sd * std::abs(term.coefficient);
   }
 
   void check_residual(Eigen::VectorXd const& residual, double share) {

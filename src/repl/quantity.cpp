@@ -23,6 +23,30 @@ Row const* find(std::span<Row const> rows, std::string_view name) {
 }
 
 /// `min(a)` is a statistic, `min(a, b)` the language's.
+/// What prompts of other languages call a statistic or a plot, as it is written here; empty for all else.
+std::string in_our_words(ast::Call const& call) {
+  constexpr std::pair<std::string_view, std::string_view> words[] = {{"hist", "plot(histogram({}))"},
+                                                                     {"density", "plot(histogram({}))"},
+                                                                     {"std", "sd({})"},
+                                                                     {"stdev", "sd({})"},
+                                                                     {"stddev", "sd({})"},
+                                                                     {"var", "sd({})^2"},
+                                                                     {"variance", "sd({})^2"},
+                                                                     {"average", "mean({})"},
+                                                                     {"avg", "mean({})"},
+                                                                     {"percentile", "quantile({})"},
+                                                                     {"cor", "corr({})"},
+                                                                     {"correlation", "corr({})"},
+                                                                     {"length", "count({})"},
+                                                                     {"traceplot", "plot(trace({}))"},
+                                                                     {"prob", "probability({})"}};
+  std::string arguments;
+  for (ast::Argument const& each : call.arguments) arguments += (arguments.empty() ? "" : ", ") + unparse(each.value);
+  for (auto const& [foreign, ours] : words)
+    if (call.function.text == foreign) return fmt::format(fmt::runtime(ours), arguments);
+  return {};
+}
+
 bool is_statistic(ast::Call const& call) {
   if (find(statistics(), call.function.text) == nullptr) return false;
   return (call.function.text != "min" && call.function.text != "max") || call.arguments.size() == 1;
@@ -225,6 +249,11 @@ bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
     tree.node = std::move(reference);
   };
   if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) {
+    if (std::string const ours = in_our_words(**call); !ours.empty()) {
+      refuse((*call)->function.span, fmt::format("there is no function `{}`", (*call)->function.text),
+             fmt::format("write `{}`", ours));
+      return false;
+    }
     bool const along = find(series_functions(), (*call)->function.text) != nullptr;
     if (along || is_statistic(**call)) {
       auto quantity = along ? series(**call) : statistic(**call);

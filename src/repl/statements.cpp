@@ -32,6 +32,44 @@ void suggest_command(Diagnostics& diagnostics, std::string const& entry) {
   diagnostics.replace(std::move(all));
 }
 
+bool is_task(EntryPart const& part, std::string const& entry) {
+  return part.kind == EntryPart::Kind::items &&
+         kind_of(item_of(entry.substr(part.span.begin, part.span.end - part.span.begin))) == ItemKind::task;
+}
+
+/// Gives a task a name in its text.
+void name_task(WorkItem& item, std::string const& name) {
+  std::string const head = name + " = ";
+  auto const length = static_cast<std::uint32_t>(head.size());
+  item.text = head + item.text;
+  item.name = name;
+  for (TypedPart& each : item.typed) each.in_text = {each.in_text.begin + length, each.in_text.end + length};
+}
+
+/// Whether a task fits a plain model of the work: of a family its name would hold the arguments, which the checker knows.
+bool of_plain_model(ast::Task const& task, Workspace const& work) {
+  if (task.verb.text == "predict" || task.verb.text == "discover" || task.verb.text == "select") return true;
+  std::size_t const place = work.find(ItemKind::model, task.subject.text);
+  return place < work.items.size() && std::get<ast::Model>(item_of(work.items[place].text)).arguments.empty();
+}
+
+/// A task without a name is called after what it does. Another one of that name, which was run, keeps its results.
+void keep_unnamed(Context const& context, ast::Item const& tree, WorkItem& item, Workspace const& work,
+                  std::vector<std::string>& notices) {
+  auto const& task = std::get<ast::Task>(tree);
+  if (task.name) return;
+  if (!of_plain_model(task, work)) {
+    std::string const plain = item.name;
+    bool const taken = work.find(item.name) < work.items.size();
+    return name_task(item, taken ? free_task_name(context, plain) : plain);
+  }
+  std::size_t const place = work.find(ItemKind::task, item.name);
+  if (place == work.items.size() || work.items[place].text == item.text || !context.results.tasks().contains(item.name)) return;
+  std::string const name = free_task_name(context, item.name);
+  notices.push_back(fmt::format("`{}` is an earlier task that stays as it is: this one is `{}`", item.name, name));
+  name_task(item, name);
+}
+
 /// Puts a part into the draft; tasks to run when it has been checked. False when it cannot be.
 bool draft(Context& context, EntryPart const& part, std::string const& entry, Workspace& work, std::vector<std::string>& tasks,
            std::vector<std::string>& notices) {
@@ -46,6 +84,7 @@ bool draft(Context& context, EntryPart const& part, std::string const& entry, Wo
     WorkItem item{kind_of(tree), name_of(tree), "", text, false, {{{0, length}, part.span.begin}}};
     if (item.kind == ItemKind::task) {
       item.text = with_seed(context, text);
+      keep_unnamed(context, tree, item, work, notices);
       tasks.push_back(item.name);
     }
     if (item.kind == ItemKind::model) context.work.model = item.name;
@@ -146,7 +185,11 @@ bool enter_statements(Context& context, std::string const& entry) {
     Workspace changed = context.work.statements;
     std::string const model = context.work.model, data = context.work.data;
     std::vector<std::string> tasks, notices;
-    for (; i < parts.size() && parts[i].kind != EntryPart::Kind::expression && tasks.empty(); ++i)
+    // What stands before a task stays when the task cannot be run.
+    std::size_t const first = i;
+    for (; i < parts.size() && parts[i].kind != EntryPart::Kind::expression && tasks.empty() &&
+           (i == first || !is_task(parts[i], entry));
+         ++i)
       if (!draft(context, parts[i], entry, changed, tasks, notices)) {
         context.work.model = model;
         context.work.data = data;

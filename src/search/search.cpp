@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/system/failed_places.hpp"
 #include "core/text/words.hpp"
 #include "linear_algebra/decompositions.hpp"
@@ -125,6 +127,30 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
                  "fix one of them, give them narrower priors, or measure a quantity that distinguishes them"};
 }
 
+LaneArray draw_prior(Target const& target, StreamKey key, int count) {
+  LaneArray draws(target.dimension(), count);
+  target.sample_prior(key, draws);
+  return draws;
+}
+
+/// Whether the likelihood falls far at all of the prior's 16, 50 and 84 % points of parameter p, the others as they are. At a bound
+/// the coordinate is flat for as long as one likes, though the data hold the parameter there.
+bool is_held(Target const& target, Mode const& mode, std::size_t p) {
+  constexpr double far = 4.5;  // three sds
+  std::vector<double> values;
+  LaneArray const draws = draw_prior(target, {0, Purpose::start, 0, search_step}, draws_per_pass);
+  for (double const value : draws.row(static_cast<int>(p))) values.push_back(value);
+  std::sort(values.begin(), values.end());
+  std::vector<Eigen::VectorXd> points(4, theta_of(mode));
+  for (int k = 0; k < 3; ++k)
+    points[static_cast<std::size_t>(k) + 1](static_cast<Eigen::Index>(p)) =
+        sorted_quantile(values, std::array{0.16, 0.5, 0.84}[static_cast<std::size_t>(k)]);
+  std::vector<double> reached(points.size());
+  Ledger none;
+  target.log_likelihood(to_lanes(points), reached, none);
+  return std::all_of(reached.begin() + 1, reached.end(), [&](double each) { return each < reached.front() - far; });
+}
+
 void add_findings(Objective const& objective, SearchResult& result) {
   std::vector<Mode> const& modes = result.modes;
   for (std::size_t i = 1; i < modes.size() && objective.objective_kind != ObjectiveKind::likelihood; ++i) {
@@ -138,20 +164,23 @@ void add_findings(Objective const& objective, SearchResult& result) {
          "compare both solutions: add data or prior knowledge that distinguishes them, or run more chains and report both"});
   }
   auto const parameters = static_cast<std::size_t>(objective.dimension());
-  for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters)
-    if (auto finding = flat_direction(objective.target, modes.front(), {modes.front().flat.data() + at, parameters}))
-      result.findings.push_back(std::move(*finding));
+  std::vector<std::vector<std::string>> told;
+  for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters) {
+    std::span<double const> const move(modes.front().flat.data() + at, parameters);
+    auto finding = flat_direction(objective.target, modes.front(), move);
+    // What concerns the same parameters is one thing to do something about, however many directions there are.
+    if (!finding || std::find(told.begin(), told.end(), finding->names) != told.end()) continue;
+    auto const moved = std::find_if(move.begin(), move.end(), [](double each) { return each != 0; });
+    bool const alone = std::count(move.begin(), move.end(), 0.0) + 1 == static_cast<std::ptrdiff_t>(parameters);
+    if (alone && is_held(objective.target, modes.front(), static_cast<std::size_t>(moved - move.begin()))) continue;
+    told.push_back(finding->names);
+    result.findings.push_back(std::move(*finding));
+  }
 }
 
 bool has_coefficients(Target const& target) {
   return std::any_of(target.parameters().begin(), target.parameters().end(),
                      [](ParameterInfo const& each) { return each.coefficient; });
-}
-
-LaneArray draw_prior(Target const& target, StreamKey key, int count) {
-  LaneArray draws(target.dimension(), count);
-  target.sample_prior(key, draws);
-  return draws;
 }
 
 /// Coefficients of unknown functions at zero, where a model is what it is without them.

@@ -114,3 +114,27 @@ TEST_CASE("a width that some value of the priors makes positive is left to the r
        {"sd = -s", "sd = abs(s)", "sd = s^2", "sd = s*s", "sd = sqrt(-s)", "sd = exp(s)", "sd = max(s, b)", "sd = s + b"})
     CHECK(!refused_parameters("uniform(-2, -1)", width));
 }
+
+TEST_CASE("log_mean and log_sd are a median and a sd, and a logarithm by position is asked about") {
+  auto const said = [](std::string const& prior) {
+    return test::messages("model m {\nparameter k [N/mm] ~ " + prior + "\nobserve d [N/mm] ~ normal(k, sd = 1)\n}\n");
+  };
+  CHECK(said("log_normal(log_mean = log(30), log_sd = 0.5)") == "");
+  CHECK(said("log_normal(30, sd = 0.5)") == "");
+  CHECK(said("log_normal(median = log(30), sd = 0.5)") == "");
+  CHECK(said("log_normal(log(30), sd = 0.5)").find("`log_mean = log(30)`") != std::string::npos);
+  CHECK(said("log_normal(log_mean = 3, median = 30, sd = 0.5)").find("E2104") != std::string::npos);
+  CHECK(said("log_normal(mean = log(30), sd = 0.5)").find("did you mean") == std::string::npos);
+  CHECK(said("log_normal(mean = log(30), sd = 0.5)").find("log_mean") != std::string::npos);
+}
+
+TEST_CASE("a decimal comma among arguments is named, a list of whole numbers is one") {
+  auto const said = [](std::string const& prior) {
+    return test::messages("model m {\nparameter k ~ " + prior + "\nobserve d ~ normal(k, sd = 1)\n}\n");
+  };
+  CHECK(said("log_uniform(0,5, 200)").find("`0.5`") != std::string::npos);
+  CHECK(said("log_uniform(0,05, 200)").find("`0.05`") != std::string::npos);
+  CHECK(said("normal(2,5, sd = 1)").find("`2.5`") != std::string::npos);
+  CHECK(said("uniform(0,5)") == "");
+  CHECK(said("uniform(0, 5, 200)").find("decimal point") == std::string::npos);
+}

@@ -24,6 +24,7 @@ TEST_CASE("words that are no units are read as what they were meant for") {
                            {"mpa", "MPa"},
                            {"hz", "Hz"},
                            {"khz", "kHz"},
+                           {"mn", "mm"},
                            {"Nm", "N m"},
                            {"Ns", "N s"},
                            {"Nmm", "N mm"},

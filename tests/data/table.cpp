@@ -136,6 +136,47 @@ TEST_CASE("a decimal comma is an error that says so") {
   CHECK(error.help == "write a decimal point instead of the comma");
 }
 
+TEST_CASE("what spreadsheets and Fortran write is named, with the number as it is to be written") {
+  struct Cell {
+    char const* text;
+    char const* said;
+  };
+  for (Cell const& each : {Cell{"1,234.5", "`1234.5`"},
+                           {"1.234,5", "`1234.5`"},
+                           {"-12'345", "`-12345`"},
+                           {"1 234 567", "`1234567`"},
+                           {"1,234", "`1234`"},
+                           {"1.5D-3", "`1.5e-3`"},
+                           {"2024-05-01 12:00:00", "dates"},
+                           {"12:00:01.5", "dates"},
+                           {"01.05.2024", "dates"},
+                           {"5/1/2024", "dates"}}) {
+    CAPTURE(each.text);
+    CHECK(error_of(std::string("a;b\n1;2\n") + each.text + ";3\n", "a").help.find(each.said) != std::string::npos);
+  }
+  for (char const* text : {"4 N", "1.2.3", "--1", "12 34", "x", "1e"}) {
+    CAPTURE(text);
+    CHECK(error_of(std::string("a;b\n1;2\n") + text + ";3\n", "a").help.starts_with("a missing sample"));
+  }
+}
+
+TEST_CASE("a row of units under the header is named, words elsewhere are not taken for one") {
+  Diagnostic const units = error_of("t,y\ns,mm\n0,1\n1,2\n", "y");
+  CHECK(units.code == "E4010");
+  CHECK(units.message.find("a row of units") != std::string::npos);
+  CHECK(units.help.find("`y [mm]`") != std::string::npos);
+  CHECK(error_of("t,y\n0,mm\n0,1\n", "y").message.find("units") == std::string::npos);
+  CHECK(error_of("t,y\na,mm\nb,km\n", "y").message.find("units") == std::string::npos);
+}
+
+TEST_CASE("a line that states the separator is read, and is a name where it stands below") {
+  CHECK(parse("sep=;\na;b\n1;2\n").numbers("b") == Numbers{2});
+  CHECK(parse("sep=\t\na\tb\n1\t2\n").numbers("b") == Numbers{2});
+  CHECK(parse("sep=;\na,x;b\n1;2\n").columns() == std::vector<std::string>{"a,x", "b"});
+  CHECK(error_of("sep=|\na|b\n1|2\n", "b").code == "E4002");
+  CHECK(parse("# head\nsep=;,b\n1,2\n").numbers("b") == Numbers{2});
+}
+
 TEST_CASE("a bare NaN or an infinity is an error, not a missing value") {
   for (char const* cell : {"NaN", "nan", "NAN", "-nan", "+nan", "inf", "-inf", "Inf", "+Infinity", "\"NaN\""}) {
     CAPTURE(cell);

@@ -68,6 +68,21 @@ TEST_CASE("chains that disagree a little fail quietly, a lot loudly") {
   CHECK(much[0].message.find("k (") != std::string::npos);
 }
 
+TEST_CASE("only what is far above the limit is said to be far above it") {
+  ChainReport mixed = report(chains(4, 2000, 0, 3));
+  Summary near = mixed.summaries[0];
+  near.name = "c";
+  near.rhat = 1.011;
+  mixed.summaries.push_back(near);
+  Findings const findings = check_chains(mixed);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].names == std::vector<std::string>{"k", "c"});
+  CHECK(findings[0].message.find("that of c (1.011) is above it") != std::string::npos);
+  CHECK(findings[0].message.find("c (1.011)") > findings[0].message.find("far above"));
+  mixed.summaries.pop_back();
+  CHECK(check_chains(mixed)[0].message.find("above it") == std::string::npos);
+}
+
 TEST_CASE("too few independent draws are reported with how much longer to run") {
   // AR(1) with 0.98: 4 x 6000 (1 - 0.98)/(1 + 0.98) = 242 effective draws for the mean.
   Findings const findings = check_chains(report(chains(4, 6000, 0.98)));

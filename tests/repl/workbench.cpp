@@ -409,3 +409,48 @@ TEST_CASE("what the messages of the prompt name can be typed there") {
   CHECK_FALSE(has(d.messages(), "sysid list"));
   CHECK_FALSE(has(d.messages(), "sysid explain"));
 }
+
+TEST_CASE("a fit without a name is refitted after its model has changed, and entered again it replaces nothing") {
+  Dialogue d;
+  d.begin();
+  REQUIRE_MESSAGE(d.enter("fit oscillator to bench.train with map"), d.messages());
+  REQUIRE_MESSAGE(d.enter("parameter k [N/m] ~ log_uniform(1e3, 1e6)"), d.messages());
+  REQUIRE_MESSAGE(d.enter("fit oscillator to bench.train with map"), d.messages());
+  CHECK(has(d.messages(), "`fit_oscillator` is an earlier task that stays as it is: this one is `fit_oscillator2`"));
+  REQUIRE_MESSAGE(d.enter("refit fit_oscillator"), d.messages());
+  CHECK(has(d.messages(), "fit_oscillator3 = fit oscillator to bench.train with map"));
+}
+
+TEST_CASE("what is entered before a task stays when the task cannot be run") {
+  Dialogue d;
+  d.begin();
+  std::string const block =
+      "data other { file \"" + d.path("none.csv") + "\"; time t [s]; input x = x [N] hold linear; measure displacement = y [m] }";
+  CHECK_FALSE(d.enter(block + "\nlate = fit oscillator to other with map"));
+  CHECK(d.enter("show other"));
+  CHECK(has(d.answers() + d.messages(), "none.csv"));
+  CHECK_FALSE(d.enter("show late"));
+}
+
+TEST_CASE("a plot or a statistic by the name that other prompts give it is answered with ours") {
+  Dialogue d;
+  d.begin();
+  CHECK_FALSE(d.enter("hist(k)"));
+  CHECK(has(d.messages(), "write `plot(histogram(k))`"));
+  CHECK_FALSE(d.enter("std(k)"));
+  CHECK(has(d.messages(), "write `sd(k)`"));
+  CHECK_FALSE(d.enter("sd(k)"));
+  CHECK_FALSE(has(d.messages(), "write `"));
+}
+
+TEST_CASE("a fit without a name of a model with arguments can be run and refitted") {
+  Dialogue d;
+  d.begin();
+  REQUIRE_MESSAGE(d.enter("model law(n = 3) {\n input x [N]\n state y [m]\n initial y = 0, y' = 0\n"
+                          "parameter k [N/m] ~ log_uniform(1e3, 1e5)\n parameter kn [N/m^n] ~ log_uniform(1, 1e10)\n"
+                          "1 [kg]*y'' + 20 [N s/m]*y' + k*y + kn*y^n = x\n observe displacement ~ normal(y, sd = 1e-5) }"),
+                  d.messages());
+  REQUIRE_MESSAGE(d.enter("fit law to bench.train with map"), d.messages());
+  REQUIRE_MESSAGE(d.enter("fit law(n = 2) to bench.train with map"), d.messages());
+  CHECK(d.enter("show fit_law2"));
+}

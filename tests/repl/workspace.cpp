@@ -72,6 +72,17 @@ TEST_CASE("nothing is kept of what no task was run on, and nothing changes where
   CHECK(w.items.back().text == "f = fit a to b_1 with map");
 }
 
+TEST_CASE("a fit without a name keeps what it was called when its model goes on under another name") {
+  Workspace w = work({"model a { }", "data b { }", "fit a to b with map"});
+  CHECK(w.put(item("model a { state y }"), {"fit_a"}).size() == 1);
+  CHECK(w.items.back().text == "fit_a = fit a_1 to b with map");
+  CHECK(w.items.back().name == "fit_a");
+  // One with a name has it already.
+  Workspace named = work({"model a { }", "data b { }", "f = fit a to b with map"});
+  named.put(item("model a { state y }"), {"f"});
+  CHECK(named.items.back().text == "f = fit a_1 to b with map");
+}
+
 TEST_CASE("paths of data go with the file") {
   Workspace w = work({"data b { file \"../records/b.csv\"; rate 1 [Hz] }", "data c { file \"/tmp/c.csv\" }"});
   w.path = "/home/a/models/duffing/work.sysid";

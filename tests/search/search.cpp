@@ -132,6 +132,34 @@ TEST_CASE("a sum that alone is measured is reported for bounded priors, too, whe
                     [](Finding const& each) { return each.code == FindingCode::flat_direction; }));
 }
 
+TEST_CASE("a value that the data hold at a bound is not called undetermined, one that they leave alone there is") {
+  auto const at_bound = [](double width) {
+    TestTarget const target({"z"}, {{Prior::log_uniform, 1e-4, 1}}, 1, 0,
+                            [=](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = w[0] / width; });
+    Bench bench;
+    Findings const found = search(target, ObjectiveKind::likelihood, bench.context).findings;
+    return std::any_of(found.begin(), found.end(), [](Finding const& each) { return each.code == FindingCode::flat_direction; });
+  };
+  for (double const width : {1e-4, 3e-4, 1e-3}) {
+    CAPTURE(width);
+    CHECK_FALSE(at_bound(width));
+  }
+  CHECK(at_bound(100));
+}
+
+TEST_CASE("directions of the same parameters are told once") {
+  // Nothing but the sum of three is measured: two directions, of the same three.
+  TestTarget const target(
+      {"a", "b", "c"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
+      [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] + w[1] + w[2] - 1) / 0.01; });
+  Bench bench;
+  SearchResult const result = search(target, ObjectiveKind::likelihood, bench.context);
+  CHECK(result.modes[0].flat.size() == 6);
+  std::set<std::vector<std::string>> names;
+  for (Finding const& each : result.findings) CHECK(names.insert(each.names).second);
+  CHECK_FALSE(names.empty());
+}
+
 TEST_CASE("a parameter that the data leave alone is named by itself") {
   TestTarget const target({"a", "idle"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 1, 0,
                           [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[0] - 1) / 0.01; });

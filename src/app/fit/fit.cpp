@@ -21,6 +21,7 @@
 #include "data/start_rule.hpp"
 #include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
+#include "experiment/sticking.hpp"
 #include "inference/evidence.hpp"
 #include "inference/table.hpp"
 #include "search/search.hpp"
@@ -95,13 +96,24 @@ class Fit {
     SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.objective_kind, context)
                                     : search(*target, backend_.objective_kind, context);
     if (found.interrupted) return false;
-    if (found.failure) throw UserError(no_result(task_, *found.failure));
+    if (found.failure) {
+      std::vector<Failure> const& places = preparation_.ledger.failures();
+      bool const sticks =
+          std::any_of(places.begin(), places.end(), [](Failure const& each) { return each.kind == FailureClass::step_limit; });
+      if (std::string advice = sticking_advice(model_, data_); sticks && !advice.empty()) found.failure->help = std::move(advice);
+      throw UserError(no_result(task_, *found.failure));
+    }
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     preparation_.findings.insert(preparation_.findings.end(), size.begin(), size.end());
     print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
-    return !what_.refine_solver ||
-           refine_solver(session_, task_, make, backend_.objective_kind, what_.solver, preparation_, context);
+    if (what_.refine_solver && !refine_solver(session_, task_, make, backend_.objective_kind, what_.solver, preparation_, context))
+      return false;
+    // Of finer steps and other solvers there is no end where the motion sticks.
+    for (Finding& each : preparation_.findings)
+      if (each.code == FindingCode::step_not_settled)
+        if (std::string advice = sticking_advice(model_, data_); !advice.empty()) each.help = std::move(advice);
+    return true;
   }
 
   // False: interrupted.

@@ -22,6 +22,7 @@ class Description {
     for (AssessedParameter const& each : coordinates)
       if (each.role == ParameterRole::response) {
         asked_.push_back(each.words);
+        standardised_.push_back(each.standardised);
         if (!each.coefficient) named_ = asked_.size();
       }
     null_.assign(asked_.size(), false);
@@ -84,6 +85,10 @@ class Description {
     NullSpace const space = find_null_space(locals);
     for (NullDirection const& direction : space.directions) {
       std::string const text = direction_words(direction, asked_, channels_);
+      if (prior_separates(direction)) {
+        page_.information->ridges.push_back(fmt::format("{}: only the prior of the standardised members separates them", text));
+        continue;
+      }
       page_.information->null_directions.push_back(text);
       for (NullDirection::Part const& part : direction.parts) null_[static_cast<std::size_t>(part.parameter)] = true;
       std::vector<std::string> names;
@@ -103,6 +108,15 @@ class Description {
     page_.information->rank_high = size - *least;
   }
 
+  // mean + spread*z of every experiment, z ~ normal(0, 1): the data know the sums alone, and the priors of z how they divide.
+  bool prior_separates(NullDirection const& direction) const {
+    auto const standardised = [&](NullDirection::Part const& part) {
+      return standardised_[static_cast<std::size_t>(part.parameter)];
+    };
+    return std::any_of(direction.parts.begin(), direction.parts.end(), standardised) &&
+           !std::all_of(direction.parts.begin(), direction.parts.end(), standardised);
+  }
+
   // The expected sd of asked parameter i over the draws.
   void expect_knowledge(std::size_t i, InformationPage::Line& line) {
     double least = 1, most = 0;
@@ -113,7 +127,7 @@ class Description {
     line.low = least * line.prior_width;
     line.high = most * line.prior_width;
     if (null_[i]) line.instead = "not determined";
-    bool const vague = !line.relative || line.prior_width > informed;
+    bool const vague = !standardised_[i] && (!line.relative || line.prior_width > informed);
     if (!null_[i] && vague && least > barely_narrowed)
       add(FindingCode::barely_narrowed, Severity::warning, {line.name},
           fmt::format("the data are expected to contain little information on {}: expected sd {:.0f} to {:.0f} % of the prior's "
@@ -164,6 +178,10 @@ class Description {
     std::string const size = fmt::format("expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
                                          *std::min_element(sizes.begin(), sizes.end()),
                                          *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
+    if (standardised_[static_cast<std::size_t>(i)] != standardised_[static_cast<std::size_t>(j)]) {
+      page_.information->ridges.push_back(fmt::format("{}, but for the prior of the standardised members: {}", pair, size));
+      return;
+    }
     if (widest < still_unknown) {
       page_.information->ridges.push_back(fmt::format("{}, but both are narrower than their priors: {}", pair, size));
       return;
@@ -183,6 +201,7 @@ class Description {
   std::size_t named_ = 0;              // of them, that are no coefficients
   int coefficients_ = 0;               // of the function whose line is the last
   std::vector<bool> null_;             // of them, part of a null direction
+  std::vector<bool> standardised_;     // of them
   std::vector<Expectation> expectations_;
 };
 

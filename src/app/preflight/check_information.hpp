@@ -12,9 +12,10 @@ namespace sysid {
 struct AssessedParameter {
   ParameterWords words;
   ParameterRole role = ParameterRole::response;
-  bool relative = false;     // by its logarithm
-  double spread = 0;         // the prior's sd: of the logarithm, or SI
-  bool coefficient = false;  // of an unknown function; these stand last
+  bool relative = false;      // by its logarithm
+  double spread = 0;          // the prior's sd: of the logarithm, or SI
+  bool coefficient = false;   // of an unknown function; these stand last
+  bool standardised = false;  // an experiment's member of a population, normal(0, sd = 1): its prior tells it from mean and spread
 };
 
 /// Fills lines, rank and null directions of `page.information` and adds findings. locals: at two draws or more, with respect to the

@@ -15,6 +15,14 @@
 namespace sysid {
 namespace {
 
+/// normal(0, sd = 1) in every experiment.
+bool is_standardised(Model const& model, Parameter const& parameter) {
+  if (!parameter.per_experiment || !parameter.prior || !parameter.prior->row->gaussian) return false;
+  Distribution const& prior = *parameter.prior;
+  return !prior.lower && !prior.upper && prior.arguments.size() == 2 && model.graph.constant_value(prior.arguments[0]) == 0.0 &&
+         model.graph.constant_value(prior.arguments[1]) == 1.0;
+}
+
 constexpr double many_wild = 0.5;     // share of the draws
 constexpr double bare_mention = 3.2;  // a Bayes factor "not worth more than a bare mention" (Kass and Raftery 1995)
 
@@ -168,6 +176,7 @@ PriorDraws draw_prior(Preflight const& preflight) {
     auto const values = declared.row(k);
     AssessedParameter coordinate{
         {row.name, info.unit, row.to_si(1)}, roles[static_cast<std::size_t>(row.parameter)], info.lower >= 0, 0, info.coefficient};
+    coordinate.standardised = is_standardised(space.model(), space.model().parameters[static_cast<std::size_t>(row.parameter)]);
     std::vector<double> scaled;
     for (double const value : values) scaled.push_back(coordinate.relative ? elementary::log(value) : row.to_si(value));
     coordinate.spread = (quantile(scaled, 0.84) - quantile(scaled, 0.16)) / 2;  // heavy tails leave it alone

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "experiment/sticking.hpp"
 #include "expression/switching.hpp"
 #include "simulate/thread_pool.hpp"
 
@@ -74,7 +75,8 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
       what(what),
       page(page),
       compiled(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
-      space(parameter_space(compiled->model, what.experiments)) {
+      space(parameter_space(compiled->model, what.experiments)),
+      sticking(sticking_advice(compiled->model, data)) {
   std::size_t longest = 0;
   for (ExperimentData const& each : data) {
     experiments.push_back(shortened_to_scored(each.experiment));
@@ -101,6 +103,8 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
 
 void Preflight::add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message,
                     std::string help) const {
+  if (code == FindingCode::integration_step && !sticking.empty()) help = sticking;
+  if (code == FindingCode::prior_fails && !sticking.empty()) help = sticking + "; else " + help;
   page.findings.push_back({code, severity, std::move(names), std::move(message), std::move(help)});
 }
 

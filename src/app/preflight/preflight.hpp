@@ -32,6 +32,7 @@ class Preflight {
   PreflightPage& page;
   std::shared_ptr<CompiledModel const> compiled;
   std::shared_ptr<ParameterSpace const> space;
+  std::string sticking;  // what to do about dry friction, in place of advice on solvers; empty without
   std::vector<Experiment> experiments;
   bool shortened = false;  // to their first `most_scored` scored rows
   Effort effort;

@@ -20,7 +20,10 @@ ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& ask
     if (!task_runner(kind_of(task)).complete(session, task)) return false;
     if (kind_of(task) == TaskKind::simulate) return true;  // it leaves its record, and nothing that could be compared
     std::optional<std::uint64_t> const seed = options.seed ? options.seed : stated_seed(task);
-    if (auto const wrong = stored_otherwise(session, task, seed); wrong && options.resume) throw UserError(*wrong);
+    if (auto wrong = stored_otherwise(session, task, seed); wrong && options.resume) {
+      wrong->primary = Label{task.span, {}};
+      throw UserError(*wrong);
+    }
     return true;
   };
   std::set<Task const*> complete_already;

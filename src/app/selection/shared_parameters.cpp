@@ -2,6 +2,7 @@
 #include "app/selection/shared_parameters.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "app/session/reporting.hpp"
 
@@ -41,12 +42,13 @@ std::optional<WeightedSummary> averaged(std::string const& row, SelectionResult 
 }
 
 /// The declared prior of the first candidate that has the parameter: the checker has seen to it that the others have the same.
-SelectionReport::Unmoved unmoved(Session const& session, std::string const& name, std::vector<Candidate> const& candidates,
-                                 std::string why) {
+/// Nothing for what is fixed in all of them: it has no prior to stay at.
+std::optional<SelectionReport::Unmoved> unmoved(Session const& session, std::string const& name,
+                                                std::vector<Candidate> const& candidates, std::string why) {
   for (Candidate const& each : candidates)
     for (PriorInfo const& prior : declared_priors(session, each.fit->model))
-      if (prior.name == name) return {name, prior.unit, prior.text, std::move(why)};
-  return {name, {}, {}, std::move(why)};
+      if (stands_for(prior.name, name)) return SelectionReport::Unmoved{name, prior.unit, prior.text, std::move(why)};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -59,10 +61,10 @@ void summarise_shared(Session const& session, CandidateSet const& set, std::vect
     for (std::string const& row : rows)
       if (auto summary = averaged(row, selection.result)) selection.shared.push_back(std::move(*summary));
     if (selection.shared.size() > before) continue;
-    selection.shared_unmoved.push_back(
-        unmoved(session, name, candidates,
-                rows.empty() ? "only the noise uses it, and a simulation without noise gives no information about it"
-                             : "no remaining model has it"));
+    auto kept = unmoved(session, name, candidates,
+                        rows.empty() ? "only the noise uses it, and a simulation without noise gives no information about it"
+                                     : "no remaining model has it");
+    if (kept) selection.shared_unmoved.push_back(std::move(*kept));
   }
 }
 

@@ -72,17 +72,24 @@ namespace {
 /// The folder of a task's complete results; UserError when there are none or they are of another text.
 std::filesystem::path stored_results(Session& session, Task const& task, std::string_view verb) {
   auto folder = session.result_folder(task);
+  auto const at_task = [&](Diagnostic diagnostic) {
+    diagnostic.primary = Label{task.span, {}};
+    return diagnostic;
+  };
   if (std::filesystem::exists(folder / "checkpoint.cbor"))
-    throw UserError(result_error(
+    throw UserError(at_task(result_error(
         "E6202", fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
-        {fmt::format("finish it first: sysid {} FILE --resume", verb), fmt::format("finish it first: `resume {}`", task.name)}));
+        {fmt::format("finish it first: sysid {} FILE --resume", verb), fmt::format("finish it first: `resume {}`", task.name)})));
   if (!complete(folder))
-    throw UserError(result_error("E6202", fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
-                                 {fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb),
-                                  fmt::format("run it first: `run {}`", task.name)}));
+    throw UserError(at_task(result_error("E6202", fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
+                                         {fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb),
+                                          fmt::format("run it first: `run {}`", task.name)})));
   if (auto wrong = stored_otherwise(session, task, std::nullopt)) {
+    // To force the task that reads them would only ask for them again.
     wrong->code = "E6201";
-    throw UserError(*wrong);
+    wrong->help = fmt::format("run the {0} again first: sysid {0} FILE --force", verb);
+    wrong->prompt_help = fmt::format("run it again first: `run {}`", task.name);
+    throw UserError(at_task(*wrong));
   }
   return folder;
 }

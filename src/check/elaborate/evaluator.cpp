@@ -159,14 +159,20 @@ std::optional<Array> Evaluator::reference(ast::Reference const& reference, Frame
     value = value_of(*found.frame, found.name, symbol);
     if (!value) return std::nullopt;
   }
+  bool const bound_input = symbol.bound() && symbol.kind == FrameSymbol::Kind::input;
+  if (reference.primes > 0 && value && symbol.shape.rank > 0 && !bound_input) {
+    diagnostics_.add(errors::primes_on_array(reference));
+    return std::nullopt;
+  }
   Array array{symbol.shape, {}};
   for (std::size_t i = 0; i < symbol.shape.count(); ++i) {
     std::string const each = element_name(flat, symbol.shape, i);
     // A plain number among the elements stays one, so that it adapts to what it meets.
-    bool const plain = value && symbol.shape.rank > 0 && !symbol.declared->unit && tree::is_plain_number(value->items[i]);
+    bool const plain =
+        reference.primes == 0 && value && symbol.shape.rank > 0 && !symbol.declared->unit && tree::is_plain_number(value->items[i]);
     if (plain) {
       array.items.push_back(value->items[i]);
-    } else if (symbol.bound() && symbol.kind == FrameSymbol::Kind::input && reference.primes > 0 && value) {
+    } else if (bound_input && reference.primes > 0 && value) {
       auto derived = rate(value->items[i], reference.primes, span, flat);
       if (!derived) return std::nullopt;
       array.items.push_back(std::move(*derived));

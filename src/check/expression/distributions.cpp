@@ -1,10 +1,12 @@
 // Arguments of a distribution are matched to rows of its table; scales must be spelt out (sd, variance or precision).
 #include "check/expression/distributions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "check/message/errors.hpp"
 #include "check/message/unit_words.hpp"
+#include "function/primitive.hpp"
 
 namespace sysid {
 namespace {
@@ -13,6 +15,11 @@ std::vector<std::string> spelling_names(ArgumentRow const& row) {
   std::vector<std::string> names;
   for (Spelling const& spelling : row.spellings) names.emplace_back(spelling.name);
   return names;
+}
+
+bool is_logarithm(ast::Expression const& value) {
+  auto const* call = std::get_if<ast::Box<ast::Call>>(&value.node);
+  return call != nullptr && ((*call)->function.text == "log" || (*call)->function.text == "ln");
 }
 
 struct Given {
@@ -68,10 +75,14 @@ class DistributionChecker {
   }
 
   void take_positional(ast::Argument const& argument) {
-    if (position_ >= given_.size()) return fail(errors::too_many_arguments(argument.span, name_, signature_));
+    if (position_ >= given_.size()) return fail(errors::too_many_arguments(call_, argument, signature_));
     std::size_t const position = position_++;
     std::span<Spelling const> const spellings = row_.arguments[position].spellings;
-    if (spellings.size() > 1) return fail(errors::must_be_named(argument.span, name_, spelling_names(row_.arguments[position])));
+    bool const in_doubt = std::any_of(spellings.begin(), spellings.end(), [](Spelling const& each) { return each.logarithm; }) &&
+                          is_logarithm(argument.value);
+    if (in_doubt) return fail(errors::logarithm_or_number(argument, name_));
+    if (spellings.size() > 1 && !row_.arguments[position].by_position)
+      return fail(errors::must_be_named(call_, argument, spelling_names(row_.arguments[position])));
     take(given_[position], &spellings.front(), argument, std::string(spellings.front().name));
   }
 
@@ -127,6 +138,11 @@ class DistributionChecker {
       if (unit) unit->offset = 0;
     }
     NodeId node = adapt(graph_, *value, unit);
+    if (given.spelling->logarithm) {
+      if (variate_.unit && variate_.unit->offset != 0)
+        return fail(errors::logarithm_of_shifted(given.span, std::string(spelt), name_));
+      node = graph_.multiply(graph_.constant(variate_.unit ? variate_.unit->scale : 1), exp(Term(graph_, node)).id);
+    }
     if (given.spelling->to_canonical != nullptr) node = given.spelling->to_canonical(graph_, node, use_.arguments);
     use_.arguments.push_back(node);
   }

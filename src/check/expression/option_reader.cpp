@@ -207,8 +207,8 @@ void OptionReader::settings(ast::Call const& call, std::span<SettingRow const> r
   std::map<std::string, Span> given;
   for (ast::Argument const& argument : call.arguments) {
     if (!argument.name) {
-      diagnostics_.add(known.empty() ? errors::too_many_arguments(argument.span, call.function.text, known)
-                                     : errors::must_be_named(argument.span, call.function.text, known));
+      diagnostics_.add(known.empty() ? errors::too_many_arguments(call, argument, known)
+                                     : errors::must_be_named(call, argument, known));
       continue;
     }
     std::string const& name = argument.name->text;

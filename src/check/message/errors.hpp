@@ -22,6 +22,8 @@ Diagnostic piecewise_without_otherwise(ast::Call const& call);
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function);
 Diagnostic definition_cycle(Span span, Names const& loop);
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what);
+/// `D'` of a vector or matrix that is defined: often a transpose is meant.
+Diagnostic primes_on_array(ast::Reference const& reference);
 Diagnostic beyond_highest(ast::Reference const& reference, int order);
 Diagnostic second_input_derivative(ast::Reference const& reference);
 Diagnostic not_a_number(Span span, Subject const& what);
@@ -38,8 +40,12 @@ Diagnostic unknown_distribution(ast::Name const& name, Names const& known);
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known);
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other);
 Diagnostic argument_missing(ast::Call const& call, Names const& spellings);
-Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings);
-Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature);
+/// argument: one of call's, without a name.
+Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, Names const& spellings);
+/// Of `log_normal(log(30), ...)`: a median by position, or the mean of the logarithm.
+Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& distribution);
+Diagnostic logarithm_of_shifted(Span span, std::string const& spelling, std::string const& distribution);
+Diagnostic too_many_arguments(ast::Call const& call, ast::Argument const& argument, Names const& signature);
 Diagnostic not_a_noise(ast::Call const& call, Names const& known);
 Diagnostic truncated_noise(ast::Call const& call);
 Diagnostic cannot_truncate(Span span, std::string const& distribution);

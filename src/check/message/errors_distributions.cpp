@@ -1,7 +1,10 @@
 // The checker's wording about priors and noise.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "check/message/error_words.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -14,11 +17,19 @@ constexpr Synonym distribution_synonyms[] = {
 
 constexpr Synonym argument_synonyms[] = {
     {"sigma", "sd"},
+    {"meanlog", "log_mean"},
+    {"logmean", "log_mean"},
+    {"mean_log", "log_mean"},
+    {"mu_log", "log_mean"},
+    {"sdlog", "log_sd"},
+    {"logsd", "log_sd"},
+    {"sd_log", "log_sd"},
     {"std", "sd"},
     {"stdev", "sd"},
     {"stddev", "sd"},
     {"var", "variance"},
     {"mu", "mean"},
+    {"mu", "log_mean"},
     {"tau", "precision"},
     {"min", "lower"},
     {"low", "lower"},
@@ -27,6 +38,25 @@ constexpr Synonym argument_synonyms[] = {
     {"nu", "degrees_of_freedom"},
     {"df", "degrees_of_freedom"},
 };
+
+/// The digits of a whole number without a sign or a unit, zeros in front kept; empty for all else.
+std::string digits_of(ast::Argument const& argument) {
+  auto const* number = std::get_if<ast::Number>(&argument.value.node);
+  if (argument.name || number == nullptr || number->unit) return {};
+  std::string const text = fmt::format("{:0{}.0f}", number->value, number->span.end - number->span.begin);
+  return text.size() == number->span.end - number->span.begin ? text : std::string();
+}
+
+/// `0,5` up to `last`, two arguments for what may be one number: how it is written with a point, or empty.
+std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
+  for (std::size_t i = 1; i < call.arguments.size() && &call.arguments[i - 1] != &last; ++i) {
+    ast::Argument const &left = call.arguments[i - 1], &right = call.arguments[i];
+    std::string const whole = digits_of(left), fraction = digits_of(right);
+    if (!whole.empty() && !fraction.empty() && left.span.end + 1 == right.span.begin)
+      return fmt::format("a number has a decimal point: write `{}.{}`", whole, fraction);
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -38,6 +68,13 @@ Diagnostic unknown_distribution(ast::Name const& name, Names const& known) {
 }
 
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
+  // A mean where a median or the mean of the logarithm can be given: neither is it.
+  bool const logarithmic = std::find(known.begin(), known.end(), "log_mean") != known.end();
+  if (logarithmic && argument.text == "mean")
+    return about({distribution, argument.text},
+                 error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
+                       "write `log_mean` for the mean of the logarithm, `median` for the number that half of the values lie below; "
+                       "the mean itself is median*exp(sd^2/2)"));
   return about({distribution, argument.text},
                error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
                      guess_or(argument_synonyms, argument.text, known, fmt::format("its arguments are {}", quoted(known)))));
@@ -59,16 +96,41 @@ Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
                                 fmt::format("write for example `{} = ...`", spellings.front()))));
 }
 
-Diagnostic must_be_named(Span span, std::string const& distribution, Names const& spellings) {
+Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, Names const& spellings) {
+  std::string const point = decimal_comma(call, argument);
   return also_about(
       spellings,
-      about({distribution}, error("E2106", span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
-                                  fmt::format("write `{}(..., {} = ...)`", distribution, spellings.front()))));
+      about({call.function.text},
+            error("E2106", argument.span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
+                  fmt::format("{}write `{} = {}`", point.empty() ? "" : point + "; if the comma separates arguments, ",
+                              spellings.front(), unparse(argument.value)))));
 }
 
-Diagnostic too_many_arguments(Span span, std::string const& distribution, Names const& signature) {
-  return about({distribution}, error("E2107", span, fmt::format("`{}` does not take this many arguments", distribution),
-                                     signature.empty() ? "it takes none" : fmt::format("its arguments are {}", quoted(signature))));
+Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& distribution) {
+  std::string const value = unparse(argument.value);
+  return also_about(
+      {"median", "log_mean"},
+      about({distribution},
+            error("E2106", argument.span,
+                  fmt::format("without a name this is the median of `{}`, but it is written as a logarithm", distribution),
+                  fmt::format("write `log_mean = {}` for the mean of the logarithm; `median = {}` if it is the median", value,
+                              value))));
+}
+
+Diagnostic logarithm_of_shifted(Span span, std::string const& spelling, std::string const& distribution) {
+  return about({distribution, spelling},
+               error("E2112", span,
+                     fmt::format("the arguments of `{}` are invalid: `{}` takes a unit whose zero is the zero of the quantity",
+                                 distribution, spelling),
+                     "give the median in its unit: `median = 20 [degC]`"));
+}
+
+Diagnostic too_many_arguments(ast::Call const& call, ast::Argument const& argument, Names const& signature) {
+  std::string const point = decimal_comma(call, argument);
+  return about({call.function.text},
+               error("E2107", argument.span, fmt::format("`{}` does not take this many arguments", call.function.text),
+                     (point.empty() ? "" : point + "; ") +
+                         (signature.empty() ? "it takes none" : fmt::format("its arguments are {}", quoted(signature)))));
 }
 
 Diagnostic not_a_noise(ast::Call const& call, Names const& known) {

@@ -20,6 +20,8 @@ constexpr Synonym name_synonyms[] = {
     {"time", "time is declared where it is used: `time t [s]`"},
     {"t", "time is declared where it is used: `time t [s]`"},
     {"π", "write `pi`"},
+    {"PI", "write `pi`"},
+    {"Pi", "write `pi`"},
     {"ẏ", "a derivative is written with primes: `y'`"},
     {"ÿ", "a derivative is written with primes: `y''`"},
     {"ẋ", "a derivative is written with primes: `x'`"},
@@ -111,6 +113,12 @@ Diagnostic primes_on(ast::Reference const& reference, std::string const& what) {
                                  reference.name.text)));
 }
 
+Diagnostic primes_on_array(ast::Reference const& reference) {
+  Diagnostic out = primes_on(reference, "a definition");
+  out.help = fmt::format("a transpose is written `transpose({})`; only states and inputs have derivatives", reference.name.text);
+  return out;
+}
+
 Diagnostic beyond_highest(ast::Reference const& reference, int order) {
   return about(
       {primed(reference), reference.name.text},
@@ -156,6 +164,8 @@ Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& me
                    error("E2011", name.span, message, fmt::format("a product is written with a blank or `*`: `{}`", whole)));
     case UnitSlip::Kind::capitals:
       return about({name.text}, error("E2011", name.span, message, fmt::format("units are case-sensitive: write `{}`", whole)));
+    case UnitSlip::Kind::key:
+      return about({name.text}, error("E2011", name.span, message, fmt::format("did you mean `{}`?", whole)));
     case UnitSlip::Kind::quotient:
       break;
   }

@@ -33,6 +33,26 @@ std::optional<std::string> in_other_capitals(std::string_view word) {
   return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
 }
 
+// Of a word that would need several other capitals, `mn` for `MN`: the one common unit that a finger on the key beside gives.
+std::optional<std::string> on_neighbouring_key(std::string_view word, std::string_view in_capitals) {
+  constexpr std::string_view keyboard[] = {"qwertyuiop", "asdfghjkl", "zxcvbnm"};
+  std::ptrdiff_t changed = 0;
+  for (std::size_t i = 0; i < word.size(); ++i) changed += word[i] != in_capitals[i] ? 1 : 0;
+  if (changed < 2) return std::nullopt;
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < word.size(); ++i)
+    for (std::string_view const row : keyboard) {
+      std::size_t const at = row.find(word[i]);
+      if (at == std::string_view::npos) continue;
+      for (std::size_t const beside : {at - 1, at + 1}) {
+        std::string meant(word);
+        if (beside < row.size()) meant[i] = row[beside];
+        if (is_common(meant)) found.push_back(std::move(meant));
+      }
+    }
+  return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
+}
+
 // Two common units without a blank between them.
 std::optional<std::string> as_product(std::string_view word) {
   for (std::size_t i = 1; i < word.size(); ++i)
@@ -56,7 +76,10 @@ std::optional<UnitSlip> unit_slip(std::string_view word) {
     if (!base) return std::nullopt;
     return UnitSlip{UnitSlip::Kind::power, *base + "^" + std::string(word.substr(end))};
   }
-  if (auto name = in_other_capitals(word)) return UnitSlip{UnitSlip::Kind::capitals, *std::move(name)};
+  if (auto name = in_other_capitals(word)) {
+    if (auto key = on_neighbouring_key(word, *name)) return UnitSlip{UnitSlip::Kind::key, *std::move(key)};
+    return UnitSlip{UnitSlip::Kind::capitals, *std::move(name)};
+  }
   if (auto product = as_product(word)) return UnitSlip{UnitSlip::Kind::product, *std::move(product)};
   return std::nullopt;
 }

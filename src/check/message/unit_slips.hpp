@@ -8,7 +8,7 @@ namespace sysid {
 
 /// A word that is no unit, and what its letters say that it was meant as.
 struct UnitSlip {
-  enum class Kind { power, product, capitals, quotient };
+  enum class Kind { power, product, capitals, key, quotient };
   Kind kind;
   std::string meant;  // "m^3", "N m", "kg", "km/h"
 };

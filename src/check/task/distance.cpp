@@ -60,7 +60,7 @@ class DistanceChecker {
     std::map<std::string, Span> given;
     for (ast::Argument const& argument : call->arguments) {
       if (!argument.name) {
-        diagnostics_.add(errors::must_be_named(argument.span, "weights", rule_.channels));
+        diagnostics_.add(errors::must_be_named(*call, argument, rule_.channels));
         continue;
       }
       std::size_t const k = index_of(argument.name->text);

@@ -83,7 +83,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
     auto const place =
         std::find_if(row->arguments.begin(), row->arguments.end(), [&](auto const& each) { return each.name == name; });
     if (!argument.name) {
-      diagnostics.add(errors::must_be_named(argument.span, call->function.text, known));
+      diagnostics.add(errors::must_be_named(*call, argument, known));
     } else if (place == row->arguments.end() && name != "hold") {
       diagnostics.add(errors::unknown_argument(*argument.name, call->function.text, known));
     } else if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {

@@ -93,7 +93,7 @@ void TaskChecker::each_named(ast::Call const& call, errors::Subject const& owner
   std::map<std::string, Span> given;
   for (ast::Argument const& argument : call.arguments) {
     if (!argument.name) {
-      diagnostics_.add(errors::must_be_named(argument.span, call.function.text, known));
+      diagnostics_.add(errors::must_be_named(call, argument, known));
       continue;
     }
     auto const place = std::find(known.begin(), known.end(), argument.name->text);

@@ -221,7 +221,11 @@ std::vector<std::string> Workspace::keep_earlier(std::size_t changed, std::set<s
       if (auto const name = names.find({each.kind, each.name}); name != names.end())
         renamed[each.span.begin] = {each.span.end, name->second};
     WorkItem item = items[i];
-    if (task) item.text = replaced(item.text, renamed);
+    if (task) {
+      item.text = replaced(item.text, renamed);
+      // Without a name of its own it would be called after the model's new one.
+      if (nodes[i].own.begin == nodes[i].own.end) item.text = item.name + " = " + item.text;
+    }
     if (nodes[i].held) {
       WorkItem earlier = items[i];
       earlier.name = names[{earlier.kind, earlier.name}];

@@ -224,6 +224,38 @@ TEST_CASE("a linear spring beside a Bouc-Wen loop is nearly confounded with the 
   CHECK(messages(sound, "not_identifiable").empty());
 }
 
+// Three records of a line through the origin, whose slopes are a population.
+std::string population(std::string const& members) {
+  std::string text =
+      "model group {\n  input u\n  parameter centre ~ normal(0, sd = 5)\n  parameter spread ~ half_normal(sd = 3)\n" + members +
+      "  let slope = centre + spread*z\n  observe d ~ normal(slope*u, sd = 0.1)\n}\n";
+  std::string blocks;
+  for (char const* name : {"a", "b", "c"}) {
+    text += std::string("data ") + name + " { file \"" + name + ".csv\"; input u = u; measure d = d }\n";
+    blocks += (blocks.empty() ? "" : ", ") + std::string(name);
+  }
+  return text + "posterior = fit group to " + blocks + " with mh\n";
+}
+
+TEST_CASE("standardised members of a population are told apart by their prior, any others are not") {
+  TemporaryFolder folder;
+  int slope = 0;
+  for (char const* name : {"a.csv", "b.csv", "c.csv"}) {
+    std::string record = "u,d\n";
+    ++slope;
+    for (int i = 0; i < 10; ++i) record += std::to_string(i) + "," + std::to_string(slope * i) + "\n";
+    write_file(folder.path() / name, record);
+  }
+  std::filesystem::path const file = folder.path() / "group.sysid";
+  CheckResult const sound = checked(file, population("  parameter z per experiment ~ normal(0, sd = 1)\n"));
+  CHECK(messages(sound, "not_identifiable").empty());
+  CHECK(messages(sound, "nearly_confounded").empty());
+  REQUIRE(preflight(sound, "posterior").information);
+  CHECK_FALSE(preflight(sound, "posterior").information->ridges.empty());
+  CheckResult const free = checked(file, population("  parameter z per experiment ~ normal(0, sd = 20)\n"));
+  CHECK_FALSE(messages(free, "not_identifiable").empty());
+}
+
 TEST_CASE("what has no influence is said, and apart from it what is used nowhere") {
   std::string const text = with(shipped("duffing/duffing.sysid"), "  parameter c ",
                                 "  parameter idle ~ normal(0, sd = 1)\n  parameter late ~ log_uniform(1, 10)\n  parameter c ");

@@ -211,6 +211,18 @@ TEST_CASE("a shared parameter that only the noise reads is listed with its prior
   CHECK(answer.out.find("log_uniform(0.01, 0.5)") != std::string::npos);
 }
 
+TEST_CASE("a shared value that is fixed in all models has no prior to stay at, and is not listed") {
+  Line const line(0.1, 0.5);
+  Printed const answer = line.run(
+      "model a { input u; parameter k ~ uniform(0, 10); parameter g = 2; observe d ~ normal(k*u*g/2, sd = 0.5) }\n"
+      "model b { input u; parameter k ~ uniform(0, 10); parameter c ~ uniform(0, 1); parameter g = 2\n"
+      "observe d ~ normal(k*u*g/2 + c, sd = 0.5) }\ncandidates both { a; b; shared k, g }\n"
+      "answer = select both to line with abc_smc(particles = 200), seed = 1");
+  json const& shared = answer.summary.at("populations").at("shared");
+  CHECK(shared.at("k").contains("sd"));
+  CHECK_FALSE(shared.contains("g"));
+}
+
 TEST_CASE("a derived quantity that reads the noise is left out, and said") {
   Line const line(0.1, 0.5);
   Printed const answer = line.run(
