@@ -30,6 +30,7 @@ class FitLikelihood {
   virtual Model const& sampled_model() const = 0;
   /// All parameters of `model` that have a prior, those that are integrated out too.
   virtual ParameterSpace const& space() const = 0;
+  /// solver: of the task's method, or of any other to try.
   virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution) const = 0;
   /// The target of the fit's own experiments, which the functions below read.
