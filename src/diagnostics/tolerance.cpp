@@ -1,4 +1,4 @@
-// Step halving against posterior width.
+// Step halving against the widths of modes.
 #include "diagnostics/tolerance.hpp"
 
 #include <fmt/format.h>
@@ -21,13 +21,12 @@ bool too_fine(SolverSettings const& solver) {
   return solver.fixed_step() ? solver.substeps > most_substeps : solver.relative < 0.99 * least_relative;
 }
 
-constexpr int checked_draws = 200;
 constexpr std::uint64_t probe_step = 3;  // of Purpose::start
-constexpr double of_weight = 0.01;       // share of a mode; others may move as they like
 
 bool same_mode(Mode const& a, Mode const& b) { return std::isfinite(a.log_density) && distance(a, b) < 0.5; }
 
-// Those that have come together, once, with their weights and hits.
+}  // namespace
+
 std::vector<Mode> merged(std::vector<Mode> const& modes) {
   std::vector<Mode> result;
   for (Mode const& mode : modes) {
@@ -41,6 +40,8 @@ std::vector<Mode> merged(std::vector<Mode> const& modes) {
   }
   return result;
 }
+
+namespace {
 
 bool lost(Mode const& mode) { return !std::isfinite(mode.log_density); }
 
@@ -59,23 +60,6 @@ std::vector<Mode> reached(std::vector<Mode> const& coarser, std::vector<Mode> co
   return left;
 }
 
-// To first order only: far beyond a few sds the number means no more than "many".
-std::string move_text(double move) { return move > 5 ? "many sds" : fmt::format("about {:.2g} sd", move); }
-
-// chosen: by the guard itself, so that there is nothing to leave out.
-// names: the parameters that move.
-Finding shaped(SolverSettings const& solver, bool chosen, std::vector<std::string> names, std::string const& what) {
-  return {FindingCode::integration_step, Severity::error, std::move(names),
-          fmt::format("the integration {} changes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
-                      solver.finer_words(), what),
-          chosen ? fmt::format("fit again with `{}` or finer", solver.finer().option())
-          : solver.fixed_step()
-              ? fmt::format("fit again with `{}` or more, or remove `substeps`, which is then chosen automatically",
-                            solver.finer().option())
-              : fmt::format("fit again with `{}`, or remove the tolerances, which are then chosen automatically",
-                            solver.finer().option())};
-}
-
 }  // namespace
 
 std::string accuracy(SolverSettings const& solver) {
@@ -88,6 +72,38 @@ std::string moved(double move) {
                              : std::string("the simulation fails at a mode");
 }
 
+namespace {
+
+constexpr int tried_by_stiff = 8;    // lost draws: enough to tell most from few
+constexpr double of_a_trial = 1e-5;  // relative tolerance
+
+/// The first of the columns whose density is not finite.
+LaneArray failing(LaneArray const& theta, std::vector<double> const& density) {
+  std::vector<int> lanes;
+  for (int w = 0; w < theta.width() && static_cast<int>(lanes.size()) < tried_by_stiff; ++w)
+    if (!std::isfinite(density[static_cast<std::size_t>(w)])) lanes.push_back(w);
+  LaneArray result(theta.rows(), static_cast<int>(lanes.size()));
+  for (int p = 0; p < theta.rows(); ++p)
+    for (std::size_t w = 0; w < lanes.size(); ++w) result(p, static_cast<int>(w)) = theta(p, lanes[w]);
+  return result;
+}
+
+void try_stiff(MakeTarget const& make, LaneArray const& lost, SearchSolver& result) {
+  constexpr double budget = 4e5;  // steps of all draws together: about a second
+  SolverSettings solver{.method = std::string(stiff_solver().name), .relative = of_a_trial};
+  double const intervals = std::max(1.0, static_cast<double>(make(result.solver)->residual_count()) * lost.width());
+  solver.steps = static_cast<int>(std::clamp(budget / intervals, 20.0, 1000.0));
+  auto const target = make(solver);
+  std::vector<double> density(static_cast<std::size_t>(lost.width()));
+  Ledger ignored;
+  target->log_likelihood(lost, density, ignored);
+  result.tried = lost.width();
+  result.followed =
+      static_cast<int>(std::count_if(density.begin(), density.end(), [](double value) { return std::isfinite(value); }));
+}
+
+}  // namespace
+
 SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed) {
   SearchSolver result{from, 0};
   if (!from.fixed_step()) return result;
@@ -95,6 +111,7 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
   constexpr double tolerable = 0.2, worth_it = 0.05;
   double least = 1;
   SolverSettings solver = from;
+  LaneArray lost(0, 0);
   for (int factor = 1; factor <= 64; factor *= 4) {
     solver.substeps = from.substeps * factor;
     auto const target = make(solver);
@@ -106,9 +123,15 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
     double const failed =
         static_cast<double>(std::count_if(density.begin(), density.end(), [](double v) { return !std::isfinite(v); })) / draws;
     if (factor == 1) result.failed_as_given = failed;
-    if (factor == 1 || failed < least - worth_it) result.solver = solver, least = failed;
+    if (factor == 1 || failed < least - worth_it) {
+      result.solver = solver;
+      least = failed;
+      lost = failing(theta, density);
+    }
     if (failed <= tolerable) break;
   }
+  result.failed = least;
+  if (least > tolerable) try_stiff(make, lost, result);
   return result;
 }
 
@@ -161,11 +184,29 @@ class Shown {
 };
 
 /// By the most that one of weight does.
-double largest_move(std::vector<Mode> const& modes, std::vector<Mode> const& finer) {
-  double most = 0;
-  for (std::size_t m = 0; m < finer.size(); ++m)
-    if (m == 0 || modes[m].share > of_weight) most = std::max(most, largest_move(finer[m], modes[m]).size);
+Move largest_of_weight(Target const& target, std::vector<Mode> const& modes, std::vector<Mode> const& finer,
+                       std::vector<double> const& gains) {
+  Move most;
+  for (std::size_t m = 0; m < finer.size(); ++m) {
+    if (m > 0 && modes[m].share <= weight_of_interest) continue;
+    Move const move = largest_move(target.parameters(), finer[m], modes[m], gains[m]);
+    if (move.size() > most.size()) most = move;
+  }
   return most;
+}
+
+/// One solver that was tried.
+struct Tried {
+  SolverSettings solver;
+  std::vector<Mode> modes;
+  double value;  // by which a value moves, at most, to the next finer one [sd]
+};
+
+/// The first from which on no value moves any more; where that is none but the last, which no other confirms, none.
+std::size_t settled_values(std::vector<Tried> const& tried) {
+  std::size_t first = tried.size();
+  while (first > 0 && tried[first - 1].value <= tolerable_move) --first;
+  return first + 1 < tried.size() ? first : tried.size();
 }
 
 }  // namespace
@@ -176,16 +217,20 @@ RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind object
   result.solver = from;
   result.modes = std::move(modes);
   double steps = 0;
+  std::vector<Tried> tried;
   while (!context.stop_requested()) {
     SolverSettings const next = result.solver.finer();
     auto const target = make(next);
     std::uint64_t const before = context.ledger.solves();
+    std::vector<double> gains;
     std::vector<Mode> const finer = [&] {
       Shown const shown(context, *target, result.modes.size(), fmt::format("trying {}", accuracy(next)));
-      return refit(*target, objective_kind, result.modes, context.seed, context.ledger, shown.stop());
+      return refit(*target, objective_kind, result.modes, context.seed, context.ledger, shown.stop(), &gains);
     }();
     steps += static_cast<double>(context.ledger.solves() - before) * target->residual_count() * next.substeps;
-    result.moves.push_back(largest_move(result.modes, finer));
+    Move const move = largest_of_weight(*target, result.modes, finer, gains);
+    result.moves.push_back(move.size());
+    tried.push_back({result.solver, result.modes, move.value});
     if (result.moves.back() <= tolerable_move) break;
     std::vector<Mode> const left = reached(result.modes, finer);
     result.lost = left.empty();
@@ -197,76 +242,19 @@ RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind object
     result.solver = next;
     result.modes = merged(left);
   }
+  if (std::size_t const settled = settled_values(tried); !result.converged && !result.lost && settled < tried.size()) {
+    result.solver = tried[settled].solver;
+    result.modes = std::move(tried[settled].modes);
+    result.widths_alone = true;
+  }
   return result;
 }
 
 double move_to_finer(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
                      Ledger& ledger) {
-  return largest_move(modes, refit(fine, objective_kind, modes, seed, ledger));
-}
-
-Findings check_modes(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, SolverSettings const& solver,
-                     std::uint64_t seed, Ledger& ledger) {
-  std::vector<Mode> weighty;
-  for (Mode const& mode : modes)
-    if (weighty.empty() || mode.share > of_weight) weighty.push_back(mode);
-  std::vector<Mode> const refined = refit(fine, objective_kind, weighty, seed, ledger);
-  Findings findings;
-  for (std::size_t m = 0; m < refined.size() && findings.empty(); ++m) {
-    Move const move = largest_move(refined[m], weighty[m]);
-    if (move.size <= tolerable_move) continue;
-    auto const p = static_cast<std::size_t>(move.parameter);
-    ParameterInfo const& parameter = fine.parameters()[p];
-    std::string const unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-    if (!std::isfinite(move.size))
-      findings.push_back(shaped(solver, false, {}, "the simulation fails at the optimum"));
-    else if (2 * move.value >= move.size)
-      findings.push_back(
-          shaped(solver, false, {parameter.name}, fmt::format("{} moves by {}", parameter.name, move_text(move.value))));
-    else
-      findings.push_back(shaped(solver, false, {parameter.name},
-                                fmt::format("the sd of {} is {:.2g}{} in place of {:.2g}{}", parameter.name, refined[m].sd[p], unit,
-                                            weighty[m].sd[p], unit)));
-  }
-  if (std::size_t const apart = merged(refined).size(); apart < refined.size())
-    findings.push_back(shaped(solver, false, {}, fmt::format("the {} modes that were found are {}", refined.size(), apart)));
-  return findings;
-}
-
-ToleranceCheck check_tolerance(Target const& coarse, Target const& fine, Draws const& draws, Ledger& ledger) {
-  LaneArray const declared = spread(draws, checked_draws);
-  int const count = declared.width();
-  ToleranceCheck result;
-  if (count < 2) return result;
-  int const dimension = coarse.dimension();
-  LaneArray theta(dimension, count);
-  coarse.unconstrain(declared, theta);
-  std::vector<double> a(static_cast<std::size_t>(count)), b(a);
-  coarse.log_likelihood(theta, a, ledger);
-  fine.log_likelihood(theta, b, ledger);
-  double mean_change = 0;
-  for (std::size_t w = 0; w < a.size(); ++w) {
-    a[w] = b[w] - a[w];
-    if (!std::isfinite(a[w])) return {coarse.parameters().front().name, std::numeric_limits<double>::infinity()};
-    mean_change += a[w] / count;
-  }
-  for (int p = 0; p < dimension; ++p) {
-    double mean = 0, variance = 0, covariance = 0;
-    for (int w = 0; w < count; ++w) mean += declared(p, w) / count;
-    for (int w = 0; w < count; ++w) {
-      variance += (declared(p, w) - mean) * (declared(p, w) - mean) / count;
-      covariance += (declared(p, w) - mean) * (a[static_cast<std::size_t>(w)] - mean_change) / count;
-    }
-    double const move = variance > 0 ? std::abs(covariance) / std::sqrt(variance) : 0;
-    if (move > result.move || result.parameter.empty()) result = {coarse.parameters()[static_cast<std::size_t>(p)].name, move};
-  }
-  return result;
-}
-
-Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver, bool chosen) {
-  if (check.move <= tolerable_move) return {};
-  return {
-      shaped(solver, chosen, {check.parameter}, fmt::format("the mean of {} moves by {}", check.parameter, move_text(check.move)))};
+  std::vector<double> gains;
+  std::vector<Mode> const finer = refit(fine, objective_kind, modes, seed, ledger, {}, &gains);
+  return largest_of_weight(fine, modes, finer, gains).size();
 }
 
 }  // namespace sysid

@@ -1,4 +1,4 @@
-// The tolerance guard: is the integration error small against the width of the posterior?
+// The tolerance guard before sampling: the solver whose error is small against the width of the posterior.
 #pragma once
 #include <functional>
 #include <memory>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "likelihood/target.hpp"
-#include "result/draws.hpp"
 #include "search/objective_kind.hpp"
 #include "search/run_context.hpp"
 #include "solver/solver.hpp"
@@ -26,17 +25,24 @@ std::string accuracy(SolverSettings const& solver);
 using MakeTarget = std::function<std::unique_ptr<Target>(SolverSettings const& solver)>;
 
 /// Steps for the search, which does not see what fails: `from`, or 4, 16 or 64 times its steps where more than a fifth of 256 prior
-/// draws fail that such steps follow; the first that leaves no more than a fifth, else the first of the best.
+/// draws fail that such steps follow; the first that leaves no more than a fifth, else the first of the best. Where that still
+/// loses more than a fifth, the solver for stiff equations tries some of the draws that are lost, unless it is in use.
 struct SearchSolver {
   SolverSettings solver;
-  double failed_as_given = 0;  // share of the prior draws
+  double failed_as_given = 0;   // share of the prior draws
+  double failed = 0;            // with `solver`
+  int tried = 0, followed = 0;  // of the draws that fail with `solver`: by the solver for stiff equations
+
+  /// Whether a large part of the prior is lost to explicit steps that an implicit method follows.
+  bool stiff() const { return 2 * followed > tried; }
 };
 SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed);
 
 /// The first of `from`, `from.finer()`, ... for which no mode moves or changes its width by more than `tolerable_move` sds at the
-/// next one; the modes there, those that came together counted once, those that only a coarser solver could reach left out. Every
-/// solver costs twice the one before it: when that has come to many steps, and moves that fall as they do would not be small at the
-/// finest either, it is given up.
+/// next one; the modes there, those that came together counted once, those that only a coarser solver could reach left out. Where
+/// the widths never come to rest but the values do, the first from which on no value moves by more. Every solver costs twice the
+/// one before it: when that has come to many steps, and moves that fall as they do would not be small at the finest either, it is
+/// given up.
 struct RefinedSolver {
   SolverSettings solver;
   std::vector<Mode> modes;
@@ -44,6 +50,7 @@ struct RefinedSolver {
   bool converged = true;      // false: still moving at the finest that is tried (256 substeps, or 1e-12 relative), or lost
   bool lost = false;          // with the next one no mode is finite any more: these are the last that were
   bool given_up = false;      // before the finest, as the modes would not converge there either
+  bool widths_alone = false;  // not converged, but the values are: it is the curvature around the modes that does not settle
 };
 RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
                                     std::vector<Mode> modes, RunContext& context);
@@ -52,20 +59,10 @@ RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind object
 double move_to_finer(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
                      Ledger& ledger);
 
-/// The same question of a solver that the task states: do the modes keep place and width with the finer one, of which `fine` is
-/// made, and do they stay apart? Rough steps make false modes and false curvature.
-Findings check_modes(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, SolverSettings const& solver,
-                     std::uint64_t seed, Ledger& ledger);
+/// Those of `modes` that have come together, once, with their weights and hits.
+std::vector<Mode> merged(std::vector<Mode> const& modes);
 
-/// After sampling: by how many sds each posterior mean moves with the finer solver, from the change of log likelihood over up to
-/// 200 draws (to first order the move of a mean is the covariance of the parameter with that change). Names the worst.
-struct ToleranceCheck {
-  std::string parameter;
-  double move = 0;  // [sd]
-};
-ToleranceCheck check_tolerance(Target const& coarse, Target const& fine, Draws const& draws, Ledger& ledger);
-
-/// Fires above `tolerable_move`. chosen: the guard chose the solver, not the task.
-Findings tolerance_findings(ToleranceCheck const& check, SolverSettings const& solver, bool chosen);
+/// Of a mode, below which it may move as it likes.
+constexpr double weight_of_interest = 0.01;
 
 }  // namespace sysid

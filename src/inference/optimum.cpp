@@ -10,23 +10,16 @@
 
 #include "inference/backend/checkpoint.hpp"
 #include "search/laplace.hpp"
+#include "search/refit.hpp"
 #include "search/search.hpp"
 
 namespace sysid::optimum {
 namespace {
 
-/// Parameters whose optimum lies within a thousandth of the prior's width (or of a positive lower bound) of a bound.
 std::vector<std::size_t> parameters_at_bound(Target const& target, Mode const& mode) {
   std::vector<std::size_t> found;
-  auto const parameters = target.parameters();
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    double const width = parameters[p].upper - parameters[p].lower;
-    if (!std::isfinite(width)) continue;
-    // Logarithmic coordinates end at the lower bound relative to it, not to the width.
-    double const below = mode.declared[p] - parameters[p].lower, above = parameters[p].upper - mode.declared[p];
-    double const unit = parameters[p].lower > 0 ? std::min(width, parameters[p].lower) : width;
-    if (below < 1e-3 * unit || above < 1e-3 * width) found.push_back(p);
-  }
+  for (std::size_t p = 0; p < target.parameters().size(); ++p)
+    if (at_bound(target.parameters()[p], mode.declared[p])) found.push_back(p);
   return found;
 }
 

@@ -63,9 +63,16 @@ struct CoveragePage {
 
 /// What draws of the prior predict with the actual input.
 struct PriorPage {
-  int draws = 0, failed = 0;      // failed: with every solver that was tried
-  int failed_as_stated = 0;       // with the solver of the task,
-  std::string stated;             // this one
+  int draws = 0, failed = 0;    // failed: with every solver that was tried; those that a stiff one could not try, at the same rate
+  int failed_as_stated = 0;     // with the solver of the task,
+  std::string stated;           // this one,
+  bool spent = false;           // whose work budget, not its step, is what most of them lack
+  int failed_explicit = 0;      // of these with adaptive explicit steps, too
+  std::string explicit_solver;  // these; empty: not tried
+  int stiff_left = 0;             // of these open where the solver for stiff equations last began,
+  int stiff_tried = 0;            // of which it has tried so many
+  int stiff_followed = 0;         // and followed so many
+  std::string stiff_solver;     // this one
   std::vector<Failure> failures;  // where draws fail, one each, and
   int untraced = 0;               // so many that were not looked into
   struct Channel {
@@ -95,8 +102,9 @@ struct InformationPage {
   std::string refinement;                             // "half the step"
   std::vector<std::pair<std::string, double>> moves;  // solver, largest move of a parameter [sd] when it is refined
   std::string taken;                                  // the one that the task goes on with; empty: the fit chooses
-  std::string advised;                                // the first that no longer moves the result; empty: none that was tried
-  std::optional<double> response_move;                // of a candidate: of the middle response, as a part of its sd, when refined
+  std::optional<double> found_move;  // of a mode that was found from the nearest draws, with the stated solver, when refined [sd]
+  std::string advised;               // the first that no longer moves the result; empty: none that was tried
+  std::optional<double> response_move;  // of a candidate: of the middle response, as a part of its sd, when refined
 };
 
 /// What the priors of a channel's Gaussian processes say of data like these.

@@ -20,6 +20,8 @@ enum class FindingCode {
   no_diagnostics,
   integration_step,
   step_not_settled,
+  stiff_prior,
+  slower_solver,
   noise_size,
   made_from_earlier,
   looks_missing,

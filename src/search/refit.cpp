@@ -18,7 +18,7 @@ constexpr std::uint64_t refit_step = 2;
 }  // namespace
 
 std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
-                        Ledger& ledger, std::function<bool()> const& stop) {
+                        Ledger& ledger, std::function<bool()> const& stop, std::vector<double>* gains) {
   Objective const objective = make_objective(target, objective_kind, seed, refit_step);
   std::vector<Climber> climbers;
   std::vector<Eigen::VectorXd> points;
@@ -45,18 +45,54 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
     result.back().share = modes[m].share;
     result.back().hits = modes[m].hits;
   }
+  for (std::size_t m = 0; gains != nullptr && m < modes.size(); ++m) gains->push_back(result[m].log_density - density[m]);
   return result;
 }
 
-Move largest_move(Mode const& before, Mode const& after) {
-  if (!std::isfinite(before.log_density) || !std::isfinite(after.log_density)) return {0, infinity, infinity};
-  Move most;
+bool at_bound(ParameterInfo const& parameter, double declared) {
+  double const width = parameter.upper - parameter.lower;
+  if (!std::isfinite(width)) return false;
+  // Logarithmic coordinates end at the lower bound relative to it, not to the width.
+  double const unit = parameter.lower > 0 ? std::min(width, parameter.lower) : width;
+  return declared - parameter.lower < 1e-3 * unit || parameter.upper - declared < 1e-3 * width;
+}
+
+namespace {
+
+bool flat_in(Mode const& mode, std::size_t parameter) {
+  for (std::size_t at = parameter; at < mode.flat.size(); at += mode.declared.size())
+    if (mode.flat[at] != 0) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<Move> moves_between(std::span<ParameterInfo const> parameters, Mode const& before, Mode const& after, double gain) {
+  std::vector<Move> moves;
+  bool const finite = std::isfinite(before.log_density) && std::isfinite(after.log_density);
+  double const allowed = std::sqrt(2 * std::max(0.0, gain));  // sds
   for (std::size_t p = 0; p < before.declared.size(); ++p) {
-    if (!(before.sd[p] > 0)) continue;
-    double const value = std::abs(after.declared[p] - before.declared[p]) / before.sd[p];
-    double const size = value + std::abs(after.sd[p] - before.sd[p]) / before.sd[p];
-    if (size > most.size) most = {static_cast<int>(p), size, value};
+    auto const parameter = static_cast<int>(p);
+    if (!finite) {
+      moves.push_back({parameter, infinity, infinity});
+      continue;
+    }
+    bool const was = at_bound(parameters[p], before.declared[p]), is = at_bound(parameters[p], after.declared[p]);
+    double const sd = was ? after.sd[p] : before.sd[p];
+    if ((was && is) || !(sd > 0)) continue;
+    Move move{parameter, std::abs(after.declared[p] - before.declared[p]) / sd, std::abs(after.sd[p] - before.sd[p]) / sd};
+    bool const wrong = move.value > 2 * allowed;
+    if (wrong) move.value = allowed;
+    if (wrong || was || is || flat_in(before, p) || flat_in(after, p)) move.width = 0;
+    moves.push_back(move);
   }
+  return moves;
+}
+
+Move largest_move(std::span<ParameterInfo const> parameters, Mode const& before, Mode const& after, double gain) {
+  Move most;
+  for (Move const& move : moves_between(parameters, before, after, gain))
+    if (move.size() > most.size()) most = move;
   return most;
 }
 

@@ -244,7 +244,7 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
                                             places.empty() ? "" : ": ", places);
       result.failure->help =
           "check the units of the data and the priors: the data move the parameters out of the range in which the model has a "
-          "solution; or let the solver choose its steps: `solver = dopri5`, or `solver = cvode` if the model is stiff";
+          "solution";
     }
     return result;
   }
@@ -368,8 +368,7 @@ Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
       Severity::error,
       {},
       fmt::format("the likelihood is not finite at any of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
-      "check this part of the equations, narrow the priors towards values for which the model can be solved, or let the "
-      "solver choose its steps: `solver = dopri5`, or `solver = cvode` if the model is stiff"};
+      "check this part of the equations, or narrow the priors towards values for which the model can be solved"};
 }
 
 }  // namespace sysid

@@ -23,6 +23,8 @@ namespace {
 constexpr SettingRow fixed_settings[] = {
     {"substeps", SettingKind::integer, "1", 1, 10000, "",
      "number of equal steps per sampling interval; if not given, a fit chooses it"},
+    {"as_model", SettingKind::flag, "no", 0, 0, "",
+     "whether the method with this step is a part of the model, whose parameters are then those for this step"},
 };
 
 constexpr SettingRow adaptive_settings[] = {
@@ -121,6 +123,7 @@ SolverRow const& SolverSettings::row() const {
 
 SolverSettings SolverSettings::finer() const {
   SolverSettings result = *this;
+  result.as_model = false;
   if (fixed_step()) {
     result.substeps *= 2;
   } else {
@@ -130,23 +133,39 @@ SolverSettings SolverSettings::finer() const {
   return result;
 }
 
+bool SolverSettings::within_limits() const {
+  Settings const values = settings();
+  return std::all_of(row().settings.begin(), row().settings.end(), [&](SettingRow const& each) {
+    auto const value = values.all().find(std::string(each.name));
+    return value == values.all().end() || refuse(each, value->second).empty();
+  });
+}
+
 std::string SolverSettings::finer_words() const { return fixed_step() ? "half the step" : "tolerances 100 times smaller"; }
+
+std::string SolverSettings::other_methods() const {
+  std::string const stiff = fmt::format("`solver = {}`", stiff_solver().name);
+  if (row().stiff) return {};
+  if (row().adaptive) return stiff + " if the model is stiff";
+  return fmt::format("`solver = {}`, or {} if the model is stiff", adaptive_solver().name, stiff);
+}
 
 std::string SolverSettings::option() const {
   SolverSettings const usual{.method = method};
-  if (method == SolverSettings{}.method) return fmt::format("substeps = {}", substeps);
+  if (method == SolverSettings{}.method && !as_model) return fmt::format("substeps = {}", substeps);
   Settings const values = settings(), defaults = usual.settings();
   std::string arguments;
   for (SettingRow const& each : row().settings) {
     std::string const name(each.name);
-    if (values.all().at(name) != defaults.all().at(name))
+    if (!values.all().contains(name)) continue;
+    if (!defaults.all().contains(name) || values.all().at(name) != defaults.all().at(name))
       arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", name, setting_text(values.all().at(name)));
   }
   return fmt::format("solver = {}{}", method, arguments.empty() ? "" : "(" + arguments + ")");
 }
 
 Settings SolverSettings::settings() const {
-  Settings values(row().settings);
+  Settings values;
   auto const set = [&](char const* name, SettingValue value) {
     if (find_setting(row().settings, name) != nullptr) values.set(name, value);
   };
@@ -154,6 +173,7 @@ Settings SolverSettings::settings() const {
   set("relative", relative);
   set("absolute", absolute);
   set("steps", static_cast<std::int64_t>(steps));
+  if (as_model) set("as_model", true);
   return values;
 }
 
@@ -162,8 +182,8 @@ std::string SolverSettings::text() const {
   Settings const values = settings();
   std::string arguments;
   for (SettingRow const& each : row().settings)
-    arguments +=
-        fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", each.name, setting_text(values.all().at(std::string(each.name))));
+    if (auto const value = values.all().find(std::string(each.name)); value != values.all().end())
+      arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", each.name, setting_text(value->second));
   return fmt::format("{}({})", method, arguments);
 }
 
@@ -179,6 +199,7 @@ SolverSettings make_solver(SolverRow const& row, Settings const& values) {
     if (name == "relative") result.relative = values.real(name);
     if (name == "absolute") result.absolute = values.real(name);
     if (name == "steps") result.steps = static_cast<int>(values.integer(name));
+    if (name == "as_model") result.as_model = values.flag(name);
   }
   return result;
 }

@@ -57,18 +57,24 @@ struct SolverSettings {
   double relative = 1e-8;  // adaptive: error allowed per step, as a part of each state
   double absolute = 0;     // adaptive: error allowed per step near zero, in the state's SI unit; 0: see `near_zero`
   int steps = 10000;       // adaptive: most steps between two samples, the work budget of a solve
+  bool as_model = false;   // fixed: the method with its step is a part of the model, and its error none
 
   SolverRow const& row() const;
   bool fixed_step() const { return !row().adaptive; }
   /// What the tolerance guard compares with: half the step, or a hundredth of the tolerances.
   SolverSettings finer() const;
+  /// Whether a task may state it: within the limits of the table.
+  bool within_limits() const;
   /// What `finer` does, in words: "half the step".
   std::string finer_words() const;
-  /// "rk4(substeps = 8)": every setting that the method has.
+  /// Methods that may do better where this one fails, in words, itself not among them: "`solver = dopri5`, or `solver = cvode` if
+  /// the model is stiff"; empty where there is none.
+  std::string other_methods() const;
+  /// "rk4(substeps = 8)": every setting that the method has, `as_model` where it is set.
   std::string text() const;
   /// The option of a task that asks for it, in its shortest spelling: "substeps = 8", "solver = heun(substeps = 8)".
   std::string option() const;
-  /// The settings that its method has, by name.
+  /// The settings that its method has, by name, `as_model` where it is set.
   Settings settings() const;
   /// The error allowed near zero for a state whose largest magnitude so far is `reached`: `absolute` where it is given, else
   /// relative * max(reached, smallest_size) / 1000.

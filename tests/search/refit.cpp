@@ -24,12 +24,19 @@ TEST_CASE("a mode follows its target, and its move is measured in its own sds") 
   Bench bench;
   std::vector<Mode> const modes = search(centred(2), ObjectiveKind::posterior, bench.context).modes;
   REQUIRE(modes.size() == 1);
+  std::vector<double> gains;
   std::vector<Mode> const same = refit(centred(2), ObjectiveKind::posterior, modes, 1, bench.ledger),
-                          moved = refit(centred(2.05), ObjectiveKind::posterior, modes, 1, bench.ledger);
-  CHECK(largest_move(modes[0], same[0]).size < 1e-3);
+                          moved = refit(centred(2.05), ObjectiveKind::posterior, modes, 1, bench.ledger, {}, &gains);
+  TestTarget const target = centred(2);
+  CHECK(largest_move(target.parameters(), modes[0], same[0], 0).size() < 1e-3);
   // The prior holds back 1e-4 of the move: half an sd.
-  CHECK(largest_move(modes[0], moved[0]).value == doctest::Approx(0.5).epsilon(1e-3));
-  CHECK(largest_move(modes[0], moved[0]).size == doctest::Approx(0.5).epsilon(1e-2));
+  REQUIRE(gains.size() == 1);
+  CHECK(gains[0] == doctest::Approx(0.125).epsilon(1e-3));
+  sysid::Move const move = largest_move(target.parameters(), modes[0], moved[0], gains[0]);
+  CHECK(move.value == doctest::Approx(0.5).epsilon(1e-3));
+  CHECK(move.size() == doctest::Approx(0.5).epsilon(1e-2));
+  // Where nothing is gained, the sd is wrong, and there is no move.
+  CHECK(largest_move(target.parameters(), modes[0], moved[0], 0).size() == 0);
   CHECK(moved[0].share == modes[0].share);
   CHECK(refit(centred(2), ObjectiveKind::posterior, {}, 1, bench.ledger).empty());
 }
@@ -39,10 +46,25 @@ TEST_CASE("a change of width is a move of the limits") {
   narrow.declared = wide.declared = {1, 5};
   narrow.sd = {0.5, 0.1};
   wide.sd = {0.5, 0.3};
-  sysid::Move const move = largest_move(narrow, wide);
+  std::vector<ParameterInfo> const free(2, {"", "", -infinity, infinity});
+  sysid::Move const move = largest_move(free, narrow, wide, 0);
   CHECK(move.parameter == 1);
   CHECK(move.value == 0);
-  CHECK(move.size == doctest::Approx(2).epsilon(1e-12));
+  CHECK(move.size() == doctest::Approx(2).epsilon(1e-12));
+  // Not along a direction that nothing resists, nor at a bound.
+  Mode flat = narrow;
+  flat.flat = {0, 0.1};
+  CHECK(largest_move(free, flat, wide, 0).size() == 0);
+  std::vector<ParameterInfo> const bounded = {{"", "", -infinity, infinity}, {"", "", 0, 5}};
+  CHECK(largest_move(bounded, narrow, wide, 0).size() == 0);
+}
+
+TEST_CASE("a bound is reached within a thousandth of the support, or of a positive lower bound") {
+  CHECK(at_bound({"", "", 0, 1}, 0.9995));
+  CHECK_FALSE(at_bound({"", "", 0, 1}, 0.998));
+  CHECK(at_bound({"", "", 1e-3, 1}, 1.0005e-3));
+  CHECK_FALSE(at_bound({"", "", 1e-3, 1}, 1.1e-3));
+  CHECK_FALSE(at_bound({"", "", -infinity, infinity}, 1e300));
 }
 
 TEST_CASE("a mode that can no longer be solved keeps its place and has moved infinitely far") {
@@ -51,6 +73,7 @@ TEST_CASE("a mode that can no longer be solved keeps its place and has moved inf
   std::vector<Mode> const lost = refit(centred(2, true), ObjectiveKind::posterior, modes, 1, bench.ledger);
   REQUIRE(lost.size() == 1);
   CHECK(lost[0].theta == modes[0].theta);
-  CHECK(largest_move(modes[0], lost[0]).size == infinity);
-  CHECK(largest_move(lost[0], modes[0]).size == infinity);
+  TestTarget const target = centred(2);
+  CHECK(largest_move(target.parameters(), modes[0], lost[0], 0).size() == infinity);
+  CHECK(largest_move(target.parameters(), lost[0], modes[0], 0).size() == infinity);
 }

@@ -57,6 +57,31 @@ TEST_CASE("a solver is spelt as a task states it") {
   CHECK(SolverSettings{.method = "heun"}.option() == "solver = heun");
 }
 
+TEST_CASE("a solver that is part of the model says so, and no finer one does") {
+  SolverSettings const declared{.substeps = 2, .as_model = true};
+  CHECK(declared.text() == "rk4(substeps = 2, as_model = yes)");
+  CHECK(declared.option() == "solver = rk4(substeps = 2, as_model = yes)");
+  CHECK(make_solver(declared.row(), declared.settings()) == declared);
+  CHECK(declared.finer() == SolverSettings{.substeps = 4});
+}
+
+TEST_CASE("no solver is advised that is in use already") {
+  for (SolverRow const& row : solvers()) {
+    std::string const others = SolverSettings{.method = std::string(row.name)}.other_methods();
+    CAPTURE(row.name);
+    CHECK(others.find("= " + std::string(row.name) + "`") == std::string::npos);
+    CHECK(others.empty() == row.stiff);
+  }
+}
+
+TEST_CASE("the finest solvers that a task may state") {
+  CHECK(SolverSettings{.substeps = 10000}.within_limits());
+  CHECK_FALSE(SolverSettings{.substeps = 10000}.finer().within_limits());
+  SolverSettings const tight{.method = "cvode", .relative = 1e-13};
+  CHECK(tight.within_limits());
+  CHECK_FALSE(tight.finer().within_limits());
+}
+
 TEST_CASE("a refined tolerance is the number that a person would write") {
   SolverSettings const loose{.method = "cvode", .relative = 1e-5};
   CHECK(loose.finer().relative == 1e-7);

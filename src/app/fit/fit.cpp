@@ -61,14 +61,14 @@ class Fit {
     } else if (!prepare()) {
       return stop_early(session_, task_, checkpoint_);
     }
-    Target const& target = likelihood_->set_target(preparation_.solver, session_.options.execution);
-    context.modes = preparation_.modes;
-    context.mode_findings = preparation_.findings;
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
-    FitResult result = backend_.run(target, what_.settings, context);
-    if (result.failure) throw UserError(no_result(task_, *result.failure));
-    if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
-    return finish(std::move(result));
+    while (true) {
+      FitResult result = sample(context);
+      if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
+      check_draws_of(result);
+      if (!to_be_chosen_again(result)) return finish(std::move(result));
+      if (!choose_again(context)) return stop_late(session_, task_, checkpoint_, preparation_);
+    }
   }
 
  private:
@@ -81,17 +81,75 @@ class Fit {
             {}};
   }
 
+  FitResult sample(RunContext& context) {
+    Target const& target = likelihood_->set_target(preparation_.solver, session_.options.execution);
+    context.modes = preparation_.modes;
+    context.mode_findings = preparation_.findings;
+    FitResult result = backend_.run(target, what_.settings, context);
+    if (result.failure) throw UserError(no_result(task_, with_other_solver(std::move(*result.failure), ledger_)));
+    return result;
+  }
+
+  std::unique_ptr<Target> interruptible_target(SolverSettings const& solver) const {
+    return likelihood_->make_target(experiments_of(data_), solver, session_.interruptible());
+  }
+
+  // Whether a finer solver moves the draws.
+  void check_draws_of(FitResult const& result) {
+    accuracy_.reset();
+    if (!model_.integrated() || result.interrupted || result.draws.total() < 2) return;
+    SolverSettings const& solver = preparation_.solver;
+    accuracy_ = check_draws(*interruptible_target(solver), *interruptible_target(solver.finer()), result.draws, preparation_.modes,
+                            seed_, extra_);
+  }
+
+  // A solver that the guard has chosen, by modes, for draws that it moves after all. Where none was fine enough for the modes, none
+  // is left to choose.
+  bool to_be_chosen_again(FitResult const& result) const {
+    bool const settled = std::none_of(preparation_.findings.begin(), preparation_.findings.end(),
+                                      [](Finding const& each) { return each.code == FindingCode::step_not_settled; });
+    return what_.refine_solver && settled && !result.interrupted && !session_.interrupted() && accuracy_ && !accuracy_->holds() &&
+           fine_enough(preparation_.solver, accuracy_->largest()).within_limits();
+  }
+
+  // False: interrupted; the first solver then stays.
+  bool choose_again(RunContext& context) {
+    Preparation again = preparation_;
+    SolverSettings const finer = fine_enough(preparation_.solver, accuracy_->largest());
+    RunContext searching_again = searching(again.ledger);
+    MakeTarget const make = [this](SolverSettings const& solver) { return interruptible_target(solver); };
+    session_.notices << fmt::format("{}: sampling again with a finer solver: {}\n", task_.name,
+                                    tolerance_findings(*accuracy_, preparation_.solver, true).front().message);
+    if (!refine_solver(session_, task_, make, backend_.objective_kind, finer, again, searching_again)) return false;
+    preparation_ = std::move(again);
+    preparation_.ledger.merge(ledger_);
+    ledger_ = {};
+    context.resume = {};
+    return true;
+  }
+
+  // What a solver has to do with a failure stands in its help: searches and back ends know of none.
+  Finding with_other_solver(Finding failure, Ledger const& ledger) const {
+    if (failure.code != FindingCode::no_finite_start || !model_.integrated()) return failure;
+    if (std::string const advice = solver_advice(preparation_.solver, ledger); !advice.empty()) failure.help += "; " + advice;
+    return failure;
+  }
+
   // Search and, unless the user fixed it, the step. False: interrupted.
   bool prepare() {
-    MakeTarget const make = [this](SolverSettings const& solver) {
-      return likelihood_->make_target(experiments_of(data_), solver, session_.interruptible());
-    };
+    MakeTarget const make = [this](SolverSettings const& solver) { return interruptible_target(solver); };
     RunContext context = searching(preparation_.ledger);
-    Findings const size = check_prior_size(session_, what_, data_);
+    Findings ahead = check_method(session_, what_);
+    for (Finding& each : check_prior_size(session_, what_, data_)) ahead.push_back(std::move(each));
     print_data_findings(session_, task_, data_, model_);
-    print_findings(session_, task_, size);
+    print_findings(session_, task_, ahead);
     preparation_.solver = what_.solver;
-    if (what_.refine_solver && model_.integrated() && !choose_search_solver(make, context)) return false;
+    Findings stiff;
+    if (what_.refine_solver && model_.integrated()) {
+      auto const solver = choose_search_solver(make, context);
+      if (!solver) return false;
+      stiff = stiffness(*solver);
+    }
     auto const target = make(preparation_.solver);
     SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.objective_kind, context)
                                     : search(*target, backend_.objective_kind, context);
@@ -100,12 +158,18 @@ class Fit {
       std::vector<Failure> const& places = preparation_.ledger.failures();
       bool const sticks =
           std::any_of(places.begin(), places.end(), [](Failure const& each) { return each.kind == FailureClass::step_limit; });
-      if (std::string advice = sticking_advice(model_, data_); sticks && !advice.empty()) found.failure->help = std::move(advice);
-      throw UserError(no_result(task_, *found.failure));
+      Finding failure = with_other_solver(std::move(*found.failure), preparation_.ledger);
+      if (!stiff.empty()) {
+        failure.message += "; " + stiff.front().message;
+        failure.help = stiff.front().help;
+      }
+      if (std::string advice = sticking_advice(model_, data_); sticks && !advice.empty()) failure.help = std::move(advice);
+      throw UserError(no_result(task_, failure));
     }
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
-    preparation_.findings.insert(preparation_.findings.end(), size.begin(), size.end());
+    preparation_.findings.insert(preparation_.findings.end(), ahead.begin(), ahead.end());
+    preparation_.findings.insert(preparation_.findings.end(), stiff.begin(), stiff.end());
     print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
     if (what_.refine_solver && !refine_solver(session_, task_, make, backend_.objective_kind, what_.solver, preparation_, context))
       return false;
@@ -116,15 +180,28 @@ class Fit {
     return true;
   }
 
-  // False: interrupted.
-  bool choose_search_solver(MakeTarget const& make, RunContext const& context) {
+  // Of the prior draws that the search cannot see.
+  Findings stiffness(SearchSolver const& search) const {
+    if (!search.stiff()) return {};
+    return {
+        {FindingCode::stiff_prior,
+         Severity::warning,
+         {},
+         fmt::format("{:.0f} % of the prior draws overflow even with {}; {} follows {} of the {} of these that it tried: the model "
+                     "is stiff there, and the search has not seen that part",
+                     100 * search.failed, accuracy(search.solver), stiff_solver().name, search.followed, search.tried),
+         fmt::format("fit with `solver = {}`, or narrow the priors if motion as fast as this is not meant", stiff_solver().name)}};
+  }
+
+  // Empty: interrupted.
+  std::optional<SearchSolver> choose_search_solver(MakeTarget const& make, RunContext const& context) {
     SearchSolver const search = search_solver(make, what_.solver, seed_);
-    if (context.stop_requested()) return false;
+    if (context.stop_requested()) return std::nullopt;
     if (search.solver != what_.solver)
       session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws overflow\n", task_.name,
                                       accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
     preparation_.solver = search.solver;
-    return true;
+    return search;
   }
 
   ExitCode finish(FitResult result) {
@@ -134,7 +211,7 @@ class Fit {
     Target const& target =
         likelihood_->set_target(preparation_.solver, interrupted ? session_.options.execution : session_.interruptible());
     FinishedFit finished{session_, what_, *likelihood_, target, data_, preparation_, result, backend_.objective_kind,
-                         ledger_,  seed_, report,       {}};
+                         ledger_,  seed_, accuracy_,    report, {},    extra_};
     if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
     for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
       finished.rows.push_back(likelihood_->fitted_rows(report.draws, e, report.forces));
@@ -197,6 +274,8 @@ class Fit {
   std::chrono::steady_clock::time_point began_;
   Preparation preparation_;
   Ledger ledger_;
+  std::optional<SolverCheck> accuracy_;  // of the draws
+  Ledger extra_;                         // of solves for checks, which no report shows
 };
 
 }  // namespace

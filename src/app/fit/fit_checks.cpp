@@ -9,7 +9,6 @@
 #include "diagnostics/bound_check.hpp"
 #include "diagnostics/input_checks.hpp"
 #include "diagnostics/model_checks.hpp"
-#include "diagnostics/tolerance.hpp"
 
 namespace sysid {
 namespace {
@@ -59,19 +58,22 @@ std::string without_solver(FinishedFit const& fit) {
   return fit.likelihood.model().integrated() ? "" : "the model has no differential equation";
 }
 
-// Draws tell by their weights, an optimum by where it moves. A solver that was chosen has been compared with finer ones before.
+// Draws are weighted again, an optimum is found again. A solver that was chosen has been compared with finer ones before, at the
+// modes; one that the task states has not, so that several modes are found again, too.
 Findings solver_accuracy(FinishedFit& fit) {
   Preparation const& preparation = fit.preparation;
-  Draws const& draws = fit.result.draws;
+  std::size_t const draws = fit.result.draws.total();
+  auto const weighty = std::count_if(preparation.modes.begin(), preparation.modes.end(),
+                                     [](Mode const& each) { return each.share > weight_of_interest; });
   auto const fine = fit.likelihood.make_target(experiments_of(fit.data), preparation.solver.finer(), fit.session.interruptible());
-  Findings findings;
-  if (draws.total() > 1)
-    findings = tolerance_findings(check_tolerance(fit.target, *fine, draws, fit.extra), preparation.solver, fit.what.refine_solver);
-  auto const weighty =
-      std::count_if(preparation.modes.begin(), preparation.modes.end(), [](Mode const& each) { return each.share > 0.01; });
-  if (findings.empty() && !fit.what.refine_solver && (draws.total() == 1 || weighty > 1) && !preparation.modes.empty())
-    findings = check_modes(*fine, fit.objective_kind, preparation.modes, preparation.solver, fit.seed, fit.extra);
-  return findings;
+  SolverCheck check;
+  if (fit.accuracy)
+    check = *fit.accuracy;
+  else if (draws > 1)
+    check = check_draws(fit.target, *fine, fit.result.draws, preparation.modes, fit.seed, fit.extra);
+  if (check.holds() && !fit.what.refine_solver && (draws == 1 || weighty > 1) && !preparation.modes.empty())
+    check = check_modes(*fine, fit.objective_kind, preparation.modes, fit.seed, fit.extra);
+  return tolerance_findings(check, preparation.solver, fit.what.refine_solver);
 }
 
 std::string without_finite_sums(FinishedFit const& fit) {

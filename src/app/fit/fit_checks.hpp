@@ -1,5 +1,6 @@
 // The checks of a finished fit, for every likelihood: one row each. A row that does not apply gives the reason.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -7,6 +8,7 @@
 
 #include "app/fit/fit_likelihood.hpp"
 #include "app/session/preparation.hpp"
+#include "diagnostics/tolerance_check.hpp"
 #include "search/objective_kind.hpp"
 
 namespace sysid {
@@ -23,9 +25,10 @@ struct FinishedFit {
   ObjectiveKind objective_kind;
   Ledger const& sampling;  // its failures
   std::uint64_t seed;
-  Report& report;                // holds priors, draws, summary and the findings so far; scores are added
-  std::vector<FittedRows> rows;  // per experiment; empty when interrupted
-  Ledger extra = {};             // of solves for checks, which no report shows
+  std::optional<SolverCheck> const& accuracy;  // of the draws, where it has been looked at already
+  Report& report;                              // holds priors, draws, summary and the findings so far; scores are added
+  std::vector<FittedRows> rows;                // per experiment; empty when interrupted
+  Ledger extra = {};                           // of solves for checks, which no report shows
 };
 
 struct FitCheckRow {

@@ -30,6 +30,7 @@ class FitLikelihood {
   virtual Model const& sampled_model() const = 0;
   /// All parameters of `model` that have a prior, those that are integrated out too.
   virtual ParameterSpace const& space() const = 0;
+  /// solver: of the task's method, or of any other to try.
   virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution) const = 0;
   /// Log densities of the samples of these experiments that are scored, one series for each experiment and channel, with these

@@ -33,7 +33,11 @@ class IndependentLikelihood : public FitLikelihood {
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {
-    return make_fit_target(session_, what_, compiled_, space_, std::move(experiments), solver, execution);
+    auto const compiled =
+        solver.method == what_.solver.method
+            ? compiled_
+            : session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, solver.method, what_.prediction);
+    return make_fit_target(session_, what_, compiled, space_, std::move(experiments), solver, execution);
   }
 
   std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,

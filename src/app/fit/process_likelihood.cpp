@@ -40,7 +40,10 @@ class ProcessLikelihood : public FitLikelihood {
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {
-    return process_target(what_, model_, std::move(experiments), solver, execution);
+    if (solver.method == what_.solver.method) return process_target(what_, model_, std::move(experiments), solver, execution);
+    FitTask other = what_;
+    other.solver = solver;
+    return process_target(other, process_model(session_, other, other.prediction), std::move(experiments), solver, execution);
   }
 
   std::vector<std::vector<double>> log_densities(std::vector<Experiment> const&, SolverSettings const&,

@@ -34,4 +34,7 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
 /// Simulates prior draws of a fit with its input and fills the page's prior, information and findings.
 void run_preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page);
 
+/// Whether faster methods than the stated one solve such equations.
+Findings check_method(Session const& session, FitTask const& what);
+
 }  // namespace sysid

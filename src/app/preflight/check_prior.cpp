@@ -32,11 +32,26 @@ struct Draw {
 };
 
 PriorPage counts(Preflight const& preflight, PriorSimulations const& simulations) {
+  SolverRow const& stated = preflight.what.solver.row();
   PriorPage page;
   page.draws = preflight.effort.prior_draws;
   page.stated = preflight.what.solver.text();
   page.failed_as_stated = simulations.failed_as_stated;
+  page.spent = stated.adaptive;
+  page.failed_explicit = simulations.failed_explicit;
+  auto const label = [&](SolverRow const& row) {
+    return std::string(row.name) + (row.name == stated.name ? " and more steps" : "");
+  };
+  if (!stated.stiff) page.explicit_solver = label(adaptive_solver());
+  page.stiff_left = simulations.stiff_left;
+  page.stiff_tried = simulations.stiff_tried;
+  page.stiff_followed = simulations.stiff_followed;
+  page.stiff_solver = label(stiff_solver());
   page.failed = static_cast<int>(std::count(simulations.followed.begin(), simulations.followed.end(), false));
+  // Those that it could not try fail at the same rate.
+  if (page.stiff_tried > 0)
+    page.failed = static_cast<int>(
+        std::lround(static_cast<double>(simulations.stiff_left) * (page.stiff_tried - page.stiff_followed) / page.stiff_tried));
   page.failures = simulations.ledger.failures();
   page.untraced = simulations.untraced;
   return page;
@@ -48,10 +63,32 @@ std::string units_that_scale(Model const& model) {
   return model.inputs.empty() ? time : "the units of the " + plural("input", model.inputs.size()) + ", " + time;
 }
 
+// Draws that only an implicit method follows. Fixed explicit steps as short as the motion asks for would follow them, too, but
+// there would be as many of them as adaptive ones take.
+void check_stiffness(Preflight const& preflight, double share) {
+  PriorPage const& page = *preflight.page.prior;
+  if (preflight.what.solver.row().stiff || share <= many_failures) return;
+  std::string const followed =
+      page.failed == 0 ? "all" : fmt::format("about {:.0f} %", 100 * share * page.draws / page.failed_explicit);
+  preflight.add(
+      FindingCode::stiff_prior, Severity::warning, {},
+      fmt::format("explicit steps ({}, {}) do not follow {:.0f} % of the prior draws, and {} follows {} of these: the model "
+                  "is stiff there",
+                  page.stated, page.explicit_solver, 100.0 * page.failed_explicit / page.draws, page.stiff_solver, followed),
+      fmt::format("use `solver = {}`, or narrow the priors if motion as fast as this is not meant", page.stiff_solver));
+}
+
+std::string finer_advice(SolverSettings const& solver) {
+  if (!solver.fixed_step()) return fmt::format("allow more `steps` between two samples, which are {}", solver.steps);
+  return "use shorter steps, or " + solver.other_methods();
+}
+
 void check_failures(Preflight const& preflight) {
   PriorPage const& page = *preflight.page.prior;
+  SolverSettings const& solver = preflight.what.solver;
   double const share = static_cast<double>(page.failed) / page.draws;
-  double const lost = static_cast<double>(page.failed_as_stated - page.failed) / page.draws;
+  double const stiff = static_cast<double>(page.failed_explicit - page.failed) / page.draws;
+  double const lost = solver.row().stiff ? stiff : static_cast<double>(page.failed_as_stated - page.failed_explicit) / page.draws;
   if (page.failed == page.draws)
     preflight.add(FindingCode::prior_fails, Severity::error, {},
                   fmt::format("the simulation fails at all {} prior draws", page.draws),
@@ -64,13 +101,16 @@ void check_failures(Preflight const& preflight) {
                         ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}", 1 / (1 - share))
                         : ""),
         "narrow the priors, or check the named part of the equation");
-  if (!preflight.refines_solver() && lost > many_failures)
+  check_stiffness(preflight, stiff);
+  if (preflight.refines_solver() && solver.fixed_step()) return;
+  if (lost > many_failures)
     preflight.add(
-        FindingCode::integration_step, Severity::warning, {},
-        fmt::format("with {} {:.0f} % of the prior draws overflow, but not with adaptive steps", preflight.what.solver.text(),
-                    100 * lost),
-        fmt::format("{}: use shorter steps, or `solver = dopri5` or `cvode`",
-                    preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations"));
+        FindingCode::integration_step, solver.as_model ? Severity::note : Severity::warning, {},
+        fmt::format("with {} {:.0f} % of the prior draws {}", solver.text(), 100 * lost,
+                    solver.fixed_step() ? "overflow, but not with adaptive steps" : "need more steps between two samples"),
+        fmt::format("{}: {}",
+                    preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations",
+                    solver.as_model ? "the solver is part of the model" : finer_advice(solver)));
 }
 
 // Whether a channel reads a state, so that its prediction is expected to move.
@@ -168,6 +208,7 @@ PriorDraws draw_prior(Preflight const& preflight) {
   LaneArray theta(space.dimension(), count), declared(space.dimension(), count);
   space.sample_prior({preflight.session.options.seed.value_or(preflight.what.seed.value_or(1)), Purpose::prior, 0, 0}, theta);
   space.constrain(theta, declared);
+  prior.theta = theta;
   std::vector<ParameterRole> const roles = parameter_roles(preflight.model());
   std::vector<std::string> noise;
   for (int k = 0; k < space.dimension(); ++k) {

@@ -1,13 +1,17 @@
-// Chooses the solver that the result needs: by how far parameters move or, in a selection, by how far distances move.
+// Chooses the solver that the result needs: by how far parameters move or, in a selection, by how far distances move. What draws of
+// the prior suggest is confirmed where the data are: at a mode found from the nearest of them, found again with a finer solver.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "app/preflight/check_file.hpp"
 #include "app/preflight/preflight.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance_check.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "search/local_searches.hpp"
+#include "search/refit.hpp"
 
 namespace sysid {
 namespace {
@@ -39,24 +43,99 @@ double middle(std::vector<double> values) {
 // judged by what it does to those.
 void describe_distances(Preflight const& preflight, PriorDraws const& prior, double response_move, double shift) {
   preflight.page.information->response_move = response_move;
-  std::string const help = preflight.page.information->advised.empty() ? "use a finer solver"
-                                                                       : fmt::format("use {}", preflight.page.information->advised);
+  std::string const help = preflight.page.information->advised.empty()
+                               ? "use a finer solver"
+                               : fmt::format("use `solver = {}`", preflight.page.information->advised);
+  Severity const severity = preflight.what.solver.as_model ? Severity::note : Severity::warning;
   if (!(response_move <= gross_move))
-    preflight.add(FindingCode::integration_step, Severity::warning, {},
+    preflight.add(FindingCode::integration_step, severity, {},
                   fmt::format("with {} the solver changes the distances: {} moves the median response by {} of its sd",
                               preflight.what.solver.text(), preflight.what.solver.finer_words(),
                               std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than 100 %"),
                   help);
   else if (prior.noise.empty() && shift > visible_shift)
     preflight.add(
-        FindingCode::integration_step, Severity::warning, {},
+        FindingCode::integration_step, severity, {},
         fmt::format(
             "with {} the solver changes the distances: {} moves them by {:.2g} of the distance that the stated noise leaves",
             preflight.what.solver.text(), preflight.what.solver.finer_words(), shift),
         help);
 }
 
+constexpr int most_starts = 48, fewest_starts = 8;  // of the short search
+constexpr double affordable = 5e9;  // operations of the equations at the steps of all its trajectories: some seconds
+
+// How many searches by finite differences may start, beside their widths and the same again with half the step; 0: too few.
+int affordable_starts(Preflight const& preflight) {
+  double const p = preflight.space->dimension(), round = 2 * p + 5;
+  double const solves = affordable / (preflight.step_work * preflight.solver_work()) - 3 * (3 * (1 + 2 * p * p) + 20 * round);
+  double const starts = solves / (10 * round);  // most are left early
+  return starts < fewest_starts ? 0 : static_cast<int>(std::min(starts, static_cast<double>(most_starts)));
+}
+
+// Local searches with the stated solver from the draws of highest likelihood, followed to the finer one; nothing where that would
+// take long, or where no two of the searches end in the same mode: then it need not be the one of the fit.
+std::optional<SolverCheck> found_from_draws(Preflight const& preflight, PriorDraws const& prior) {
+  auto const starts = static_cast<std::size_t>(affordable_starts(preflight));
+  if (starts == 0) return std::nullopt;
+  std::vector<double> const& density = prior.simulations.density;
+  std::vector<int> order;
+  for (int w = 0; w < prior.theta.width(); ++w)
+    if (std::isfinite(density[static_cast<std::size_t>(w)])) order.push_back(w);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return density[static_cast<std::size_t>(a)] > density[static_cast<std::size_t>(b)]; });
+  if (order.size() > starts) order.resize(starts);
+  LaneArray theta(prior.theta.rows(), static_cast<int>(order.size()));
+  for (int p = 0; p < theta.rows(); ++p)
+    for (int w = 0; w < theta.width(); ++w) theta(p, w) = prior.theta(p, order[static_cast<std::size_t>(w)]);
+  auto const target_of = [&](SolverSettings const& solver) {
+    return make_fit_target(preflight.session, preflight.what, preflight.compiled, preflight.space, preflight.experiments, solver,
+                           preflight.session.options.execution);
+  };
+  std::uint64_t const seed = preflight.session.options.seed.value_or(preflight.what.seed.value_or(1));
+  Ledger ignored;
+  std::vector<Mode> const modes = modes_from(*target_of(preflight.what.solver), ObjectiveKind::posterior, theta,
+                                             -std::numeric_limits<double>::infinity(), seed, ignored)
+                                      .modes;
+  if (modes.empty() || modes.front().hits < 2) return std::nullopt;
+  return check_modes(*target_of(preflight.what.solver.finer()), ObjectiveKind::posterior, {modes.front()}, seed, ignored);
+}
+
+// The draws suggest that the stated solver is too coarse.
+void confirm(Preflight const& preflight, PriorDraws const& prior, double suggested) {
+  SolverSettings const& solver = preflight.what.solver;
+  InformationPage& information = *preflight.page.information;
+  std::optional<SolverCheck> const found = found_from_draws(preflight, prior);
+  if (!found) {
+    std::string const sds = suggested > 5 ? "many sds" : fmt::format("{:.2g} sd", suggested);
+    preflight.add(
+        FindingCode::integration_step, Severity::note, {},
+        fmt::format("with {} parameters would move by up to {} at draws of the prior, with {}; no mode was found to confirm it",
+                    solver.finer_words(), sds, solver.text()),
+        solver.as_model ? "the solver is part of the model" : "the fit checks its own result");
+    return;
+  }
+  if (found->outcome != SolverCheck::Outcome::fails) information.found_move = found->largest();
+  for (Finding finding : tolerance_findings(*found, solver, false)) {
+    if (finding.severity == Severity::error) finding.severity = Severity::warning;
+    preflight.page.findings.push_back(std::move(finding));
+  }
+}
+
 }  // namespace
+
+Findings check_method(Session const& session, FitTask const& what) {
+  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
+  if (!model.integrated() || !what.solver.row().implicit) return {};
+  if (model.implicit || !model.invariants.empty() || !model.unknowns.empty()) return {};
+  return {{FindingCode::slower_solver,
+           Severity::note,
+           {},
+           fmt::format("{} is for implicit equations, and those of `{}` give their highest derivatives explicitly",
+                       what.solver.method, model.name),
+           fmt::format("`solver = {}` needs less time for the same tolerance, and {} or {} far less, unless the model is stiff",
+                       stiff_solver().name, SolverSettings{}.method, adaptive_solver().name)}};
+}
 
 void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::vector<LocalResponse> const& responses) {
   std::vector<double> moves(preflight.solvers.size() - 1, 0.0), response_moves, shifts;
@@ -77,13 +156,7 @@ void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::
     break;
   }
   if (!preflight.what.refine_solver && !preflight.candidate() && moves.front() > tolerable_move)
-    preflight.add(
-        FindingCode::integration_step, Severity::warning, {},
-        fmt::format("with {} the solver changes the result: with {} parameters move by up to {}", preflight.what.solver.text(),
-                    preflight.what.solver.finer_words(), moves.front() > 5 ? "many sds" : fmt::format("{:.2g} sd", moves.front())),
-        information.advised.empty()
-            ? "remove its settings, which are then chosen automatically"
-            : fmt::format("use {}, or remove its settings, which are then chosen automatically", information.advised));
+    confirm(preflight, prior, moves.front());
   if (preflight.candidate()) describe_distances(preflight, prior, middle(std::move(response_moves)), middle(std::move(shifts)));
 }
 

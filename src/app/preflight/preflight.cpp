@@ -88,7 +88,8 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
   effort.refinements = !model().integrated() ? 0 : what.solver.fixed_step() ? 6 : 2;
   while (effort.refinements > 2 && (longest * static_cast<std::size_t>(what.solver.substeps)) << effort.refinements > most_steps)
     --effort.refinements;
-  effort = effort_of(work_of(model(), experiments) * what.solver.substeps, space->dimension(), effort);
+  step_work = work_of(model(), experiments) * what.solver.substeps;
+  effort = effort_of(what.solver.row().in_program ? step_work : step_work * solver_work(), space->dimension(), effort);
   auto const pool = make_pool(session.options.execution);
   solvers.push_back(what.solver);
   while (static_cast<int>(solvers.size()) <= effort.refinements) solvers.push_back(solvers.back().finer());
@@ -99,6 +100,11 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
     on_jumps.emplace(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, adaptive.method, what.prediction),
                      space, experiments, adaptive, start_rows(what.start), session.options.execution, pool);
   }
+}
+
+double Preflight::solver_work() const {
+  SolverRow const& row = what.solver.row();
+  return !row.adaptive ? 1 : row.in_program ? 10 : 200;
 }
 
 void Preflight::add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message,

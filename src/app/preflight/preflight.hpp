@@ -36,6 +36,7 @@ class Preflight {
   std::vector<Experiment> experiments;
   bool shortened = false;  // to their first `most_scored` scored rows
   Effort effort;
+  double step_work = 0;                 // operations of the equations at the steps of one trajectory, with the stated solver
   std::vector<SolverSettings> solvers;  // as stated, then ever finer
   std::vector<Output> outputs;          // of each
   std::optional<Output> on_jumps;       // ends its steps where the equations jump; of models that do
@@ -43,6 +44,8 @@ class Preflight {
   static constexpr std::size_t most_scored = 10000;  // rows of an experiment that are looked at
   static constexpr double smooth_enough = 1e-8;      // tolerance of adaptive steps under differences
 
+  /// Of a trajectory with the stated solver, in trajectories of one step of rk4 for each substep, about.
+  double solver_work() const;
   Model const& model() const { return compiled->model; }
   bool candidate() const { return !page.candidate.empty(); }
   /// Whether the task makes the solver finer until the result has converged: fits do, selections take theirs as it is.
@@ -55,6 +58,7 @@ class Preflight {
 /// Draws of the prior in SI, all rows of a point; what only the noise reads at its median, so that one level of noise stands for
 /// all.
 struct PriorDraws {
+  LaneArray theta;   // [P x draws], the sampler's coordinates
   LaneArray points;  // [point rows x draws]
   PriorSimulations simulations;
   std::vector<AssessedParameter> coordinates;

@@ -1,4 +1,4 @@
-// The task's own solver, then dopri5 for all draws, then cvode for those that are still open.
+// The task's own solver, then dopri5 for all draws, then cvode for some of those that are still open.
 #include "app/preflight/prior_simulations.hpp"
 
 #include <algorithm>
@@ -14,6 +14,7 @@ constexpr double comparable = 1e-4;                                        // of
 constexpr std::size_t explicit_steps = 200'000, implicit_steps = 200'000;  // in all: a lane each, all lanes together
 constexpr std::size_t many_states = 64;
 constexpr std::size_t fewest_steps = 20;  // between two samples: less is no attempt
+constexpr std::size_t few_tried = 8;      // draws, which tell most from few
 
 LaneArray gathered(ConstLanes from, std::vector<int> const& lanes) {
   LaneArray to(from.rows(), static_cast<int>(lanes.size()));
@@ -40,10 +41,10 @@ class PriorSimulation {
     for (Experiment const& each : experiments) samples_ += each.time.size();
   }
 
-  // Tries the lanes; where the method follows one, its response is the answer.
-  void attempt(SolverRow const& row, std::size_t budget, std::vector<int> const& lanes) {
+  // Tries the lanes; where the method follows one, its response is the answer. How many it follows.
+  int attempt(SolverRow const& row, std::size_t budget, std::vector<int> const& lanes) {
     std::size_t const steps = budget / std::max<std::size_t>(1, samples_);
-    if (lanes.empty() || steps < fewest_steps) return;
+    if (lanes.empty() || steps < fewest_steps) return 0;
     std::string const method(row.name);
     auto const compiled = session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, method, what_.prediction);
     SolverSettings const solver{
@@ -60,17 +61,35 @@ class PriorSimulation {
     LaneArray centres(result_.centres.rows(), points.width());
     output.start(points);
     output.centres(points, centres);
+    int followed = 0;
     for (std::size_t w = 0; w < lanes.size(); ++w) {
       if (!std::isfinite(density[w])) continue;
+      ++followed;
       result_.followed[static_cast<std::size_t>(lanes[w])] = true;
       for (int r = 0; r < centres.rows(); ++r) result_.centres(r, lanes[w]) = centres(r, static_cast<int>(w));
     }
+    return followed;
+  }
+
+  // All that are open share the budget; where it is too little for most of them, a few have all of it.
+  void attempt_stiff() {
+    std::vector<int> lanes = open();
+    if (lanes.empty()) return;
+    if (implicit_steps / lanes.size() >= fewest_steps * samples_) try_stiff(lanes, implicit_steps / lanes.size());
+    if (2 * result_.stiff_followed > result_.stiff_tried) return;
+    lanes = open();
+    if (lanes.size() > few_tried) lanes.resize(few_tried);
+    try_stiff(lanes, std::max(implicit_steps / lanes.size(), fewest_steps * samples_));
   }
 
   // Where the draws fail that nothing follows, each counted once.
   void trace() {
     constexpr std::size_t traced = 8;
-    std::vector<int> const lanes = open();
+    std::vector<int> lanes = open();
+    std::size_t const all = lanes.size();
+    if (!tried_stiff_.empty())  // the rest is not known to fail with the last solver
+      std::erase_if(lanes,
+                    [&](int lane) { return std::find(tried_stiff_.begin(), tried_stiff_.end(), lane) == tried_stiff_.end(); });
     auto const target =
         make_fit_target(session_, what_, last_compiled_, space_, experiments_, last_solver_, session_.options.execution);
     for (std::size_t i = 0; i < std::min(traced, lanes.size()); ++i) {
@@ -84,9 +103,17 @@ class PriorSimulation {
       Failure const& first = solves.failures().front();
       result_.ledger.add_failure(first.kind, first.where, first.time, first.example);
     }
-    result_.untraced = static_cast<int>(lanes.size() - std::min(traced, lanes.size()));
+    result_.untraced = static_cast<int>(all - std::min(traced, lanes.size()));
   }
 
+  void try_stiff(std::vector<int> const& lanes, std::size_t budget) {
+    result_.stiff_left = static_cast<int>(open().size());
+    result_.stiff_followed = attempt(stiff_solver(), budget, lanes);
+    result_.stiff_tried = static_cast<int>(lanes.size());
+    tried_stiff_ = lanes;
+  }
+
+  // Those that nothing has followed so far.
   std::vector<int> open() const {
     std::vector<int> lanes;
     for (std::size_t w = 0; w < result_.followed.size(); ++w)
@@ -105,6 +132,7 @@ class PriorSimulation {
   PriorSimulations& result_;
   std::shared_ptr<ThreadPool> pool_;
   std::size_t samples_ = 0;
+  std::vector<int> tried_stiff_;
 };
 
 }  // namespace
@@ -113,24 +141,27 @@ PriorSimulations simulate_prior(Session& session, FitTask const& what, std::shar
                                 std::shared_ptr<ParameterSpace const> const& space, std::vector<Experiment> const& experiments,
                                 Output const& stated, ConstLanes theta, ConstLanes points) {
   auto const width = static_cast<std::size_t>(theta.width());
-  PriorSimulations result{LaneArray(static_cast<int>(stated.places().size()), theta.width()), std::vector<bool>(width), 0, {}, 0};
-  std::vector<double> density(width);
+  PriorSimulations result;
+  result.centres = LaneArray(static_cast<int>(stated.places().size()), theta.width());
+  result.followed.resize(width);
+  result.density.resize(width);
   Ledger untold;
   make_fit_target(session, what, compiled, space, experiments, what.solver, session.options.execution)
-      ->log_likelihood(theta, density, untold);
+      ->log_likelihood(theta, result.density, untold);
   stated.centres(points, result.centres);
-  for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(density[w]);
+  for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(result.density[w]);
   result.failed_as_stated = static_cast<int>(std::count(result.followed.begin(), result.followed.end(), false));
   Model const& model = compiled->model;
   PriorSimulation simulation(session, what, space, experiments, compiled, theta, points, result);
-  if (model.integrated() && !model.implicit && what.solver.fixed_step()) {
+  bool const lost = result.failed_as_stated > 0;
+  if (model.integrated() && !model.implicit && (lost || what.solver.fixed_step())) {
     // Where adaptive steps begin they take a Jacobian, which many states make dear: there only what fixed steps lose is tried.
     std::vector<int> lanes(width);
     std::iota(lanes.begin(), lanes.end(), 0);
-    if (model.states.size() > many_states) lanes = simulation.open();
-    simulation.attempt(adaptive_solver(), explicit_steps, lanes);
-    std::vector<int> const left = simulation.open();
-    if (!left.empty()) simulation.attempt(stiff_solver(), implicit_steps / left.size(), left);
+    if (model.states.size() > many_states || !what.solver.fixed_step()) lanes = simulation.open();
+    if (!what.solver.row().stiff) simulation.attempt(adaptive_solver(), explicit_steps, lanes);
+    result.failed_explicit = static_cast<int>(simulation.open().size());
+    simulation.attempt_stiff();
   }
   simulation.trace();
   return result;

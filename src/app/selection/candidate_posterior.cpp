@@ -10,6 +10,7 @@
 
 #include "app/selection/likelihood_check.hpp"
 #include "app/session/fit_target.hpp"
+#include "app/session/solver_refinement.hpp"
 #include "core/numeric/elementary.hpp"
 #include "diagnostics/tolerance.hpp"
 
@@ -157,12 +158,12 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
       std::string const finer = posterior.solver == stated ? stated.finer().option() : posterior.solver.option();
       findings.push_back(
           {FindingCode::integration_step,
-           Severity::warning,
+           stated.as_model ? Severity::note : Severity::warning,
            {candidates[k].what->name},
            fmt::format("with {}, the solver of its particles, parameters of `{}` are wrong by about {} of the likelihood",
                        stated.text(), candidates[k].what->name,
                        *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
-           fmt::format("select again with `{}`", finer)});
+           stated.as_model ? "the solver is part of the model" : fmt::format("select again with `{}`", finer)});
     }
     if (posterior.converged) continue;
     std::string const what =
@@ -171,11 +172,8 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
                           posterior.solver.text(), candidates[k].what->name)
             : fmt::format("even with {} there is no converged likelihood of `{}`", posterior.solver.text(),
                           candidates[k].what->name);
-    findings.push_back({FindingCode::step_not_settled,
-                        Severity::warning,
-                        {candidates[k].what->name},
-                        what,
-                        "if the model is stiff, use `solver = cvode`; it may also be chaotic on this record"});
+    findings.push_back(
+        {FindingCode::step_not_settled, Severity::warning, {candidates[k].what->name}, what, settling_advice(posterior.solver)});
   }
   return findings;
 }

@@ -134,7 +134,8 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
   finer.distances({&batch, 1}, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < distance.size(); ++i) shift.push_back(std::abs(distance[i] - selected.distance[i]));
   double const median = upper_median(std::move(shift));
-  if (median <= tolerable_shift * result.threshold) return {};
+  if (solver.as_model || median <= tolerable_shift * result.threshold) return {};
+  std::string const other = solver.other_methods();
   std::string const what =
       !std::isfinite(median) ? std::string("half of the particles or more overflow: their distances depend on the integrator")
       : result.threshold == 0
@@ -144,7 +145,7 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
            Severity::warning,
            {selected.name},
            fmt::format("with {} {}", solver.finer_words(), what),
-           "use a finer solver, `substeps = 4` or `solver = dopri5`"}};
+           fmt::format("use a finer solver: `{}`{}", solver.finer().option(), other.empty() ? "" : ", or " + other)}};
 }
 
 }  // namespace sysid

@@ -9,7 +9,8 @@ void add_solver(SolverSettings const& solver, Facts& facts) {
   facts.emplace_back("solver", solver.method);
   Settings const values = solver.settings();
   for (SettingRow const& row : solver.row().settings)
-    facts.emplace_back(std::string(row.name), values.all().at(std::string(row.name)));
+    if (auto const value = values.all().find(std::string(row.name)); value != values.all().end())
+      facts.emplace_back(std::string(row.name), value->second);
 }
 
 SolverSettings read_solver(nlohmann::json const& settings) {
@@ -20,7 +21,9 @@ SolverSettings read_solver(nlohmann::json const& settings) {
   for (SettingRow const& each : row->settings) {
     std::string const name(each.name);
     if (!settings.contains(name)) continue;
-    if (each.kind == SettingKind::integer)
+    if (each.kind == SettingKind::flag)
+      values.set(name, settings.at(name).get<bool>());
+    else if (each.kind == SettingKind::integer)
       values.set(name, settings.at(name).get<std::int64_t>());
     else
       values.set(name, settings.at(name).get<double>());

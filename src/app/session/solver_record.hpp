@@ -7,7 +7,7 @@
 
 namespace sysid {
 
-/// Adds `solver` and the settings of its method.
+/// Adds `solver` and the settings of its method; `as_model` where it is set.
 void add_solver(SolverSettings const& solver, Facts& facts);
 
 /// From an object with the names that `add_solver` writes; what is not there has its default.

@@ -4,20 +4,42 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "search/refit.hpp"
 
 namespace sysid {
 namespace {
 
-Finding not_converged(RefinedSolver const& refined) {
-  std::string const help = "if the model is stiff, fit it with `solver = cvode`; it may also be chaotic on this record";
+bool spent(SolverSettings const& solver, Ledger const& ledger) {
+  std::uint64_t count = 0;
+  for (Failure const& each : ledger.failures()) count += each.kind == FailureClass::step_limit ? each.count : 0;
+  return !solver.fixed_step() && 2 * count > ledger.failed();
+}
+
+// A finer solver that fails for want of steps says nothing of the result.
+Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& ledger) {
+  if (!refined.moves.empty() && !std::isfinite(refined.moves.back()) && spent(refined.solver, ledger))
+    return {FindingCode::step_not_settled,
+            Severity::error,
+            {},
+            fmt::format("with {} the simulation of the result needs more steps between two samples than {}",
+                        refined.solver.finer_words(), refined.solver.steps),
+            solver_advice(refined.solver, ledger)};
+  if (refined.widths_alone)
+    return {
+        FindingCode::step_not_settled,
+        optimum ? Severity::error : Severity::warning,
+        {},
+        fmt::format("with {} the modes stay where they are, but the curvature around them has not converged: {} are not reliable",
+                    accuracy(refined.solver), optimum ? "the Laplace sds" : "the Laplace evidence and the weights of modes"),
+        optimum ? "use mh, whose draws do not depend on the curvature" : "the draws do not depend on it"};
   if (!refined.given_up)
     return {FindingCode::step_not_settled,
             Severity::error,
             {},
             fmt::format("the result has not converged with {}", accuracy(refined.solver)),
-            help};
+            settling_advice(refined.solver)};
   return {
       FindingCode::step_not_settled,
       Severity::error,
@@ -25,7 +47,7 @@ Finding not_converged(RefinedSolver const& refined) {
       fmt::format(
           "the result has not converged with {}, and finer ones were not tried: with {} {}, hardly less than with the step before",
           accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
-      help};
+      settling_advice(refined.solver)};
 }
 
 }  // namespace
@@ -41,13 +63,33 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
   preparation.modes = std::move(refined.modes);
   preparation.moves = refined.moves;
   // What looked like several may have been the solver's.
-  if (std::count_if(preparation.modes.begin(), preparation.modes.end(), [](Mode const& each) { return each.share > 0.01; }) < 2)
+  if (std::count_if(preparation.modes.begin(), preparation.modes.end(),
+                    [](Mode const& each) { return each.share > weight_of_interest; }) < 2)
     std::erase_if(preparation.findings, [](Finding const& each) { return each.code == FindingCode::second_mode; });
   if (refined.solver != stated)
     session.notices << fmt::format("{}: {} (with {}, {} with {})\n", task.name, accuracy(refined.solver), accuracy(stated),
                                    moved(preparation.moves.front()), stated.finer_words());
-  if (!refined.converged) preparation.findings.push_back(not_converged(refined));
+  if (!refined.converged)
+    preparation.findings.push_back(not_converged(refined, objective_kind != ObjectiveKind::posterior, context.ledger));
   return true;
+}
+
+std::string settling_advice(SolverSettings const& solver) {
+  bool const stiff = solver.row().stiff;
+  return fmt::format("{}the model may {}be chaotic on this record: fit a shorter stretch of it",
+                     stiff ? "" : fmt::format("if the model is stiff, fit it with `solver = {}`; ", stiff_solver().name),
+                     stiff ? "" : "also ");
+}
+
+std::string solver_advice(SolverSettings const& solver, Ledger const& ledger) {
+  std::string const other = solver.other_methods();
+  if (spent(solver, ledger)) {
+    std::string const more = fmt::format("allow more steps between two samples: `steps` is {}", solver.steps);
+    bool const few = solver.steps < SolverSettings{}.steps;
+    return few || other.empty() ? more : fmt::format("{}, or use {}", more, other);
+  }
+  if (other.empty()) return {};
+  return solver.fixed_step() ? "or let the solver choose its steps: " + other : "or use " + other;
 }
 
 }  // namespace sysid

@@ -13,4 +13,11 @@ namespace sysid {
 bool refine_solver(Session& session, Task const& task, MakeTarget const& make, ObjectiveKind objective_kind,
                    SolverSettings const& stated, Preparation& preparation, RunContext& context);
 
+/// What may help a result that no step of this solver settles.
+std::string settling_advice(SolverSettings const& solver);
+
+/// What may help solves that fail as the ledger says, beside the priors and the equations: more `steps` where these are spent, else
+/// another method than the one in use. Empty where there is nothing to advise.
+std::string solver_advice(SolverSettings const& solver, Ledger const& ledger);
+
 }  // namespace sysid

@@ -29,9 +29,10 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
   Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.options.execution);
   Trajectory::Result const fine = finer.run(parameters, {});
+  char const* const severity = what.solver.as_model ? "" : "warning: ";
   if (fine.failed() > 0) {
-    session.notices << fmt::format("{}: warning: with {} the simulation fails, so the error of this one is not known\n", task.name,
-                                   what.solver.finer_words());
+    session.notices << fmt::format("{}: {}with {} the simulation fails, so the error of this one is not known\n", task.name,
+                                   severity, what.solver.finer_words());
     return;
   }
   double const tolerable = what.noise_fraction > 0 ? 0.1 * what.noise_fraction : 1e-3;
@@ -41,10 +42,16 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= fine.values[q][0][i];
     double const share = std::sqrt(population_variance(difference)) / std::sqrt(population_variance(fine.values[q][0]));
     if (share > tolerable)
-      session.notices << fmt::format("{}: warning: with {} {} changes by {:.2g} % of its size; add `{}` or finer\n", task.name,
+      session.notices << fmt::format("{}: {}with {} {} changes by {:.2g} % of its size{}\n", task.name, severity,
                                      what.solver.finer_words(), finer.quantities()[q].name, 100 * share,
-                                     what.solver.finer().option());
+                                     what.solver.as_model ? "; the solver is part of the model"
+                                                          : fmt::format("; add `{}` or finer", what.solver.finer().option()));
   }
+}
+
+SolverSettings smaller_steps(SolverSettings solver) {
+  solver.substeps = std::min(10 * solver.substeps, 10000);
+  return solver;
 }
 
 // "does not stay finite: `y^3` (duffing.sysid:10:27) at t = 0.1 s"; the place is left out when the failure cannot be repeated.
@@ -244,7 +251,12 @@ class Simulate {
       throw failed(
           fmt::format("the simulation `{}` {}", task_.name,
                       functions_ ? "does not stay finite" : first_failure(session_, what_, *compiled_, experiment_, parameters_)),
-          "use smaller steps (substeps = 10), `solver = cvode` if the model is stiff, or other values");
+          what_.solver.fixed_step() ? fmt::format("use smaller steps (`{}`), {}, or other values",
+                                                  smaller_steps(what_.solver).option(), what_.solver.other_methods())
+          : what_.solver.other_methods().empty()
+              ? fmt::format("use other values, or more `steps`, which are {}", what_.solver.steps)
+              : fmt::format("use {}, more `steps`, which are {}, or other values", what_.solver.other_methods(),
+                            what_.solver.steps));
     for (auto const& channel : result.noisy)
       for (auto const& values : channel)
         if (what_.noise_fraction < 0 && std::any_of(values.begin(), values.end(), [](double y) { return std::isnan(y); }))

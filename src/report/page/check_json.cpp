@@ -79,6 +79,9 @@ Json prior_object(PriorPage const& prior) {
   return {{"draws", prior.draws},
           {"failed", prior.failed},
           {"failed_as_stated", prior.failed_as_stated},
+          {"failed_explicit", prior.failed_explicit},
+          {"stiff_tried", prior.stiff_tried},
+          {"stiff_followed", prior.stiff_followed},
           {"failures", failures},
           {"failures_not_traced", prior.untraced},
           {"channels", channels}};
@@ -105,6 +108,7 @@ Json information_object(InformationPage const& page) {
           {"solvers", moves},
           {"taken_solver", page.taken},
           {"advised_solver", page.advised},
+          {"found_move_sd", page.found_move ? Json(*page.found_move) : Json(nullptr)},
           {"response_move", page.response_move ? Json(*page.response_move) : Json(nullptr)}};
 }
 

@@ -108,11 +108,22 @@ std::string coverage_text(CoveragePage const& data) {
   return entry("data", lines);
 }
 
+// With the task's own solver, and what others make of the draws that it loses.
+std::string failures_text(PriorPage const& prior) {
+  if (prior.failed_as_stated == 0) return fmt::format("{} draws, all simulations are finite", prior.draws);
+  std::string const fail = fmt::format("{} of {} simulations fail", prior.failed_as_stated, prior.draws);
+  if (prior.failed >= prior.failed_as_stated) return fail;
+  std::string text = fmt::format("{} with {}", fail, prior.stated);
+  if (!prior.explicit_solver.empty()) text += fmt::format(", {} with {}", prior.failed_explicit, prior.explicit_solver);
+  if (prior.stiff_tried > 0)
+    text += fmt::format(", {}{} with {}", prior.stiff_tried < prior.stiff_left ? "about " : "", prior.failed, prior.stiff_solver);
+  return text + fmt::format(": {} for {} of them",
+                            prior.spent ? "it needs more steps between two samples" : "its steps are too long",
+                            prior.failed_as_stated - prior.failed);
+}
+
 std::string prior_text(PriorPage const& prior, std::string const& time_unit, double time_scale) {
-  std::vector<std::string> lines = {prior.failed == 0 ? fmt::format("{} draws, all simulations are finite", prior.draws)
-                                                      : fmt::format("{} of {} simulations fail", prior.failed, prior.draws)};
-  if (prior.failed_as_stated > prior.failed)
-    lines.push_back(fmt::format("with {} {} of them fail, because its steps are too long", prior.stated, prior.failed_as_stated));
+  std::vector<std::string> lines = {failures_text(prior)};
   for (Failure const& failure : prior.failures)
     lines.push_back(fmt::format("  {} x {}: {} (first at t = {} {})", failure.count, name(failure.kind), failure.where,
                                 significant(failure.time / time_scale, 4), time_unit));
@@ -157,6 +168,9 @@ std::string information_text(InformationPage const& page) {
                          page.advised.empty() ? "none of these is accurate enough"
                          : page.taken.empty() ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
                                               : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
+  if (page.found_move)
+    out += entry("", {fmt::format("a mode found from these draws with {} moves by {} sd with {}", page.moves.front().first,
+                                  significant(*page.found_move, 2), page.refinement)});
   if (page.response_move && std::isfinite(*page.response_move))
     out += entry("", {fmt::format("the median response changes by {} % of its sd with {}, an nmse of {}",
                                   significant(100 * *page.response_move, 2), page.refinement,

@@ -1,6 +1,7 @@
 // `sysid check`: silent on what is sound, and naming what is planted: null directions, wild priors, coarse steps, data that are not
 // there. SYSID_BLESS=1 rewrites the recorded pages.
 #include "app/preflight/check_file.hpp"
+#include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "report/page/check_page.hpp"
 
@@ -119,7 +120,7 @@ TEST_CASE("steps too long for a prior's fast end are not a failing model; stated
   PriorPage const& prior = *preflight(chosen, "posterior").prior;
   CHECK(prior.failed_as_stated > 64);
   CHECK(prior.failed < 26);
-  CHECK(check_text(chosen.page).find("because its steps are too long") != std::string::npos);
+  CHECK(check_text(chosen.page).find("its steps are too long for") != std::string::npos);
   CHECK(check_text(chosen.page).find("one every 7 day") != std::string::npos);
   CheckResult const stated =
       checked(models / "sir/sir.sysid", with(shipped("sir/sir.sysid"), "chains = 4), seed", "chains = 4), substeps = 1, seed"));
@@ -477,6 +478,61 @@ TEST_CASE("steps that the file states too coarse raise a warning with a number t
   InformationPage const& information = *preflight(result, "posterior").information;
   CHECK(information.moves.size() > 1);
   CHECK_FALSE(information.advised.empty());
+  REQUIRE(information.found_move);
+  CHECK(*information.found_move > tolerable_move);
+}
+
+TEST_CASE("steps that only draws of the prior find too coarse are no warning, and the page says what a mode does") {
+  // The record is that of slower motion than most of the prior's, and one step a sample suffices for it.
+  std::string const text = with(shipped("two_mass/two_mass.sysid"), "chains = 4), seed", "chains = 4), substeps = 1, seed");
+  CheckResult const result = checked(models / "two_mass/stated.sysid", text);
+  InformationPage const& information = *preflight(result, "posterior").information;
+  REQUIRE_FALSE(information.moves.empty());
+  CHECK(information.moves.front().second > tolerable_move);
+  CHECK(messages(result, "integration_step").empty());
+  REQUIRE(information.found_move);
+  CHECK(*information.found_move <= tolerable_move);
+  CHECK(check_text(result.page).find("a mode found from these draws with rk4(substeps = 1) moves by") != std::string::npos);
+}
+
+TEST_CASE("a prior that explicit steps cannot follow is called stiff, and the solver that follows it is named") {
+  std::string const stated = shipped("robertson/robertson.sysid");
+  std::string const explicit_steps = with(stated, "with map, solver = cvode(relative = 1e-6)", "with map, solver = rk4");
+  REQUIRE(messages(checked(models / "robertson/explicit.sysid", explicit_steps), "stiff_prior").size() >= 1);
+  CHECK(messages(checked(models / "robertson/explicit.sysid", explicit_steps), "stiff_prior")[0].find("cvode follows") !=
+        std::string::npos);
+  CHECK(messages(checked(models / "robertson/stated.sysid", stated), "stiff_prior").empty());
+  CHECK(messages(checked(models / "duffing/duffing.sysid", shipped("duffing/duffing.sysid")), "stiff_prior").empty());
+}
+
+TEST_CASE("a solver for implicit equations is noted where they are explicit") {
+  auto const with_solver = [](std::string const& solver) {
+    return checked(models / "duffing/solver.sysid",
+                   with(shipped("duffing/duffing.sysid"), "chains = 4), seed", "chains = 4), solver = " + solver + ", seed"));
+  };
+  CHECK(messages(with_solver("ida"), "slower_solver").size() == 1);
+  CHECK(messages(with_solver("cvode"), "slower_solver").empty());
+  // A constraint is kept as it stands by ida alone.
+  CheckResult const pendulum = checked(models / "pendulum/pendulum.sysid", shipped("pendulum/pendulum.sysid"));
+  CHECK(messages(pendulum, "slower_solver").empty());
+}
+
+TEST_CASE("simulations that fail and those that are finite add up to the draws") {
+  CheckResult const result = checked(models / "silverbox/silverbox.sysid", shipped("silverbox/silverbox.sysid"));
+  std::string const page = check_text(result.page);
+  CHECK(page.find("all simulations are finite") == std::string::npos);
+  CHECK(
+      page.find(
+          "4 of 128 simulations fail with rk4(substeps = 1), 3 with dopri5, 3 with cvode: its steps are too long for 1 of them") !=
+      std::string::npos);
+}
+
+TEST_CASE("a solver with too few steps is advised more of them, and not itself") {
+  CheckResult const result = checked(models / "duffing/spent.sysid", with(shipped("duffing/duffing.sysid"), "chains = 4), seed",
+                                                                          "chains = 4), solver = dopri5(steps = 1), seed"));
+  REQUIRE(messages(result, "integration_step").size() == 1);
+  CHECK(messages(result, "integration_step")[0].find("need more steps between two samples") != std::string::npos);
+  CHECK(messages(result, "stiff_prior").empty());
 }
 
 TEST_CASE("what is wrong with the data of several tasks is said at once, and the sound tasks are still looked at") {

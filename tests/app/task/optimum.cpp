@@ -92,6 +92,37 @@ posterior = fit swing to record with map, solver = dopri5(relative = 1e-5), seed
   CHECK_FALSE(found(told("1e-11", "tight"), "integration_step"));
 }
 
+TEST_CASE("an integrator that is part of the model is reported; one that is not fails") {
+  auto const severity_of = [](Told const& told) {
+    for (json const& finding : told.fit.at("findings"))
+      if (finding.at("code") == "integration_step") return finding.at("severity").get<std::string>();
+    return std::string("none");
+  };
+  Told const declared = run_optimum(optimum_of(", solver = euler(substeps = 1, as_model = yes)"));
+  CHECK(declared.run.exit == 0);
+  CHECK(severity_of(declared) == "note");
+  CHECK(declared.fit.at("settings").at("as_model") == true);
+  Told const stated = run_optimum(optimum_of(", solver = euler(substeps = 1)"));
+  CHECK(stated.run.exit == 1);
+  CHECK(severity_of(stated) == "error");
+  CHECK_FALSE(stated.fit.at("settings").contains("as_model"));
+  // Without a statement the guard still chooses.
+  Told const chosen = run_optimum(optimum_of(", solver = heun(as_model = no)"));
+  CHECK(severity_of(chosen) == "none");
+  CHECK(chosen.fit.at("settings").at("substeps") == 8);
+}
+
+TEST_CASE("a solver that has spent its steps is advised more of them, and no other method") {
+  Told const spent = run_optimum(optimum_of(", solver = dopri5(steps = 1)"));
+  CHECK(spent.run.exit == 1);
+  for (json const& finding : spent.fit.at("findings"))
+    if (finding.at("code") == "step_not_settled") {
+      CHECK(finding.at("help").get<std::string>().find("`steps` is 1") != std::string::npos);
+      CHECK(finding.at("help").get<std::string>().find("cvode") == std::string::npos);
+    }
+  CHECK(found(spent.fit, "step_not_settled"));
+}
+
 TEST_CASE("a parameter that nothing uses is said once, and the direction it leaves flat by its name") {
   std::string const text = with(optimum_of(""), "  parameter c ", "  parameter idle ~ normal(0, sd = 1)\n  parameter c ");
   std::string const used = text.substr(0, text.find("\ntruth")) + text.substr(text.find("\nposterior"));
