@@ -38,6 +38,8 @@ class Table {
 
  private:
   std::string_view cell(int row, int column) const;
+  /// Whether numbers stand below the names. Of another file, which a model of somebody else may name, no message quotes anything.
+  bool is_record() const;
 
   std::string name_, bytes_, digest_;
   std::vector<std::string> columns_, comments_;
