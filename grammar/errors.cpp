@@ -139,6 +139,11 @@ Diagnostic tilde_without_keyword(Span where) {
                "begin the statement with `parameter` for a prior, with `observe` for measured data");
 }
 
+Diagnostic other_file(Span begin, std::string const& name, std::string_view kind) {
+  return error("E1128", begin, fmt::format("`{}` is not a .sysid file: it looks like {}", name, kind),
+               "give the .sysid file; a record is named in it: `data bench { file \"bench.csv\" ... }`");
+}
+
 Diagnostic stray_byte(Span where, unsigned char byte) {
   if (byte >= 0x80U)
     return error("E1115", where, fmt::format("the byte 0x{:02x} is not valid UTF-8", byte), "save the file as UTF-8");

@@ -46,6 +46,8 @@ Diagnostic tilde_missing(Span where, std::string_view keyword, std::string_view 
 /// E1114: `m ~ normal(0, 1)` without its keyword.
 Diagnostic tilde_without_keyword(Span where);
 /// E1115
+/// begin: of its first line; kind: as `other_kind` has it.
+Diagnostic other_file(Span begin, std::string const& name, std::string_view kind);
 Diagnostic stray_byte(Span where, unsigned char byte);
 /// E1116: `×` where `*` is meant.
 Diagnostic look_alike(Span where, std::string_view found, std::string_view meant);

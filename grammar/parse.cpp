@@ -11,6 +11,7 @@
 #include "grammar/errors.hpp"
 #include "grammar/model.hpp"
 #include "grammar/task.hpp"
+#include "syntax/other_file.hpp"
 
 namespace sysid {
 
@@ -89,13 +90,40 @@ void erase_unread(std::vector<Node>& nodes, std::vector<Span> const& unread) {
 
 }  // namespace grammar
 
+namespace {
+
+constexpr std::size_t most_marked = 60;
+
+/// Of a file of another kind one message, in place of one for each line.
+bool is_other_file(Source const& source, Diagnostics& diagnostics) {
+  std::string_view const kind = other_kind(source.text());
+  if (kind.empty()) return false;
+  std::string_view const line = source.text().substr(0, source.text().find_first_of("\r\n"));
+  bool const text = std::all_of(line.begin(), line.end(), [](char c) { return c == '\t' || (c >= ' ' && c <= '~'); });
+  Span const mark{0, static_cast<std::uint32_t>(std::min<std::size_t>(line.size(), text ? most_marked : 1))};
+  diagnostics.add(grammar::errors::other_file(mark, source.name(), kind));
+  return true;
+}
+
+void add_all(Diagnostics const& found, Diagnostics& diagnostics) {
+  for (Diagnostic const& each : found.all()) diagnostics.add(each);
+}
+
+}  // namespace
+
 std::optional<ast::File> parse(Source const& source, Diagnostics& diagnostics) {
-  auto reading = grammar::read_all(grammar::file, source, diagnostics);
+  Diagnostics found;
+  auto reading = grammar::read_all(grammar::file, source, found);
+  if (!reading.complete && is_other_file(source, diagnostics)) return std::nullopt;
+  add_all(found, diagnostics);
   return reading.complete ? std::optional(std::move(reading.tree)) : std::nullopt;
 }
 
 ReadableFile parse_readable(Source const& source, Diagnostics& diagnostics) {
-  auto reading = grammar::read_all(grammar::file, source, diagnostics);
+  Diagnostics found;
+  auto reading = grammar::read_all(grammar::file, source, found);
+  if (!reading.complete && is_other_file(source, diagnostics)) return {};
+  add_all(found, diagnostics);
   if (reading.complete) return {std::move(reading.tree), {}};
   if (reading.open_end) return {std::nullopt, std::move(reading.unread)};
   grammar::erase_unread(reading.tree.items, reading.unread);

@@ -222,7 +222,7 @@ void Offer::columns() {
 
 void Offer::columns_of(std::string const& file) {
   try {
-    std::string bytes = read_file(folder() / file, most_of_header);
+    std::string bytes = read_regular_file(folder() / file, most_of_header);
     bytes.resize(std::min(bytes.size(), most_of_header));
     if (bytes.size() == most_of_header) bytes.resize(bytes.rfind('\n') == std::string::npos ? 0 : bytes.rfind('\n') + 1);
     Table const table = Table::parse(file, std::move(bytes));

@@ -86,7 +86,7 @@ class Neighbours {
     if (auto const known = texts_.find(path); known != texts_.end()) return &known->second;
     std::optional<std::string> text = unsaved_ ? unsaved_(path) : std::nullopt;
     try {
-      if (!text) text = read_file(path, most_text_bytes + 1);
+      if (!text) text = read_regular_file(path, most_text_bytes + 1);
     } catch (IoError const&) {
       return nullptr;
     }
@@ -148,7 +148,7 @@ std::string changed_meaning(Reading const& before, Reading const& after, FileEdi
 
 std::string text_of_file(std::string const& path) {
   try {
-    return read_file(path, most_text_bytes + 1);
+    return read_regular_file(path, most_text_bytes + 1);
   } catch (IoError const&) {
     return {};
   }

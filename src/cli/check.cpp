@@ -52,7 +52,7 @@ Work declare_check(CLI::App& verb) {
   options->run.execution.threads = 0;
   add_file(verb, options->file);
   add_output(verb, options->run.output);
-  verb.add_option("--seed", options->run.seed, "seed of the prior draws, in place of the one in the file")->type_name("N");
+  add_seed(verb, options->run.seed, "seed of the prior draws, in place of the one in the file");
   return [options](Messages const& messages) { return check(messages, *options); };
 }
 

@@ -32,4 +32,7 @@ Work declare_document(CLI::App& verb);
 Work declare_lsp(CLI::App& verb);
 Work declare_version(CLI::App& verb);
 
+/// "sysid 1.2 (AVX-512)" and a line end.
+std::string version_text();
+
 }  // namespace sysid::cli

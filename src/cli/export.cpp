@@ -132,6 +132,7 @@ Work declare_export(CLI::App& verb) {
   CLI::Option* const output =
       verb.add_option("-o,--output", options->output, "folder for the programs of a .sysid file, each in its task's folder")
           ->type_name("FOLDER")
+          ->check(refuse_no_path)
           ->default_str(options->run.output.string());
   verb.add_option("--model", options->model, "the .sysid file of the results (default: the one they were made from)")
       ->type_name("FILE");

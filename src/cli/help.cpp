@@ -95,8 +95,9 @@ std::string verb_page(CLI::App const& verb) {
     if (positional(*option)) usage += " " + usage_of(*option);
   }
   // Those of the program work behind the verb, too.
-  for (CLI::Option const* option : verb.get_parent()->get_options())
-    if (option != verb.get_parent()->get_help_ptr()) options.push_back(row_of(*option));
+  CLI::App const& program = *verb.get_parent();
+  for (CLI::Option const* option : program.get_options())
+    if (option != program.get_help_ptr() && option != program.get_version_ptr()) options.push_back(row_of(*option));
   std::rotate(options.begin(), options.begin() + 1, options.end());  // --help last
   std::string out = fmt::format("sysid {}: {}\n\nUsage: {} [OPTIONS]\n", verb.get_name(), verb.get_description(), usage);
   if (!arguments.empty()) out += "\n" + table(arguments);

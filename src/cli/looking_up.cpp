@@ -7,7 +7,9 @@
 #include "app/catalogue/module_page.hpp"
 #include "cli/command.hpp"
 #include "core/numeric/instruction_set.hpp"
+#include "core/text/diagnostic.hpp"
 #include "core/text/wrapped.hpp"
+#include "load/modules.hpp"
 
 namespace sysid::cli {
 namespace {
@@ -18,9 +20,12 @@ ExitCode print(std::string const& text, std::string (*laid_out)(std::string_view
   return ExitCode::success;
 }
 
-/// what: "message E9999"; verb: the one that lists all there are.
-ExitCode unknown(Messages const& messages, std::string const& what, char const* verb) {
-  messages.complain(fmt::format("there is no {}", what), fmt::format("`sysid {}` lists all", verb));
+/// what: "message"; verb: the one that lists all there are, which are `known`.
+ExitCode unknown(Messages const& messages, char const* what, std::string const& name, std::vector<std::string> const& known,
+                 char const* verb) {
+  std::string const guess = did_you_mean(name, known);
+  messages.complain(fmt::format("there is no {} {}", what, name),
+                    fmt::format("{}{}`sysid {}` lists all", guess, guess.empty() ? "" : " ", verb));
   return ExitCode::usage;
 }
 
@@ -40,7 +45,7 @@ Work declare_explain(CLI::App& verb) {
   return [code](Messages const& messages) {
     if (code->empty()) return print(list_codes(), &wrapped_rows);
     std::optional<std::string> const page = explain(*code);
-    return page ? print(*page, &filled) : unknown(messages, "message " + *code, "explain");
+    return page ? print(*page, &filled) : unknown(messages, "message", *code, codes(), "explain");
   };
 }
 
@@ -49,12 +54,16 @@ Work declare_document(CLI::App& verb) {
   verb.add_option("MODULE", *module, "a module of `sysid list modules`")->required();
   return [module](Messages const& messages) {
     auto const page = module_page(*module);
-    return page ? print(*page, &filled) : unknown(messages, "module " + *module, "list modules");
+    std::vector<std::string> module_names;
+    for (LibraryModule const& each : library_modules()) module_names.emplace_back(each.name);
+    return page ? print(*page, &filled) : unknown(messages, "module", *module, module_names, "list modules");
   };
 }
 
+std::string version_text() { return fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())); }
+
 Work declare_version(CLI::App&) {
-  return [](Messages const&) { return print(fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())), &wrapped); };
+  return [](Messages const&) { return print(version_text(), &wrapped); };
 }
 
 }  // namespace sysid::cli

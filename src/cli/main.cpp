@@ -55,11 +55,12 @@ ExitCode main(int argument_count, char** arguments) {
   Messages messages;
   if (!supported_instruction_set()) {
     messages.complain("this processor lacks AVX2 and FMA (x86-64-v3), which sysid needs");
-    return ExitCode::internal;
+    return ExitCode::io;
   }
   CLI::App app{"sysid: Bayesian identification of nonlinear systems, from equations written as on paper"};
   app.formatter(std::make_shared<HelpPages>());
   app.set_help_flag("-h,--help", "print this page");
+  app.set_version_flag("--version", &version_text, "print the version");
   app.require_subcommand(1)->fallthrough()->footer("sysid run models/duffing/duffing.sysid\nsysid report results");
   app.add_option_function<std::string>(
          "--error-format", [&](std::string const& format) { messages.json = format == "json"; }, "format of messages: text or json")
@@ -73,11 +74,13 @@ ExitCode main(int argument_count, char** arguments) {
     app.parse(argument_count, arguments);
   } catch (CLI::CallForHelp const&) {
     std::cout << app.help();
+  } catch (CLI::CallForVersion const&) {
+    std::cout << version_text();
   } catch (CLI::ParseError const& error) {
     return misread(messages, app, error);
   }
   std::cout.flush();
-  if (!std::cout) {
+  if (!std::cout && exit != ExitCode::interrupted) {  // a terminal that is gone takes no output
     messages.complain("cannot write to standard output");
     return ExitCode::io;
   }

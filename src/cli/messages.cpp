@@ -8,6 +8,7 @@
 
 #include "core/system/colour.hpp"
 #include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
 #include "experiment/experiments.hpp"
 #include "syntax/parse.hpp"
@@ -43,9 +44,14 @@ ExitCode guarded(Messages const& messages, Source const& source, std::function<E
   } catch (IoError const& error) {
     messages.complain(error.what(), error.help());
     return ExitCode::io;
+  } catch (std::filesystem::filesystem_error const& error) {
+    messages.complain(path_error(error).what(), path_error(error).help());
+    return ExitCode::io;
+  } catch (Interrupted const&) {
+    return ExitCode::interrupted;
   } catch (std::bad_alloc const&) {
-    messages.complain("out of memory");
-    return ExitCode::internal;
+    messages.complain("out of memory", "use a shorter record, fewer draws or fewer threads, or a machine with more memory");
+    return ExitCode::io;
   } catch (std::exception const& error) {
     messages.complain(fmt::format("this is an error in sysid, not in your file: {}", error.what()),
                       "please report it with the file that causes it");

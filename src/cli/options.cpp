@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
 
 #include "report/figure/figure_format.hpp"
 
@@ -30,12 +33,37 @@ std::vector<FigureFormat> figure_formats(std::vector<std::string> const& names) 
   return formats;
 }
 
+std::string refuse_seed(std::string const& text) {
+  std::uint64_t seed = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error == std::errc() && end == text.data() + text.size()) return "";
+  return fmt::format("a seed is a whole number from 0 to {}, not `{}`", std::numeric_limits<std::uint64_t>::max(), text);
+}
+
 }  // namespace
+
+std::string refuse_no_path(std::string const& path) {
+  return path.empty() ? "the path is empty; `.` is the folder in which you are" : "";
+}
+
+std::string refuse_no_duration(std::string const& text) {
+  double seconds = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (error == std::errc() && end == text.data() + text.size() && seconds > 0 && std::isfinite(seconds)) return "";
+  return fmt::format("a time is a positive number of seconds, not `{}`", text);
+}
+
+void add_seed(CLI::App& verb, std::optional<std::uint64_t>& seed, char const* help) {
+  verb.add_option("--seed", seed, help)->type_name("N")->check(refuse_seed);
+}
 
 void add_file(CLI::App& verb, std::string& file) { verb.add_option("FILE", file, "the .sysid file")->required(); }
 
 void add_output(CLI::App& verb, std::filesystem::path& folder) {
-  verb.add_option("-o,--output", folder, "the folder for results")->type_name("FOLDER")->default_str(folder.string());
+  verb.add_option("-o,--output", folder, "the folder for results")
+      ->type_name("FOLDER")
+      ->check(refuse_no_path)
+      ->default_str(folder.string());
 }
 
 void add_threads(CLI::App& verb, int& threads) {

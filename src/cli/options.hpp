@@ -8,8 +8,13 @@ namespace sysid::cli {
 
 void add_file(CLI::App& verb, std::string& file);
 void add_output(CLI::App& verb, std::filesystem::path& folder);
+void add_seed(CLI::App& verb, std::optional<std::uint64_t>& seed, char const* help);
 void add_threads(CLI::App& verb, int& threads);
 /// --figures and --no-figures; without: that there are none.
 void add_figures(CLI::App& verb, RunOptions& run, char const* without);
+
+// Checks of values: why one is refused, or empty.
+std::string refuse_no_path(std::string const& path);
+std::string refuse_no_duration(std::string const& text);
 
 }  // namespace sysid::cli

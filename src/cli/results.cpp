@@ -31,7 +31,9 @@ Work declare_report(CLI::App& verb) {
   auto const options = std::make_shared<Options>();
   options->run.figure_formats.clear();  // drawn anew where they are asked for
   verb.add_option("FOLDER", options->folder, "folder of a task or of a whole run")->required();
-  verb.add_option("-o,--output", options->page, "the page to write (default: report.html in the folder)")->type_name("FILE");
+  verb.add_option("-o,--output", options->page, "the page to write (default: report.html in the folder)")
+      ->type_name("FILE")
+      ->check(refuse_no_path);
   add_figures(verb, options->run, "write no figures");
   return [options](Messages const&) {
     if (!options->run.figure_formats.empty()) redraw_figures(options->folder, options->run.figure_formats);

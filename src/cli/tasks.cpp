@@ -32,7 +32,7 @@ void add_run_options(CLI::App& verb, TaskOptions& options) {
   add_output(verb, options.run.output);
   verb.add_flag("--force", options.run.force, "replace existing results");
   verb.add_flag("--resume", options.run.resume, "continue after an interruption; keep tasks that are complete");
-  verb.add_option("--seed", options.run.seed, "seed of all random numbers, in place of those in the file")->type_name("N");
+  add_seed(verb, options.run.seed, "seed of all random numbers, in place of those in the file");
   verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
   add_figures(verb, options.run, "write figures as scripts only");
   options.run.execution.threads = 0;
@@ -48,7 +48,7 @@ void add_run_options(CLI::App& verb, TaskOptions& options) {
       ->check(refuse_instruction_set);
   verb.add_option("--checkpoint-interval", options.run.checkpoint_interval, "time between checkpoints")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
+      ->check(refuse_no_duration)
       ->default_str("30");
   verb.add_option("--interrupt-after", options.run.interrupt_after, "interrupt the run at the n-th safe point")->group("");
   verb.add_option("--dump", options.dump, "print a stage of the compiler and run nothing: ast, flat, model or program")

@@ -88,12 +88,10 @@ Diagnostic no_header(std::string const& file, Mention mention) {
                "the first line must name the columns, for example `t,force,y`");
 }
 
-Diagnostic header_of_numbers(std::string const& file, int line, std::string_view first_name, bool after_comment, Mention mention) {
-  return error(
-      "E4002", mention,
-      fmt::format("line {} of `{}` should name the columns but begins with the number `{}`", line, file, shown(first_name)),
-      after_comment ? "lines that begin with `#` are comments: name the columns on a line without `#`"
-                    : "put a line with the names of the columns above the numbers");
+Diagnostic header_of_numbers(std::string const& file, int line, bool after_comment, Mention mention) {
+  return error("E4002", mention, fmt::format("line {} of `{}` should name the columns but begins with a number", line, file),
+               after_comment ? "lines that begin with `#` are comments: name the columns on a line without `#`"
+                             : "put a line with the names of the columns above the numbers");
 }
 
 Diagnostic not_text(std::string const& file, Mention mention) {
@@ -118,13 +116,21 @@ Diagnostic comment_in_data(std::string const& file, int row, int line, Mention m
                "comments are allowed only above the header");
 }
 
+Diagnostic too_many_rows(std::string const& file, int most, Mention mention) {
+  return error("E4020", mention, fmt::format("`{}` has more than {} rows", file, most), "cut the record into several files");
+}
+
 Diagnostic too_few_rows(std::string const& file, int rows, Mention mention) {
   return error("E4007", mention, fmt::format("`{}` has {}", file, rows == 0 ? "no rows" : counted(rows, "row")),
                "a record needs at least 2 rows");
 }
 
-Diagnostic missing_column(std::string const& file, std::string const& column, std::vector<std::string> const& known,
+Diagnostic missing_column(std::string const& file, std::string const& column, std::vector<std::string> const& known, bool quote,
                           Mention mention) {
+  if (!quote)
+    return error("E4008", mention, fmt::format("`{}` has no column `{}`", file, column),
+                 "the file has no numbers below its first line: check that it is the record, with the names of its columns on the "
+                 "first line");
   std::string help = did_you_mean(column, known);
   if (help.empty() && known.size() == 1 && known[0].find(' ') != std::string::npos)
     help = "columns are separated by commas, semicolons or tabs, not by blanks";
@@ -138,7 +144,10 @@ Diagnostic repeated_column(std::string const& file, std::string const& column, M
                "give the columns different names");
 }
 
-Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention) {
+Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Mention mention) {
+  if (!quote)
+    return error("E4010", mention, fmt::format("{} holds a text, not a number", place(cell)),
+                 "choose a column of numbers; a missing sample of a measured column is an empty cell or NA");
   bool const decimal_comma =
       std::count(text.begin(), text.end(), ',') == 1 && text.find_first_not_of("\"0123456789+-eE,") == std::string_view::npos;
   std::string const grouped = without_groups(text);

@@ -22,18 +22,21 @@ struct Cell {
 
 // the file as a table
 Diagnostic no_header(std::string const& file, Mention mention);
-Diagnostic header_of_numbers(std::string const& file, int line, std::string_view first_name, bool after_comment, Mention mention);
+Diagnostic header_of_numbers(std::string const& file, int line, bool after_comment, Mention mention);
 Diagnostic not_text(std::string const& file, Mention mention);
 Diagnostic open_quote(std::string const& file, int line, Mention mention);
 Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention);
+Diagnostic too_many_rows(std::string const& file, int most, Mention mention);
 Diagnostic too_few_rows(std::string const& file, int rows, Mention mention);
 
 // columns and cells
-Diagnostic missing_column(std::string const& file, std::string const& column, std::vector<std::string> const& known,
+/// quote: whether the names of the file may be shown.
+Diagnostic missing_column(std::string const& file, std::string const& column, std::vector<std::string> const& known, bool quote,
                           Mention mention);
 Diagnostic repeated_column(std::string const& file, std::string const& column, Mention mention);
-Diagnostic not_a_number(Cell const& cell, std::string_view text, Mention mention);
+/// quote: whether the cell may be shown.
+Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Mention mention);
 /// E4010: text in each cell of the first row: the units, as some programs write them.
 Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention);
 /// E4002: `sep=|`.

@@ -1,6 +1,8 @@
 // Reads CSV strictly. One pass finds where every cell begins; numbers are parsed when a column is asked for.
 #include "data/table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -9,11 +11,17 @@
 
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/system/memory.hpp"
 #include "core/text/words.hpp"
 #include "data/file_errors.hpp"
 
 namespace sysid {
 namespace {
+
+constexpr int many = 1 << 16;          // rows between two looks at the signals
+constexpr double large = 1e8;          // bytes: of less nobody runs out of memory
+constexpr double memory_per_byte = 3;  // of a file: its text, where its cells begin, its numbers
 
 constexpr std::string_view blanks = " \t";  // within a cell a line end is text
 
@@ -157,6 +165,14 @@ std::optional<std::string_view> stated_separator(std::string_view line) {
   return line.size() == 5 || trimmed(line, blanks).size() == 5 ? std::optional(line.substr(4)) : std::nullopt;
 }
 
+/// Such as `1,5` or `3.2 V`, `n/a` or `#REF!`: what stands in the place of a number, and no word of a text.
+bool like_a_number(std::string_view cell) {
+  constexpr std::size_t short_word = 5;
+  return cell.size() <= short_word ||
+         (cell.find_first_of("0123456789") == cell.find_first_not_of("+-.,( ") &&
+          cell.find_first_not_of("0123456789+-.,eE:/%() ") >= cell.size() - std::min<std::size_t>(3, cell.size()));
+}
+
 bool all_numbers(std::vector<std::string> const& names) {
   return std::all_of(names.begin(), names.end(), [](std::string const& name) {
     double ignored = 0;
@@ -166,7 +182,18 @@ bool all_numbers(std::vector<std::string> const& names) {
 
 }  // namespace
 
-Table Table::read(std::string const& path, std::optional<Span> mention) { return parse(path, read_file(path), mention); }
+Table Table::read(std::string const& path, std::optional<Span> mention) {
+  double const size = static_cast<double>(regular_file_size(path));
+  if (size > large) try {
+      require_memory(fmt::format("reading `{}`", path), memory_per_byte * size,
+                     "cut the record, or leave out columns that nothing reads");
+    } catch (UserError const& error) {
+      Diagnostic placed = error.diagnostic();
+      if (mention) placed.primary = Label{*mention, {}};
+      throw UserError(std::move(placed));
+    }
+  return parse(path, read_regular_file(path), mention);
+}
 
 Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention) {
   Table table;
@@ -197,14 +224,15 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
   });
   if (!closed) throw UserError(data_errors::open_quote(table.name_, line.number, mention));
   if (all_numbers(table.columns_))
-    throw UserError(
-        data_errors::header_of_numbers(table.name_, line.number, table.columns_.front(), !table.comments_.empty(), mention));
+    throw UserError(data_errors::header_of_numbers(table.name_, line.number, !table.comments_.empty(), mention));
 
   int const columns = static_cast<int>(table.columns_.size());
   int empty_lines = 0;  // not rows when they end the file
   auto const add_row = [&](std::size_t begin, std::size_t end, int number) {
     int cells = 0;
-    ++table.rows_;
+    if (table.rows_ == std::numeric_limits<int>::max())
+      throw UserError(data_errors::too_many_rows(table.name_, table.rows_, mention));
+    if (++table.rows_ % many == 0) stop_if_interrupted();
     closed = split(table.bytes_, begin, end, separator, [&](std::size_t cell_begin, std::size_t) {
       if (++cells <= columns) table.cells_.push_back(cell_begin);
     });
@@ -246,18 +274,34 @@ bool Table::names_units() const {
   return numbers_follow;
 }
 
+bool Table::is_record() const {
+  constexpr int looked_at = 10;
+  for (int row = 1; row <= std::min(rows_, looked_at); ++row)
+    for (int column = 0; column < static_cast<int>(columns_.size()); ++column)
+      if (std::string_view const text = cell(row, column);
+          text.find_first_of("0123456789") != text.npos && text.find_first_not_of("0123456789+-.,eE \t\"") == text.npos)
+        return true;  // a number, or several where the separator is not the one that the table was read with
+  return false;
+}
+
 std::vector<double> Table::numbers(std::string const& column, std::optional<Span> mention) const {
   auto const found = std::find(columns_.begin(), columns_.end(), column);
-  if (found == columns_.end() || column.empty()) throw UserError(data_errors::missing_column(name_, column, columns_, mention));
+  if (found == columns_.end() || column.empty())
+    throw UserError(data_errors::missing_column(name_, column, columns_, is_record(), mention));
   if (std::find(found + 1, columns_.end(), column) != columns_.end())
     throw UserError(data_errors::repeated_column(name_, column, mention));
   int const index = static_cast<int>(found - columns_.begin());
   std::vector<double> values(static_cast<std::size_t>(rows_));
+  bool any = false;  // numbers so far
   for (int row = 1; row <= rows_; ++row) {
+    if (row % many == 0) stop_if_interrupted();
     double& value = values[static_cast<std::size_t>(row - 1)];
     std::string_view const text = cell(row, index);
     Kind const kind = parse_number(text, value);
-    if (kind == Kind::number) continue;
+    if (kind == Kind::number) {
+      any = true;
+      continue;
+    }
     if (kind == Kind::missing) {
       value = std::numeric_limits<double>::quiet_NaN();
       continue;
@@ -267,7 +311,7 @@ std::vector<double> Table::numbers(std::string const& column, std::optional<Span
     if (kind == Kind::text && row == 1 && names_units()) throw UserError(data_errors::row_of_units(place, shown, mention));
     throw UserError(kind == Kind::not_finite     ? data_errors::not_finite(place, shown, mention)
                     : kind == Kind::out_of_range ? data_errors::out_of_range(place, shown, mention)
-                                                 : data_errors::not_a_number(place, shown, mention));
+                                                 : data_errors::not_a_number(place, shown, any || like_a_number(shown), mention));
   }
   return values;
 }

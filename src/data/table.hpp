@@ -41,6 +41,8 @@ class Table {
   std::string_view cell(int row, int column) const;
   /// The first row holds words where the second holds numbers.
   bool names_units() const;
+  /// Whether numbers stand below the names. Of another file, which a model of somebody else may name, no message quotes anything.
+  bool is_record() const;
 
   std::string name_, bytes_, digest_;
   std::vector<std::string> columns_, comments_;

@@ -3,22 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "app/session/results.hpp"
 #include "app/session/stored_draws.hpp"
-#include "core/system/files.hpp"
 #include "exchange/refused.hpp"
+#include "report/file/stored_files.hpp"
 
 namespace sysid {
 StoredResult read_stored_result(std::filesystem::path const& folder) {
-  StoredResult stored{folder, nlohmann::ordered_json::parse(read_file(folder / "summary.json"), nullptr, false)};
-  auto const text = [&](char const* key) { return stored.summary.contains(key) && stored.summary[key].is_string(); };
-  auto const object = [&](char const* key) { return stored.summary.contains(key) && stored.summary[key].is_object(); };
-  bool const whole = stored.summary.is_object() && text("task") && text("what") && text("model") && object("versions") &&
-                     object("parameters") && stored.summary.contains("seed") && stored.summary["seed"].is_number_unsigned();
-  if (!whole)
-    throw refused(fmt::format("`{}` is not the result of a task", (folder / "summary.json").string()),
-                  "run the task again with --force");
-  if (!has_deciding_fields(stored.summary)) throw older_version(folder);
+  StoredResult stored{folder, nlohmann::ordered_json::parse(read_whole_summary(folder))};
   return stored;
 }
 

@@ -12,8 +12,15 @@ constexpr Eigen::Index many = 300;
 
 }  // namespace
 
+bool filters(Covariance const& covariance, Eigen::Index observations) { return observations > many && has_state_space(covariance); }
 bool filters(Covariance const& covariance, Observations const& observations) {
-  return observations.values.size() > many && has_state_space(covariance);
+  return filters(covariance, observations.values.size());
+}
+
+DenseWork dense_work(double observations) {
+  constexpr double matrices = 3, operations_per_second = 2e10;
+  double const square = observations * observations;
+  return {matrices * sizeof(double) * square, square * observations / operations_per_second};  // factor n^3/3, inverse 2 n^3/3
 }
 
 Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient) {

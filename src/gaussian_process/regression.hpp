@@ -9,6 +9,15 @@ namespace sysid::gaussian_process {
 /// Whether filtering it is, with work proportional to the number of observations; else it grows with its cube.
 bool filters(Covariance const& covariance, Observations const& observations);
 
+/// The same before anything is evaluated, for so many observations.
+bool filters(Covariance const& covariance, Eigen::Index observations);
+
+/// Of one evaluation by the matrix of so many observations, with its gradient; roughly, on one processor.
+struct DenseWork {
+  double bytes = 0, seconds = 0;
+};
+DenseWork dense_work(double observations);
+
 /// As `dense_marginal`.
 Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient);
 

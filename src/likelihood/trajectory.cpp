@@ -3,13 +3,21 @@
 
 #include "core/numeric/not_finite.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/system/memory.hpp"
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr int trajectories_at_once = 64;
+constexpr double large = 1e8;  // bytes: of less nobody runs out
 
 using RecordKind = CompiledModel::Record::Kind;
 
@@ -55,7 +63,8 @@ void Trajectory::record_failures(LaneArray const& parameters, std::vector<Outcom
     if (channel.empty()) channel.assign(whole.time.size(), std::nan(""));
     channel.back() = 0;
   }
-  Simulator const simulator(compiled_->trajectory, Schedule(*compiled_->trajectory, whole, simulator_.schedule().solver()));
+  Simulator const simulator(compiled_->trajectory, Schedule(*compiled_->trajectory, whole, simulator_.schedule().solver()),
+                            simulator_.options());
   sysid::record_failures(
       {simulator, parameters, start_ != nullptr, {}}, outcome, describe_, [](int) { return std::vector<double>(); }, ledger);
 }
@@ -104,6 +113,21 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   }
 }
 
+LaneArray Trajectory::no_records(int width) const {
+  std::int64_t const rows = std::int64_t{samples()} * static_cast<std::int64_t>(compiled_->records.size());
+  if (rows > std::numeric_limits<int>::max())
+    throw UserError({Severity::error,
+                     "E5003",
+                     fmt::format("{} samples of {} quantities are more numbers than a simulation records", samples(),
+                                 compiled_->records.size()),
+                     std::nullopt,
+                     {},
+                     "simulate fewer samples"});
+  double const bytes = sizeof(double) * static_cast<double>(rows) * width;
+  if (bytes > large) require_memory(fmt::format("a simulation of {} samples", samples()), bytes, "simulate fewer samples");
+  return {static_cast<int>(rows), width};
+}
+
 Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) const {
   Result result;
   int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
@@ -113,7 +137,7 @@ Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) c
     for (int r = 0; r < parameters.rows(); ++r)
       for (int w = 0; w < width; ++w) block(r, w) = parameters(r, first + w);
     if (start_) start_->estimate(block);
-    LaneArray records(samples() * static_cast<int>(compiled_->records.size()), width);
+    LaneArray records = no_records(width);
     std::vector<Outcome> outcome(static_cast<std::size_t>(width));
     simulator_.records(block, 0, samples(), records, outcome);
     record_failures(block, outcome, result.ledger);
@@ -128,7 +152,7 @@ std::vector<std::vector<double>> Trajectory::noise_arguments(ConstLanes paramete
     for (int w = 0; w < parameters.width(); ++w) all(r, w) = parameters(r, w);
   if (start_) start_->estimate(all);
   int const rows = static_cast<int>(compiled_->records.size());
-  LaneArray records(samples() * rows, all.width());
+  LaneArray records = no_records(all.width());
   std::vector<Outcome> outcome(static_cast<std::size_t>(all.width()));
   simulator_.records(all, 0, samples(), records, outcome);
   std::vector<std::vector<double>> arguments(static_cast<std::size_t>(samples()));
@@ -150,7 +174,7 @@ Trajectory::Result Trajectory::run_redrawn(ConstLanes parameters, int trajectori
   Result result;
   for (int first = 0; first < trajectories; first += trajectories_at_once) {
     int const width = std::min(trajectories_at_once, trajectories - first);
-    LaneArray records(samples() * static_cast<int>(compiled_->records.size()), width);
+    LaneArray records = no_records(width);
     std::vector<Outcome> outcome(static_cast<std::size_t>(width));
     auto const redraw = [&](int sample, int lane, Lanes drawn) {
       for (int w = 0; w < drawn.width(); ++w) {

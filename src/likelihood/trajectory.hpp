@@ -48,6 +48,8 @@ class Trajectory {
   Result run_redrawn(ConstLanes parameters, int trajectories, StreamKey redraw_key, StreamKey noise_key) const;
 
  private:
+  /// For what is recorded of so many vectors; UserError (E5003) where it is too much.
+  LaneArray no_records(int width) const;
   void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
 

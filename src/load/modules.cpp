@@ -47,7 +47,7 @@ class Loader {
     std::string file = (folder_ / (name.text + ".sysid")).string();
     std::optional<std::string> text;
     if (!from_library && !own_name && unsaved_) text = unsaved_(file);
-    if (!from_library && !own_name && !text && std::filesystem::exists(file)) text = read_file(file, most_text_bytes + 1);
+    if (!from_library && !own_name && !text && std::filesystem::exists(file)) text = read_regular_file(file, most_text_bytes + 1);
     bool const of_library = !text.has_value();
     if (of_library) {
       LibraryModule const* module = in_library(name.text);

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
 #include "data/table.hpp"
 #include "experiment/experiments.hpp"
@@ -83,6 +84,10 @@ bool Output::guarded(Source const& source, std::function<bool()> const& act) {
     return told(error.diagnostics());
   } catch (IoError const& error) {
     return refuse(error.what(), error.help());
+  } catch (Interrupted const&) {
+    return refuse("interrupted");
+  } catch (std::filesystem::filesystem_error const& error) {
+    return refuse(path_error(error).what(), path_error(error).help());
   } catch (std::bad_alloc const&) {
     return refuse("out of memory");
   } catch (std::exception const& error) {

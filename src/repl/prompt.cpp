@@ -51,6 +51,8 @@ int run_prompt(RunOptions const& options, std::string const& file) {
   Workbench workbench(options, progress,
                       {std::cout, messages, coloured_messages(), [] { return terminal_columns(STDOUT_FILENO); }});
   bool const terminal = isatty(STDIN_FILENO) != 0;
+  // Without anybody at the prompt there is nothing to go on with.
+  if (!terminal && !file.empty()) (void)read_file(file, 1);
   bool const loaded = file.empty() || workbench.enter("load \"" + file + "\"");
   if (!terminal) {
     int const exit = read_entries(std::cin, workbench);

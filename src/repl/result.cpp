@@ -8,6 +8,7 @@
 
 #include "core/system/files.hpp"
 #include "report/file/number_table.hpp"
+#include "report/file/stored_files.hpp"
 
 namespace sysid::repl {
 namespace {
@@ -73,7 +74,7 @@ Result read_result(std::filesystem::path const& folder, std::string const& task,
   result.verb = verb;
   result.folder = folder;
   Json summary;
-  if (std::filesystem::exists(folder / "summary.json")) summary = Json::parse(read_file(folder / "summary.json"), nullptr, false);
+  if (std::filesystem::exists(folder / "summary.json")) summary = Json::parse(read_whole_summary(folder));
   if (!summary.is_object()) return result;
   if (summary.contains("parameters") && verb == "fit")
     for (auto const& [name, each] : summary["parameters"].items()) {

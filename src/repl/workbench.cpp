@@ -1,6 +1,7 @@
 // An entry is a command, or statements.
 #include "repl/workbench.hpp"
 
+#include "core/system/interrupt.hpp"
 #include "core/text/words.hpp"
 #include "repl/commands.hpp"
 #include "repl/statements.hpp"
@@ -21,6 +22,7 @@ bool Workbench::complete(std::string const& entry) const {
 }
 
 bool Workbench::enter(std::string const& entry) {
+  clear_interrupt();  // a request of before was for work of before
   std::string arguments;
   if (CommandRow const* row = command_of(std::string(trimmed(entry)), arguments))
     return context_.output.guarded(Source("prompt", arguments), [&] { return row->run(context_, arguments); });

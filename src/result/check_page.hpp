@@ -110,10 +110,11 @@ struct InformationPage {
 /// What the priors of a channel's Gaussian processes say of data like these.
 struct ProcessPage {
   std::string channel, unit;
-  int draws = 0, failed = 0;   // failed: without a likelihood
-  int rows = 0, repeated = 0;  // repeated: with the inputs of an earlier one
-  bool filtered = false;       // the work is proportional to the rows, else to their cube
-  double measured_sd = 0;      // declared unit
+  int draws = 0, failed = 0;      // failed: without a likelihood
+  int rows = 0, repeated = 0;     // repeated: with the inputs of an earlier one
+  bool filtered = false;          // the work is proportional to the rows, else to their cube
+  double bytes = 0, seconds = 0;  // of one likelihood that is not filtered, roughly
+  double measured_sd = 0;         // declared unit
   struct Spread {
     double low = 0, middle = 0, high = 0;  // 5, 50 and 95 % of the draws
   };

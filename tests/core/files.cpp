@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <fstream>
@@ -104,4 +105,24 @@ TEST_CASE("removing what is not there is no error") {
   remove_file(folder.path() / "x");
   CHECK_FALSE(fs::exists(folder.path() / "x"));
   CHECK(message_of([&] { remove_file(folder.path() / "x"); }) == "no error");
+}
+
+TEST_CASE("what may have no end or no beginning is no file to read whole") {
+  TemporaryFolder const folder;
+  std::filesystem::path const pipe = folder.path() / "pipe", file = folder.path() / "file";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  for (std::filesystem::path const& path : {std::filesystem::path("/dev/zero"), pipe}) {
+    CAPTURE(path.string());
+    try {
+      read_regular_file(path);
+      FAIL("read");
+    } catch (IoError const& error) {
+      CHECK(std::string(error.what()) == "cannot read `" + path.string() + "`: it is a device or a pipe, not a file");
+    }
+  }
+  CHECK_THROWS_AS(read_regular_file(folder.path()), IoError);
+  write_file(file, "abc");
+  CHECK(read_regular_file(file) == "abc");
+  CHECK(regular_file_size(file) == 3);
+  CHECK(read_regular_file("/proc/self/stat") != "");  // a file of which the system tells no size
 }

@@ -44,3 +44,29 @@ TEST_CASE("both transforms are the defining sum, up to the order of their ends")
     }
   }
 }
+
+TEST_CASE("harmonics of a record of any length add up to the defining sum") {
+  for (std::size_t const n : {1U, 2U, 3U, 12U, 97U, 128U, 1000U}) {
+    CAPTURE(n);
+    Stream stream({1, Purpose::test, n, 1});
+    std::vector<double> re(n), im(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      re[k] = stream.normal();
+      im[k] = stream.normal();
+    }
+    std::vector<double> sum_re(n, 0.0), sum_im(n, 0.0);
+    for (std::size_t t = 0; t < n; ++t)
+      for (std::size_t k = 0; k < n; ++k) {
+        double const angle = 2 * std::numbers::pi * static_cast<double>(k * t % n) / static_cast<double>(n);
+        sum_re[t] += re[k] * std::cos(angle) - im[k] * std::sin(angle);
+        sum_im[t] += re[k] * std::sin(angle) + im[k] * std::cos(angle);
+      }
+    add_harmonics(re, im);
+    // Sums of size sqrt(n) through three transforms of 2 n points.
+    double const tolerance = 1e-14 * static_cast<double>(n + 10);
+    for (std::size_t t = 0; t < n; ++t) {
+      CHECK(std::fabs(re[t] - sum_re[t]) < tolerance);
+      CHECK(std::fabs(im[t] - sum_im[t]) < tolerance);
+    }
+  }
+}

@@ -13,9 +13,9 @@
 
 using namespace sysid;
 
-TEST_CASE("Ctrl-C and SIGTERM raise the flag and the program goes on") {
+TEST_CASE("Ctrl-C, SIGTERM and SIGHUP raise the flag and the program goes on") {
   install_interrupt_handlers();
-  for (int const signal : {SIGINT, SIGTERM}) {
+  for (int const signal : {SIGINT, SIGTERM, SIGHUP}) {
     clear_interrupt();
     CHECK_FALSE(interrupt_requested());
     std::raise(signal);
@@ -24,6 +24,24 @@ TEST_CASE("Ctrl-C and SIGTERM raise the flag and the program goes on") {
   clear_interrupt();
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGHUP, SIG_DFL);
+}
+
+TEST_CASE("SIGHUP stays ignored where nohup(1) has said so") {
+  std::signal(SIGHUP, SIG_IGN);
+  install_interrupt_handlers();
+  clear_interrupt();
+  std::raise(SIGHUP);
+  CHECK_FALSE(interrupt_requested());
+  for (int const signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+}
+
+TEST_CASE("work of which nothing is kept is left at a request, and only then") {
+  clear_interrupt();
+  CHECK_NOTHROW(stop_if_interrupted());
+  request_interrupt();
+  CHECK_THROWS_AS(stop_if_interrupted(), Interrupted);
+  clear_interrupt();
 }
 
 namespace {

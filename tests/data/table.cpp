@@ -257,10 +257,10 @@ TEST_CASE("an error carries the place of the mention when there is one") {
 }
 
 TEST_CASE("long and strange cells are shown short and clean") {
-  Diagnostic const error = error_of("a\n" + std::string(500, 'x') + "\n", "a");
+  Diagnostic const error = error_of("a\n1\n" + std::string(500, 'x') + "\n", "a");
   CHECK(error.message.size() < 150);
   std::string const umlauts = "aäöüäöüäöüäöüäöüäöüäöüäöüäöü";  // 40 bytes end inside a character
-  CHECK(error_of("a\n" + umlauts + "\n", "a").message.find("ä...`") != std::string::npos);
+  CHECK(error_of("a\n1\n" + umlauts + "\n", "a").message.find("ä...`") != std::string::npos);
   CHECK(error_of("a\nx\x1b[31m\n", "a").message.find('\x1b') == std::string::npos);
 }
 
@@ -299,4 +299,23 @@ TEST_CASE("any bytes give a table or an error, and every number of a table is fi
     }
   }
   CHECK(tables > 100);
+}
+
+TEST_CASE("nothing of a file that is no record is quoted, and the names and cells of a record are") {
+  // A model of somebody else may name any file of the system.
+  Diagnostic const passwords = error_of("root:x:0:0:secret:/root:/bin/bash\ndaemon:x:1:1:hidden:/:/bin/sh\n", "y");
+  CHECK(passwords.code == "E4008");
+  CHECK((passwords.message + passwords.help).find("secret") == std::string::npos);
+  Diagnostic const key = error_of("KEY=secret\n", "y");
+  CHECK((key.message + key.help).find("secret") == std::string::npos);
+  Diagnostic const number = error_of("123456\n", "y");
+  CHECK(number.code == "E4002");
+  CHECK((number.message + number.help).find("123456") == std::string::npos);
+  Diagnostic const cell = error_of("user,password\nann,hunter22\n", "password");
+  CHECK(cell.code == "E4010");
+  CHECK((cell.message + cell.help).find("hunter22") == std::string::npos);
+
+  CHECK(error_of("time,force\n0,1\n", "forse").help.find("`force`") != std::string::npos);
+  CHECK(error_of("time,force\n0,1\n1,overload\n", "force").message.find("`overload`") != std::string::npos);
+  CHECK(error_of("time,force\n0,12.5 kN\n", "force").message.find("`12.5 kN`") != std::string::npos);
 }

@@ -3,6 +3,7 @@
 
 #include "exchange/exported.hpp"
 #include "exchange/netcdf.hpp"
+#include "report/file/stored_files.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -55,11 +56,10 @@ TEST_CASE("an export refuses folders without draws, files that are there and res
           export_netcdf(find_results(results / "renamed"), &session, 200, out);
         }).ends_with("were computed with another text of model `deck`"));
   auto older = nlohmann::ordered_json::parse(read_file(results / "renamed/summary.json"));
-  older.erase("verb");
-  write_file(results / "renamed/summary.json", older.dump(2));
-  CHECK(refusal<UserError>([&] {
-          find_results(results / "renamed");
-        }).ends_with("renamed` was written by an older version of sysid"));
+  older["versions"].erase("form");
+  write_file(results / "renamed/summary.json", sealed_summary(older.dump(2)));
+  CHECK(
+      refusal<UserError>([&] { find_results(results / "renamed"); }).ends_with("renamed` was written by another version of sysid"));
   write_file(results / "renamed/summary.json", "{\"task\": 1}");
   CHECK(refusal<UserError>([&] { find_results(results / "renamed"); }).ends_with("summary.json` is not the result of a task"));
 }

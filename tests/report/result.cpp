@@ -80,22 +80,23 @@ TEST_CASE("the same result is the same bytes but for the timing") {
   CHECK(a == b);
 }
 
-TEST_CASE("a result is not overwritten unless forced, and then nothing of it stays") {
+TEST_CASE("a result is not overwritten unasked, and nothing of a removed one stays") {
   TemporaryFolder const folder;
   fs::path const path = folder.path() / "posterior";
-  prepare_result(path, false);
+  require_no_result(path);
+  make_folder(path);
   write_file(path / "checkpoint", "kept");
-  prepare_result(path, false);  // a checkpoint is no result
+  require_no_result(path);  // a checkpoint is no result
   write_result(example::duffing(10), path);
   write_file(path / "notes.txt", "mine");
   try {
-    prepare_result(path, false);
+    require_no_result(path);
     FAIL("overwritten");
   } catch (UserError const& error) {
     CHECK(error.diagnostic().message.find("holds results already") != std::string::npos);
     CHECK(error.diagnostic().help.find("--force") != std::string::npos);
   }
-  prepare_result(path, true);
+  remove_result(path);
   auto const left = contents(path);
   CHECK(left.size() == 2);
   CHECK(left.at("notes.txt") == "mine");

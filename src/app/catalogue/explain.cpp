@@ -170,6 +170,12 @@ std::optional<std::string> explain(std::string_view code) {
   return std::nullopt;
 }
 
+std::vector<std::string> codes() {
+  std::vector<std::string> all;
+  for (ErrorSection const& section : error_sections()) all.push_back(section.code);
+  return all;
+}
+
 std::string list_codes() {
   std::string text;
   for (bool const findings : {false, true})

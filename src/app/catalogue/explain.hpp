@@ -45,6 +45,9 @@ std::vector<ErrorSection> const& error_sections();
 /// or the word of a finding; nothing when there is no such code.
 std::optional<std::string> explain(std::string_view code);
 
+/// Of all messages and findings.
+std::vector<std::string> codes();
+
 /// "E2001  a name that is not declared", one line each; findings last.
 std::string list_codes();
 

@@ -32,7 +32,9 @@ class ProcessLikelihood : public FitLikelihood {
         data_(data),
         seed_(seed),
         model_(process_model(session, what, what.prediction)),
-        space_(parameter_space(model_->model(), what.experiments)) {}
+        space_(parameter_space(model_->model(), what.experiments)) {
+    require_process_work(session, *model_, data);
+  }
 
   Model const& model() const override { return model_->model(); }
   Model const& sampled_model() const override { return model_->reduced(); }

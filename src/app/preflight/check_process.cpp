@@ -90,6 +90,9 @@ class ProcessPreflight {
     out.rows = static_cast<int>(first.observations.values.size());
     out.repeated = repeated_rows(first.observations.inputs);
     out.filtered = gaussian_process::filters(layout.covariance, first.observations);
+    auto const [bytes, seconds] = gaussian_process::dense_work(out.rows);
+    out.bytes = out.filtered ? 0 : bytes;
+    out.seconds = out.filtered ? 0 : seconds;
     double const measured = std::sqrt(target_->measured_variance(c));
     out.measured_sd = width(declared, measured);
     out.unit = declared.unit_text();

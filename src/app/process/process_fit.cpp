@@ -1,8 +1,13 @@
 // Separates the parts of models with Gaussian processes, and builds their targets.
 #include "app/process/process_fit.hpp"
 
+#include <fmt/format.h>
+
 #include "app/session/fit_target.hpp"
+#include "core/system/memory.hpp"
+#include "core/system/progress_terminal.hpp"
 #include "data/start_rule.hpp"
+#include "gaussian_process/regression.hpp"
 
 namespace sysid {
 
@@ -21,6 +26,25 @@ std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_pt
   options.execution = execution;
   auto const space = parameter_space(model->reduced(), fit.experiments);
   return std::make_unique<ProcessTarget>(std::move(model), space, std::move(experiments), std::move(options));
+}
+
+void require_process_work(Session& session, ProcessModel const& model, std::vector<ExperimentData> const& data) {
+  constexpr double worth_saying = 2;  // s
+  for (ProcessChannel const& channel : model.channels()) {
+    Eigen::Index rows = 0;
+    for (ExperimentData const& each : data) {
+      auto const c = static_cast<std::size_t>(channel.channel);
+      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
+        if (each.experiment.is_scored(c, i)) ++rows;
+    }
+    if (gaussian_process::filters(channel.covariance, rows)) continue;
+    auto const [bytes, seconds] = gaussian_process::dense_work(static_cast<double>(rows));
+    std::string const what = fmt::format("a likelihood of {} rows with a Gaussian process", rows);
+    require_memory(what, bytes, "fit fewer rows: choose them with `split` in the data block");
+    if (seconds > worth_saying)
+      session.notices << fmt::format("{} takes about {} of memory and {}, thousands of times in a fit\n", what, format_bytes(bytes),
+                                     format_duration(seconds));
+  }
 }
 
 std::shared_ptr<CompiledModel const> compile_parametric(ProcessModel const& model, bool free_start, std::string const& method) {

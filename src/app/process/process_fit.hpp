@@ -17,6 +17,10 @@ std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_pt
                                               std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution);
 
+/// UserError (E5003) where the matrix of a channel's samples does not fit into memory; says what an evaluation takes where that is
+/// much.
+void require_process_work(Session& session, ProcessModel const& model, std::vector<ExperimentData> const& data);
+
 /// The model with every process at zero, which derived quantities are computed with.
 std::shared_ptr<CompiledModel const> compile_parametric(ProcessModel const& model, bool free_start, std::string const& method);
 

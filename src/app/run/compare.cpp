@@ -11,12 +11,12 @@
 #include <set>
 
 #include "app/session/made_from.hpp"
-#include "app/session/results.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
 #include "model/lags.hpp"
+#include "report/file/stored_files.hpp"
 
 namespace sysid {
 namespace {
@@ -52,14 +52,10 @@ UserError refused(std::string message, std::string help) {
 StoredSummary read_summary(fs::path const& folder) {
   StoredSummary result{folder,
                        folder.lexically_normal().filename().string(),
-                       json::parse(read_file(folder / "summary.json"), nullptr, false),
+                       json::parse(read_whole_summary(folder)),
                        {},
                        made_from_earlier(folder)};
   if (result.name.empty()) result.name = folder.lexically_normal().parent_path().filename().string();
-  bool const whole = result.summary.is_object() && result.summary.contains("what") && result.summary["what"].is_string() &&
-                     result.summary.value("data", json::array()).is_array();
-  if (!whole) throw refused(fmt::format("`{}` is not the result of a task", (folder / "summary.json").string()), run_again());
-  if (!has_deciding_fields(result.summary)) throw older_version(folder);
   result.model = result.summary.value("model", std::string());
   return result;
 }
@@ -76,7 +72,15 @@ std::vector<StoredSummary> results_in(fs::path const& folder) {
       if (fs::exists(entry.path() / "summary.json")) tasks.insert(entry.path());
     for (fs::path const& task : tasks) found.push_back(read_summary(task));
   }
+  std::vector<std::string> others;  // results without an evidence or an error of prediction
+  for (StoredSummary const& each : found)
+    if (!each.is("fit") && !each.is("predict"))
+      others.push_back(fmt::format("the {} `{}`", each.is("select") ? "selection" : "discovery", each.name));
   std::erase_if(found, [](StoredSummary const& each) { return !each.is("fit") && !each.is("predict"); });
+  if (found.empty() && !others.empty())
+    throw refused(
+        fmt::format("`{}` holds {} and no result of a fit or a prediction", folder.string(), fmt::join(others, ", ")),
+        fmt::format("`sysid report {}` shows what it has found; compare sets fits and predictions side by side", folder.string()));
   if (found.empty())
     throw refused(fmt::format("`{}` holds no result of a fit or a prediction", folder.string()),
                   "give folders of tasks, such as results/posterior, or of whole runs, such as results");

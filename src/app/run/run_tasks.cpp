@@ -1,8 +1,10 @@
-// Runs the requested tasks of a file in order: complete results are kept, and none is replaced before all tasks can begin.
+// Runs the requested tasks of a file in order: complete results are kept, and all that can be refused is refused before
+// the first begins.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
+#include <vector>
 
 #include "app/run/pipeline.hpp"
 #include "app/run/task_runners.hpp"
@@ -10,10 +12,32 @@
 #include "app/session/reporting.hpp"
 #include "app/session/results.hpp"
 #include "app/session/session.hpp"
+#include "app/session/stored_draws.hpp"
+#include "app/session/task_rows.hpp"
+#include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
 
 namespace sysid {
+namespace {
 
-ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& asked) {
+ExitCode run_or_stop(Session& session, int index, Task const& task) {
+  try {
+    return task_runner(kind_of(task)).run(session, index, task);
+  } catch (Interrupted const&) {
+    session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
+    return ExitCode::interrupted;
+  }
+}
+
+/// Given up in reverse: the first claim may have made the folder that all lie in.
+struct Claims {
+  std::vector<ClaimedFolder> folders;
+  ~Claims() {
+    while (!folders.empty()) folders.pop_back();
+  }
+};
+
+ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& asked) {
   CheckedFile const& file = session.file;
   RunOptions const& options = session.options;
   auto const kept = [&](Task const& task) {
@@ -30,24 +54,47 @@ ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& ask
   for (Task const& task : file.tasks)
     if (asked(task) && options.resume && kept(task)) complete_already.insert(&task);
   auto const wanted = [&](Task const& task) { return asked(task) && !complete_already.contains(&task); };
-  check_preconditions(session, wanted).require();  // before old results are touched
+  check_preconditions(session, wanted).require();
+  // What was stored by earlier runs is read before anything begins, as the data are.
+  for (Task const& task : file.tasks)
+    for (int const index : wanted(task) ? task_row(task).needs(task) : std::vector<int>()) {
+      Task const& needed = file.tasks[static_cast<std::size_t>(index)];
+      if (wanted(needed)) continue;
+      if (kind_of(needed) == TaskKind::select)
+        selected_candidates(session, index);
+      else
+        fitted_model(session, index);
+    }
+  Claims claimed;
   for (Task const& task : file.tasks) {
     if (!wanted(task)) continue;
     if (kind_of(task) == TaskKind::simulate && kept(task) && !options.force)
       throw UserError(
           result_error("", fmt::format("`{}` holds results already", session.result_folder(task).string()), replace_results()));
-    claim_results(session.result_folder(task), options);
+    claimed.folders.emplace_back(session.result_folder(task), options);
   }
   ExitCode worst = ExitCode::success;
   for (std::size_t i = 0; i < file.tasks.size(); ++i) {
     Task const& task = file.tasks[i];
     if (complete_already.contains(&task)) session.notices << fmt::format("{}: complete, kept\n", task.name);
     if (!wanted(task)) continue;
-    ExitCode const code = task_runner(kind_of(task)).run(session, static_cast<int>(i), task);
+    ExitCode const code = run_or_stop(session, static_cast<int>(i), task);
     if (code == ExitCode::interrupted) return code;
+    remove_file(checkpoint_path(session.result_folder(task)));  // that of an earlier run, which this result replaces
     worst = std::max(worst, code);
   }
   return worst;
+}
+
+}  // namespace
+
+ExitCode run_tasks(Session& session, std::function<bool(Task const&)> const& asked) {
+  try {
+    return run_claimed(session, asked);
+  } catch (Interrupted const&) {
+    session.notices << "interrupted while the data were read\n";
+    return ExitCode::interrupted;
+  }
 }
 
 }  // namespace sysid

@@ -23,14 +23,14 @@ Diagnostic no_result(Task const& task, Finding const& failure) {
 }
 
 ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& checkpoint) {
-  bool const kept = std::filesystem::exists(checkpoint.path());
   session.notices << fmt::format("{}: interrupted before the first kept draw; {} {}\n", task.name,
-                                 to_resume(session.options.surface), kept ? "continues from there" : "starts it again");
+                                 to_resume(session.options.surface),
+                                 checkpoint.kept() ? "continues from there" : "starts it again");
   return ExitCode::interrupted;
 }
 
-ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation) {
-  if (!std::filesystem::exists(checkpoint.path())) checkpoint.save({{"preparation", store(preparation)}});
+ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint& checkpoint, Preparation const& preparation) {
+  if (!checkpoint.kept()) checkpoint.save({{"preparation", store(preparation)}});
   session.notices << fmt::format("{}: interrupted before its result was checked; {} continues from there\n", task.name,
                                  to_resume(session.options.surface));
   return ExitCode::interrupted;

@@ -21,7 +21,7 @@ ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& ch
 
 /// Interrupted while the result was looked at, which is done again from the back end's last checkpoint, or where it has made none
 /// from the search's end.
-ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint const& checkpoint, Preparation const& preparation);
+ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint& checkpoint, Preparation const& preparation);
 
 /// Solves that failed while sampling, where they are too many to say nothing of.
 Findings failure_findings(Ledger const& sampling);

@@ -8,6 +8,7 @@
 
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
+#include "report/file/stored_files.hpp"
 
 namespace sysid {
 namespace {
@@ -18,7 +19,7 @@ constexpr char const* digest_key = "made_from_sha256";
 std::optional<std::string> digest_of(std::filesystem::path const& folder) {
   auto const summary = folder / "summary.json";
   if (!std::filesystem::exists(summary)) return std::nullopt;
-  return sha256(read_file(summary));
+  return sha256(read_regular_file(summary));
 }
 
 }  // namespace
@@ -35,8 +36,7 @@ Facts made_from(Session const& session, Task const& task) {
 std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   auto const path = folder / "summary.json";
   if (!std::filesystem::exists(path)) return std::nullopt;
-  auto const summary = nlohmann::json::parse(read_file(path), nullptr, false);
-  if (!summary.is_object() || !summary.contains("versions") || !summary["versions"].is_object()) return std::nullopt;
+  auto const summary = nlohmann::json::parse(read_summary(folder));
   auto const text = [&](char const* key) {
     auto const& versions = summary["versions"];
     return versions.contains(key) && versions[key].is_string() ? versions[key].get<std::string>() : std::string();
@@ -53,8 +53,7 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
 }
 
 void add_source(std::filesystem::path const& fit, Report& report) {
-  auto const summary = nlohmann::json::parse(read_file(fit / "summary.json"), nullptr, false);
-  if (!summary.is_object() || !summary.contains("findings")) return;
+  auto const summary = nlohmann::json::parse(read_summary(fit));
   std::vector<std::string> failed, doubtful;
   for (auto const& finding : summary["findings"]) {
     std::string const severity = finding.value("severity", ""), code = finding.value("code", "");

@@ -15,6 +15,7 @@
 #include "core/system/files.hpp"
 #include "experiment/experiments.hpp"
 #include "experiment/prior_density.hpp"
+#include "report/file/stored_files.hpp"
 #include "report/file/task_folder.hpp"
 #include "report/page/terminal.hpp"
 #include "syntax/parse.hpp"
@@ -197,7 +198,7 @@ std::string model_digest(Session const& session, std::string const& model) {
 
 std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed) {
   auto const folder = session.result_folder(task);
-  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  auto const summary = nlohmann::json::parse(read_whole_summary(folder));
   auto const refuse = [&](std::string const& what) {
     Help help = run_again();
     help.command_line += ", or write elsewhere with -o";
@@ -205,7 +206,6 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
     return result_error("E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
                         std::move(help));
   };
-  if (!summary.is_object() || !summary.contains("versions") || !has_deciding_fields(summary)) return refuse("program");
   if (summary["versions"].value("model_sha256", "") != task_digest(session, task))
     return refuse("text of " + task_row(task).name(session, task));
   std::vector<ExperimentUse> const experiments = task_row(task).experiments(task);
@@ -215,7 +215,7 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
     DataBlock const& block = session.file.data[static_cast<std::size_t>(experiments[e].data)];
     if (stored[e].value("name", "") != data_name(block, experiments[e].part)) return refuse("set of experiments");
     auto const path = session.folder() / block.path;
-    if (std::filesystem::exists(path) && stored[e].value("sha256", "") != sha256(read_file(path)))
+    if (std::filesystem::exists(path) && stored[e].value("sha256", "") != sha256(read_regular_file(path)))
       return refuse("content of `" + block.path + "`");
   }
   if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");

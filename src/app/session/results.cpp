@@ -14,22 +14,38 @@ bool complete(std::filesystem::path const& folder) {
   return std::filesystem::exists(folder / "summary.json") && !std::filesystem::exists(checkpoint_path(folder));
 }
 
-UserError older_version(std::filesystem::path const& folder) {
-  return UserError(result_error("", fmt::format("`{}` was written by an older version of sysid", folder.string()), run_again()));
+ClaimedFolder::MadeFolders::MadeFolders(std::filesystem::path const& folder) {
+  for (auto each = std::filesystem::absolute(folder).lexically_normal(); !std::filesystem::exists(each); each = each.parent_path())
+    if (each.has_filename()) paths.push_back(each);
+  try {
+    make_folder(folder);
+  } catch (...) {
+    remove_empty();  // a part of the path may be there
+    throw;
+  }
 }
 
-void claim_results(std::filesystem::path const& folder, RunOptions const& options) {
-  if (options.resume) {
-    make_folder(folder);  // what is there stays until the run has shown that it goes on with it
-  } else {
-    if (std::filesystem::exists(checkpoint_path(folder)) && !options.force)
+ClaimedFolder::MadeFolders::~MadeFolders() { remove_empty(); }
+
+void ClaimedFolder::MadeFolders::remove_empty() const {
+  std::error_code ignored;  // of a folder with something in it, which stays
+  for (auto const& each : paths) std::filesystem::remove(each, ignored);
+}
+
+ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions const& options) : made_(folder), lock_(folder) {
+  if (!options.resume && !options.force) {
+    if (std::filesystem::exists(checkpoint_path(folder)))
       throw UserError(result_error("", fmt::format("`{}` holds an interrupted run", folder.string()), resume_or_replace()));
-    prepare_result(folder, options.force);
-    remove_file(checkpoint_path(folder));
+    require_no_result(folder);
   }
   // A byte, since a full disk takes empty files.
   write_file(folder / "claim", ".");
   remove_file(folder / "claim");
+}
+
+void remove_earlier(std::filesystem::path const& folder) {
+  remove_result(folder);
+  remove_file(checkpoint_path(folder));
 }
 
 }  // namespace sysid

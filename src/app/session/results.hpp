@@ -1,30 +1,44 @@
-// Folders of results before the work begins: reserved, checked to be writable, and kept if they are complete.
+// Folders of results before the work begins: reserved and checked to be writable; earlier results are kept until there are new
+// ones.
 #pragma once
 #include <filesystem>
+#include <vector>
 
 #include "app/session/options.hpp"
+#include "core/system/folder_lock.hpp"
 #include "core/text/diagnostic.hpp"
 
 namespace sysid {
 
-/// Makes the folder ready and proves that it can be written. UserError when it holds results already and neither force nor resume
-/// is asked for; IoError when it cannot be written: said before hours of sampling, not after.
-void claim_results(std::filesystem::path const& folder, RunOptions const& options);
+/// A folder of results, reserved for a run as long as this lives. What it holds stays: the run replaces it when it has something of
+/// its own to keep.
+class ClaimedFolder {
+ public:
+  /// Makes the folder ready and proves that it can be written. UserError when another process writes into it, or when it holds
+  /// results already and neither force nor resume is asked for; IoError when it cannot be written: before hours of sampling, not
+  /// after.
+  ClaimedFolder(std::filesystem::path const& folder, RunOptions const& options);
+
+ private:
+  /// Removes the folders that it has made, where nothing has come into them.
+  struct MadeFolders {
+    explicit MadeFolders(std::filesystem::path const& folder);
+    ~MadeFolders();
+    MadeFolders(MadeFolders&&) = default;
+    MadeFolders& operator=(MadeFolders&&) = delete;
+    void remove_empty() const;
+    std::vector<std::filesystem::path> paths;  // the innermost first
+  };
+  MadeFolders made_;
+  FolderLock lock_;
+};
+
+/// Removes results and checkpoint of an earlier run, whose place those of this one take.
+void remove_earlier(std::filesystem::path const& folder);
 
 std::filesystem::path checkpoint_path(std::filesystem::path const& folder);
 
 /// Whether a task ended there (a summary without a checkpoint).
 bool complete(std::filesystem::path const& folder);
-
-/// Whether a summary holds the fields that its readers decide by. Json: an object, in the order of its keys or not.
-template <class Json>
-bool has_deciding_fields(Json const& summary) {
-  return summary.contains("verb") && summary["verb"].is_string() && summary.contains("prediction_rule") &&
-         summary["prediction_rule"].is_string() && summary.contains("measured_past") && summary["measured_past"].is_boolean() &&
-         summary.contains("lags") && summary["lags"].is_number_integer();
-}
-
-/// For results in that folder without these fields.
-UserError older_version(std::filesystem::path const& folder);
 
 }  // namespace sysid

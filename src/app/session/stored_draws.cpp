@@ -15,6 +15,7 @@
 #include "report/file/csv.hpp"
 #include "report/file/number_table.hpp"
 #include "report/file/selection.hpp"
+#include "report/file/stored_files.hpp"
 #include "result/selection.hpp"
 
 namespace sysid {
@@ -62,8 +63,8 @@ FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::st
     auto const path = folder / fmt::format("draws_{}.csv", k);
     fitted.draws.chains.push_back(read_chain(path, parameters));
   }
-  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
-  if (summary.is_object() && summary.contains("settings")) fitted.solver = read_solver(summary["settings"]);
+  if (fitted.draws.total() == 0) throw unusable_result(fmt::format("there are no draws in `{}`", folder.string()));
+  fitted.solver = read_solver(nlohmann::json::parse(read_summary(folder)).at("settings"));
   return fitted;
 }
 
@@ -84,11 +85,19 @@ std::filesystem::path stored_results(Session& session, Task const& task, std::st
     throw UserError(at_task(result_error("E6202", fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
                                          {fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb),
                                           fmt::format("run it first: `run {}`", task.name)})));
-  if (auto wrong = stored_otherwise(session, task, std::nullopt)) {
-    // To force the task that reads them would only ask for them again.
-    wrong->code = "E6201";
-    wrong->help = fmt::format("run the {0} again first: sysid {0} FILE --force", verb);
-    wrong->prompt_help = fmt::format("run it again first: `run {}`", task.name);
+  // To force the task that reads the draws would only ask for them again.
+  Help const again{fmt::format("run the {0} again first: sysid {0} FILE --force", verb),
+                   fmt::format("run it again first: `run {}`", task.name)};
+  std::optional<Diagnostic> wrong;
+  try {
+    wrong = stored_otherwise(session, task, std::nullopt);
+    if (wrong) wrong->code = "E6201";
+  } catch (UserError const& error) {
+    wrong = error.diagnostic();
+  }
+  if (wrong) {
+    wrong->help = again.command_line;
+    wrong->prompt_help = again.prompt;
     throw UserError(at_task(*wrong));
   }
   return folder;
@@ -108,12 +117,12 @@ std::vector<SelectedCandidate> const& selected_candidates(Session& session, int 
   SelectTask const& what = std::get<SelectTask>(task.what);
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
   auto const folder = stored_results(session, task, "select");
-  auto const summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  auto const summary = nlohmann::json::parse(read_summary(folder));
   std::vector<SelectedCandidate> candidates;
   for (std::size_t k = 0; k < set.models.size(); ++k) {
     SelectedCandidate candidate;
     std::string const& name = set.models[k].name;
-    if (!summary.is_object() || !summary.contains("models") || !summary["models"].contains(name))
+    if (!summary.contains("models") || !summary["models"].contains(name))
       throw UserError({Severity::error,
                        "E6201",
                        fmt::format("`{}` has no model `{}`", (folder / "summary.json").string(), name),

@@ -8,28 +8,41 @@
 #include "app/session/results.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
+#include "report/file/sealed_cbor.hpp"
 
 namespace sysid {
 namespace {
 
 using json = nlohmann::json;
 
-// Of the file itself. A file of an older format has none and is refused as damaged: nothing of it can be taken up.
-constexpr int file_version = 2;
+// Of the file itself. A file of an older form is refused as damaged: nothing of it can be taken up.
+constexpr int form = 3;
 
+UserError refused(char const* code, std::filesystem::path const& path, char const* what, char const* help) {
+  return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});
+}
+
+// With the members `who` and `content`.
 std::optional<json> read(std::filesystem::path const& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
-  std::string const bytes = read_file(path);
-  return json::from_cbor(bytes.begin(), bytes.end(), true, false);
+  json stored;
+  switch (open_cbor(read_regular_file(path), form, stored)) {
+    case Seal::other_form:
+      throw refused("E6208", path, "was written by another version of sysid",
+                    "continue with that version, or start again with --force");
+    case Seal::damaged:
+      throw refused("E6207", path, "is damaged", "start again with --force");
+    case Seal::whole:
+      break;
+  }
+  return stored;
 }
 
 // A run that drew its seed goes on with that one.
 std::uint64_t seed_of(Session& session, Task const& task, std::optional<std::uint64_t> const& stated,
                       std::filesystem::path const& path) {
   if (session.options.resume && !session.options.seed && !stated)
-    if (auto const stored = read(path);
-        stored && stored->is_object() && stored->contains("who") && stored->at("who").contains("seed"))
-      return stored->at("who").at("seed").get<std::uint64_t>();
+    if (auto const stored = read(path)) return stored->at("who").at("seed").get<std::uint64_t>();
   return session.seed(task, stated);
 }
 
@@ -55,29 +68,18 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   if (!session_.options.resume) return nullptr;
   auto const stored = read(path_);
   if (!stored) return nullptr;
-  if (stored->is_object() && stored->contains("version") && stored->at("version") != file_version)
-    throw UserError({Severity::error,
-                     "E6208",
-                     fmt::format("`{}` was written by another version of sysid", path_.string()),
-                     std::nullopt,
-                     {},
-                     "continue with that version, or start again with --force"});
-  if (!stored->is_object() || !stored->contains("version") || !stored->contains("who") || !stored->contains("content"))
-    throw UserError(
-        {Severity::error, "E6207", fmt::format("`{}` is damaged", path_.string()), std::nullopt, {}, "start again with --force"});
   if (stored->at("who") != who())
-    throw UserError({Severity::error,
-                     "E6208",
-                     fmt::format("`{}` belongs to another text, data or seed", path_.string()),
-                     std::nullopt,
-                     {},
-                     "restore the files of that run, or start again with --force"});
+    throw refused("E6208", path_, "belongs to another text, data or seed",
+                  "restore the files of that run, or start again with --force");
   return std::make_shared<json const>(stored->at("content"));
 }
 
-void TaskCheckpoint::save(json const& content) const {
-  std::vector<std::uint8_t> const bytes = json::to_cbor(json{{"version", file_version}, {"who", who()}, {"content", content}});
-  write_file(path_, std::string_view(reinterpret_cast<char const*>(bytes.data()), bytes.size()));
+void TaskCheckpoint::save(json const& content) {
+  if (!saved_ && !session_.options.resume) remove_earlier(path_.parent_path());
+  saved_ = true;
+  write_file(path_, sealed_cbor({{"who", who()}, {"content", content}}, form));
 }
+
+bool TaskCheckpoint::kept() const { return (saved_ || session_.options.resume) && std::filesystem::exists(path_); }
 
 }  // namespace sysid

@@ -26,7 +26,10 @@ class TaskCheckpoint {
   /// What is stored, else null, when going on was asked for and something is; UserError when it is damaged (E6207) or of another
   /// text, data or seed (E6208).
   std::shared_ptr<nlohmann::json const> stored() const;
-  void save(nlohmann::json const& content) const;
+  /// The first one of a run that goes on from nothing takes the place of an earlier run's results and checkpoint.
+  void save(nlohmann::json const& content);
+  /// Whether there is one of this run, to go on from.
+  bool kept() const;
 
  private:
   nlohmann::json who() const;
@@ -35,6 +38,7 @@ class TaskCheckpoint {
   Task const& task_;
   std::filesystem::path path_;
   std::uint64_t seed_;
+  bool saved_ = false;
   std::vector<std::pair<std::string, std::string>> digests_;  // of each experiment, by its name
 };
 

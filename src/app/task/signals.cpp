@@ -5,10 +5,14 @@
 #include <numbers>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/fourier.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 
 namespace sysid {
 namespace {
+
+constexpr int many = 1 << 16;  // samples between two looks at the signals
 
 std::vector<double> multisine(InputGenerator const& generator, int samples, double step, Stream& stream) {
   double const resolution = 1 / (samples * step), lowest = generator.arguments.at("lowest"),
@@ -18,19 +22,19 @@ std::vector<double> multisine(InputGenerator const& generator, int samples, doub
         {Severity::error, "E6101", std::move(message), std::nullopt, {}, "change `lowest`, `highest`, `samples` or `rate`"});
   };
   if (highest >= 0.5 / step) throw refuse("the multisine reaches beyond half the sampling rate");
-  std::vector<double> values(static_cast<std::size_t>(samples), 0.0);
+  auto const size = static_cast<std::size_t>(samples);
+  // sin(2 pi k i/N + phase) is the imaginary part of exp(i phase) exp(2 pi i k i/N).
+  std::vector<double> re(size, 0.0), values(size, 0.0);
   int harmonics = 0;
   for (int k = 1; k * resolution <= highest; ++k) {
     if (k * resolution < lowest) continue;
-    ++harmonics;
+    if (++harmonics % many == 0) stop_if_interrupted();
     double const phase = 2 * std::numbers::pi * stream.uniform();
-    // The angle is reduced in whole turns first, so that long records lose nothing.
-    for (int i = 0; i < samples; ++i) {
-      double const turns = static_cast<double>((static_cast<long long>(k) * i) % samples) / samples;
-      values[static_cast<std::size_t>(i)] += elementary::sin(2 * std::numbers::pi * turns + phase);
-    }
+    re[static_cast<std::size_t>(k)] = elementary::cos(phase);
+    values[static_cast<std::size_t>(k)] = elementary::sin(phase);
   }
   if (harmonics == 0) throw refuse("no harmonic of the record lies in the band of the multisine");
+  add_harmonics(re, values, &stop_if_interrupted);
   double const amplitude = generator.arguments.at("sd") * std::sqrt(2.0 / harmonics);
   for (double& value : values) value = generator.arguments.at("mean") + amplitude * value;
   return values;
@@ -45,6 +49,7 @@ std::vector<double> generate(InputGenerator const& generator, int samples, doubl
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(samples));
   for (int i = 0; i < samples; ++i) {
+    if (i % many == 0) stop_if_interrupted();
     switch (generator.kind) {
       case InputGenerator::Kind::gaussian:
         values.push_back(argument("mean") + argument("sd") * stream.normal());

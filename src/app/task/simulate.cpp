@@ -4,16 +4,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <optional>
 
+#include "app/session/results.hpp"
 #include "app/session/session.hpp"
 #include "app/task/drawn_functions.hpp"
 #include "app/task/signals.hpp"
 #include "check/checked/task_kinds.hpp"
+#include "core/numeric/fourier.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/system/memory.hpp"
+#include "core/system/progress_terminal.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
@@ -24,11 +30,14 @@
 namespace sysid {
 namespace {
 
+constexpr double doubles = sizeof(double), characters = 2 * 22;  // of a number; of its text, which grows by doubling
+
 // Made data carry the error of the integrator: said when it is more than a tenth of the noise (or a thousandth of the response).
 void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
-  Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.options.execution);
+  Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.interruptible());
   Trajectory::Result const fine = finer.run(parameters, {});
+  stop_if_interrupted();
   char const* const severity = what.solver.as_model ? "" : "warning: ";
   if (fine.failed() > 0) {
     session.notices << fmt::format("{}: {}with {} the simulation fails, so the error of this one is not known\n", task.name,
@@ -129,9 +138,9 @@ std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
                                             std::vector<Feedback>& feedbacks) {
   auto const most = static_cast<std::size_t>(what.samples) * feedbacks.size() + 1;
   for (std::size_t round = 0; round <= most; ++round) {
-    if (round > 0 && session.interrupted()) return std::nullopt;
-    Trajectory const trajectory(compiled, experiment, what.solver, 0, session.options.execution);
+    Trajectory const trajectory(compiled, experiment, what.solver, 0, session.interruptible());
     Trajectory::Result result = trajectory.run(parameters, noise_key);
+    if (session.interrupted()) return std::nullopt;
     if (result.failed() > 0) return result;
     bool changed = false;
     for (Feedback& feedback : feedbacks) changed = feedback(result, experiment) || changed;
@@ -183,6 +192,7 @@ class Simulate {
       drawn_.push_back(fmt::format("function {} drawn from its prior", process.name));
     compiled_ = functions_ ? functions_->compiled() : session.compiled(what.model, false, what.solver.method, rule);
     history_ = data_lag(model());
+    require_memory(fmt::format("the simulation `{}` of {} samples", task_.name, what_.samples), bytes(), "use fewer samples");
     prepare();
   }
 
@@ -194,6 +204,7 @@ class Simulate {
     }
     if (functions_) feedbacks.push_back(drawn_values(*functions_, time_, history_));
     Trajectory const trajectory(compiled_, experiment_, what_.solver, 0, session_.options.execution);
+    announce(trajectory);
     auto const ended = in_rounds(session_, task_, compiled_, experiment_, what_, parameters_, noise_key_, feedbacks);
     if (!ended) {
       session_.notices << fmt::format("{}: interrupted; {} starts it again\n", task_.name, to_resume(session_.options.surface));
@@ -202,6 +213,7 @@ class Simulate {
     require_numbers(*ended);
     note_findings(*ended);
     auto const path = session_.result_folder(task_) / what_.file;
+    if (session_.options.force) remove_earlier(session_.result_folder(task_));  // results of another task of this name
     write_file(path, record(trajectory.quantities(), *ended));
     session_.notices << fmt::format("{}: {} samples of {} written to {}\n", task_.name, what_.samples, model().name, path.string());
     warn_of_older_data(session_, task_, path);
@@ -210,6 +222,49 @@ class Simulate {
 
  private:
   Model const& model() const { return compiled_->model; }
+  // Of inputs and their polynomials, what is recorded, simulated twice, and the text of the record.
+  double bytes() const {
+    auto const samples = static_cast<double>(what_.samples);
+    auto const records = static_cast<double>(compiled_->records.size()), inputs = static_cast<double>(model().inputs.size());
+    auto const columns = static_cast<double>(what_.inputs.size() + 2 * model().channels.size() + 1);
+    double most = 0;  // of the inputs, which are made one after the other
+    for (InputGenerator const& each : what_.inputs)
+      if (each.kind == InputGenerator::Kind::multisine)
+        most = std::max(most, bytes_to_add_harmonics(static_cast<std::size_t>(what_.samples)));
+    return most + samples * (doubles * (4 + 8 * inputs + 4 * records + columns) + characters * columns);
+  }
+
+  // What takes long or much is said before it begins; the time is that of the beginning, scaled.
+  void announce(Trajectory const& whole) const {
+    constexpr int beginning = 20'000;
+    if (what_.samples < 10 * beginning) return;
+    auto const history = static_cast<std::size_t>(history_);
+    Experiment part = experiment_;
+    part.time.resize(beginning);
+    part.scored.resize(beginning);
+    for (auto& channel : part.measured)
+      if (!channel.empty()) channel.resize(beginning);
+    std::vector<double> const time(time_.begin(), time_.begin() + history_ + beginning);
+    for (std::size_t i = 0; i < part.inputs.size(); ++i) {
+      std::vector<double> samples(history, 0.0);
+      if (i < inputs_.size()) samples.insert(samples.end(), inputs_[i].begin(), inputs_[i].begin() + beginning);
+      samples.resize(time.size(), 0.0);
+      bool const held = i >= inputs_.size() || model().dynamics != Dynamics::continuous;
+      part.inputs[i] =
+          InputSignal(held ? InputRule::zero_order : what_.inputs[i].rule, time, std::move(samples)).view(history_, beginning);
+    }
+    auto const began = std::chrono::steady_clock::now();
+    Trajectory const trajectory(compiled_, part, what_.solver, 0, session_.interruptible());
+    (void)trajectory.run(parameters_, noise_key_);
+    std::chrono::duration<double> const took = std::chrono::steady_clock::now() - began;
+    // With finer steps once more, at about twice the cost; writing takes some hundred nanoseconds a number.
+    double const seconds = static_cast<double>(what_.samples) * (took.count() / beginning * (model().integrated() ? 3 : 1) +
+                                                                 3e-7 * static_cast<double>(whole.quantities().size()));
+    if (seconds > 10 || bytes() > 1e9)
+      session_.notices << fmt::format("{}: {} samples take about {} of memory and {}\n", task_.name, what_.samples,
+                                      format_bytes(bytes()), format_duration(seconds));
+  }
+
   bool rows() const { return model().dynamics == Dynamics::none; }
 
   // Several records made in one run with one seed are different records.

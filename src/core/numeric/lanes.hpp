@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
+#include <new>
 #include <span>
 
 namespace sysid {
@@ -40,8 +41,10 @@ class LaneArray {
  public:
   LaneArray() = default;
   LaneArray(int rows, int width) : rows_(rows), width_(width) {
+    if (rows < 0 || width < 0) throw std::bad_alloc();  // a count beyond the range of int
     std::size_t const bytes = (sizeof(double) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(width) + 63) / 64 * 64;
     data_.reset(static_cast<double*>(std::aligned_alloc(64, bytes == 0 ? 64 : bytes)));
+    if (!data_) throw std::bad_alloc();
     for (std::size_t i = 0; i < static_cast<std::size_t>(rows) * static_cast<std::size_t>(width); ++i) data_.get()[i] = 0;
   }
   LaneArray(LaneArray const& other) : LaneArray(other.rows_, other.width_) { copy(other); }

@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "core/text/diagnostic.hpp"
+#include "core/text/utf8.hpp"
 
 namespace sysid {
 
@@ -90,9 +92,10 @@ void flush_folder(std::filesystem::path const& folder) {
 
 }  // namespace
 
-std::string read_file(std::filesystem::path const& path, std::size_t most) {
-  int const descriptor = open_file(path, O_RDONLY);
-  if (descriptor < 0) fail("read", path, errno);
+namespace {
+
+/// Closes it.
+std::string read_and_close(int descriptor, std::filesystem::path const& path, std::size_t most) {
   std::string bytes;
   struct stat facts = {};
   if (::fstat(descriptor, &facts) == 0 && facts.st_size > 0) bytes.reserve(std::min(most, static_cast<std::size_t>(facts.st_size)));
@@ -111,6 +114,39 @@ std::string read_file(std::filesystem::path const& path, std::size_t most) {
   ::close(descriptor);
   if (error != 0) fail("read", path, error);
   return bytes;
+}
+
+/// Open, and its size; without waiting for whoever writes into a pipe.
+std::pair<int, std::uintmax_t> open_regular(std::filesystem::path const& path) {
+  int const descriptor = open_file(path, O_RDONLY | O_NONBLOCK);
+  if (descriptor < 0) fail("read", path, errno);
+  struct stat facts = {};
+  int const error = ::fstat(descriptor, &facts) == 0 ? 0 : errno;
+  bool const regular = error == 0 && S_ISREG(facts.st_mode);
+  if (regular) return {descriptor, static_cast<std::uintmax_t>(facts.st_size)};
+  ::close(descriptor);
+  if (error != 0) fail("read", path, error);
+  if (S_ISDIR(facts.st_mode)) fail("read", path, EISDIR);
+  throw IoError(fmt::format("cannot read `{}`: it is a device or a pipe, not a file", path.string()),
+                "write what comes from it into a file and give that file");
+}
+
+}  // namespace
+
+std::string read_file(std::filesystem::path const& path, std::size_t most) {
+  int const descriptor = open_file(path, O_RDONLY);
+  if (descriptor < 0) fail("read", path, errno);
+  return read_and_close(descriptor, path, most);
+}
+
+std::string read_regular_file(std::filesystem::path const& path, std::size_t most) {
+  return read_and_close(open_regular(path).first, path, most);
+}
+
+std::uintmax_t regular_file_size(std::filesystem::path const& path) {
+  auto const [descriptor, size] = open_regular(path);
+  ::close(descriptor);
+  return size;
 }
 
 void write_file(std::filesystem::path const& path, std::string_view bytes) {
@@ -149,6 +185,13 @@ void make_folder(std::filesystem::path const& path) {
   std::filesystem::create_directories(path, error);
   if (error) fail("create the folder", path, error.value());
   if (!std::filesystem::is_directory(path)) fail("create the folder", path, ENOTDIR);
+}
+
+IoError path_error(std::filesystem::filesystem_error const& error) {
+  std::string const path = error.path1().string();
+  std::string const shown = path.size() > 100 ? path.substr(0, character_begin(path, 100)) + "..." : path;
+  return IoError(fmt::format("cannot use the path `{}`: {}", shown, reason(error.code().value())),
+                 error.code().value() == ENAMETOOLONG ? "use a shorter name" : "check the path and the permissions");
 }
 
 void remove_file(std::filesystem::path const& path) {

@@ -1,11 +1,14 @@
 // Files read whole and written whole: a reader never sees half a file, a failed write leaves the old one and names the reason.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/text/diagnostic.hpp"
 
 namespace sysid {
 
@@ -16,6 +19,13 @@ std::vector<std::string> files_beside(std::filesystem::path const& path);
 /// "cannot read `PATH`: reason" otherwise.
 std::string read_file(std::filesystem::path const& path, std::size_t most = std::numeric_limits<std::size_t>::max());
 
+/// The bytes of a regular file. A device or pipe, which may have no end or never begin, is refused with IoError, as what cannot be
+/// read is.
+std::string read_regular_file(std::filesystem::path const& path, std::size_t most = std::numeric_limits<std::size_t>::max());
+
+/// The size of a regular file; IoError as above.
+std::uintmax_t regular_file_size(std::filesystem::path const& path);
+
 /// Writes `bytes` under a temporary name in the same folder (PATH.partial), flushes them to the disk and renames: `path` holds
 /// either the old bytes or all of the new. On failure the temporary file is removed and IoError "cannot write `PATH`: reason" is
 /// thrown. A symbolic link is followed, permissions are kept; a device or pipe is written directly.
@@ -23,6 +33,9 @@ void write_file(std::filesystem::path const& path, std::string_view bytes);
 
 /// The folder with all above it; nothing when it is there. IoError otherwise.
 void make_folder(std::filesystem::path const& path);
+
+/// What the file system has refused to a call of the library, such as a name that is too long, in our words.
+IoError path_error(std::filesystem::filesystem_error const& error);
 
 /// Removes a file if it is there. IoError when it is there and cannot be removed.
 void remove_file(std::filesystem::path const& path);

@@ -30,9 +30,19 @@ std::int64_t nanoseconds() {
 void on_signal(int signal) {
   std::int64_t const now = nanoseconds();
   std::int64_t first = 0;
-  if (requested_at.compare_exchange_strong(first, now)) return;
+  if (requested_at.compare_exchange_strong(first, now)) {
+    if (signal == SIGINT) alarm(1);
+    return;
+  }
   // Whoever supervises the program and has no more patience sends SIGKILL: SIGTERM may come as often as it likes.
   if (signal == SIGINT && now - first > same_request_nanoseconds) _exit(130);
+}
+
+/// A second later: a step that takes long cannot be left in its middle, and nobody should wonder whether the request was heard.
+void on_alarm(int) {
+  if (requested_at.load() == 0) return;
+  constexpr char words[] = "\nsysid: stopping after the step in progress; Ctrl-C again ends at once, without a new checkpoint\n";
+  (void)!write(STDERR_FILENO, words, sizeof words - 1);
 }
 
 }  // namespace
@@ -45,12 +55,22 @@ void install_interrupt_handlers() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction later = action;
+  later.sa_handler = &on_alarm;
+  sigaction(SIGALRM, &later, nullptr);
+  // The terminal is gone: what SIGTERM does. Under nohup(1) the signal is ignored, and stays so.
+  struct sigaction before = {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 bool interrupt_requested() { return requested_at.load(std::memory_order_relaxed) != 0; }
 void request_interrupt() {
   std::int64_t none = 0;
   requested_at.compare_exchange_strong(none, nanoseconds());
+}
+void stop_if_interrupted() {
+  if (interrupt_requested()) throw Interrupted();
 }
 void clear_interrupt() { requested_at.store(0); }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/text/number.hpp"
+#include "report/file/stored_files.hpp"
 
 namespace sysid {
 
@@ -55,6 +56,7 @@ std::string csv_head(Report const& report, std::string_view model) {
     out += fmt::format("# {} = {}\n", name, one_line(value));
   };
   add("program", "sysid");
+  add("format", std::to_string(stored_form));
   add("sysid_version", report.version);
   add("model", model.empty() ? report.model_name : std::string(model));
   add("task", report.task);

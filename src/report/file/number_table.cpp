@@ -9,6 +9,7 @@
 
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
+#include "report/file/stored_files.hpp"
 
 namespace sysid {
 
@@ -34,7 +35,7 @@ std::string take_cell(std::string_view& line) {
 }
 
 UserError damaged(std::filesystem::path const& path, std::string const& what) {
-  return UserError(result_error("", fmt::format("`{}` is damaged: {}", path.string(), what), run_again()));
+  return unusable_result(fmt::format("`{}` is damaged: {}", path.string(), what));
 }
 
 }  // namespace
@@ -44,8 +45,9 @@ std::vector<double> const* NumberTable::find(std::string_view name, std::size_t 
   return place == names.end() ? nullptr : &columns[static_cast<std::size_t>(place - names.begin())];
 }
 
-NumberTable read_number_table(std::filesystem::path const& path) {
-  std::string const text = read_file(path);
+NumberTable read_number_table(std::filesystem::path const& path) { return parse_number_table(read_regular_file(path), path); }
+
+NumberTable parse_number_table(std::string_view text, std::filesystem::path const& path) {
   std::string_view rest = text;
   NumberTable table;
   for (int number = 1; !rest.empty(); ++number) {
@@ -75,6 +77,8 @@ NumberTable read_number_table(std::filesystem::path const& path) {
     }
   }
   if (table.names.empty()) throw damaged(path, "it has no header");
+  if (auto const format = table.head.find("format"); format == table.head.end() || format->second != std::to_string(stored_form))
+    throw unusable_result(fmt::format("`{}` was written by another version of sysid", path.string()));
   return table;
 }
 

@@ -22,5 +22,7 @@ struct NumberTable {
 /// UserError, naming the file and the line, where a row has more or fewer cells than the header or a cell is no number; IoError
 /// where it cannot be read.
 NumberTable read_number_table(std::filesystem::path const& path);
+/// The same of the text of that file.
+NumberTable parse_number_table(std::string_view text, std::filesystem::path const& path);
 
 }  // namespace sysid

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <boost/crc.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/text/diagnostic.hpp"
+#include "report/file/sealed_cbor.hpp"
+#include "report/file/stored_files.hpp"
 
 namespace nlohmann {
 
@@ -252,45 +252,32 @@ namespace {
 
 /// Raised when members keep their names and change their meaning. Other members tell themselves: the bytes are whole and do not
 /// fit.
-constexpr int form = 3;
-
-/// Any change of a byte shows: what is read needs no further doubt.
-std::uint32_t checksum(std::vector<std::uint8_t> const& bytes) {
-  boost::crc_32_type sum;
-  sum.process_bytes(bytes.data(), bytes.size());
-  return sum.checksum();
-}
-
-UserError unusable(std::filesystem::path const& path, std::string const& why) {
-  return UserError(result_error("", fmt::format("`{}` {}", path.string(), why), run_again()));
-}
+constexpr int form = 4;
 
 /// Records of before have the findings below the headline.
 std::string headline_alone(std::string const& stored) { return stored.substr(0, stored.find('\n')); }
 
 }  // namespace
 
-std::string record_bytes(Report const& report) {
-  std::vector<std::uint8_t> const inner = json::to_cbor(report);
-  std::vector<std::uint8_t> const bytes =
-      json::to_cbor({{"form", form}, {"crc32", checksum(inner)}, {"report", json::binary(inner)}});
-  return {bytes.begin(), bytes.end()};
-}
+std::string record_bytes(Report const& report) { return sealed_cbor(report, form); }
 
 Report read_record(std::string const& bytes, std::filesystem::path const& path) {
-  json const stored = json::from_cbor(bytes, true, false);
-  std::string const other = "was written by another version of sysid";
-  if (!stored.is_object()) throw unusable(path, "is damaged");
-  if (stored.value("form", 0) != form) throw unusable(path, other);
-  if (!stored.contains("report") || !stored["report"].is_binary() ||
-      stored.value("crc32", std::uint32_t{0}) != checksum(stored["report"].get_binary()))
-    throw unusable(path, "is damaged");
+  UserError const other = unusable_result(fmt::format("`{}` was written by another version of sysid", path.string()));
+  json stored;
+  switch (open_cbor(bytes, form, stored)) {
+    case Seal::damaged:
+      throw unusable_result(fmt::format("`{}` is damaged", path.string()));
+    case Seal::other_form:
+      throw other;
+    case Seal::whole:
+      break;
+  }
   try {
-    Report report = json::from_cbor(stored["report"].get_binary()).get<Report>();
+    Report report = stored.get<Report>();
     report.verdict = headline_alone(report.verdict);
     return report;
   } catch (json::exception const&) {
-    throw unusable(path, other);
+    throw other;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "report/file/csv.hpp"
 #include "report/file/number_table.hpp"
 #include "report/file/report_cbor.hpp"
+#include "report/file/stored_files.hpp"
 #include "report/file/task_folder.hpp"
 
 namespace sysid {
@@ -35,8 +36,7 @@ class Columns {
 
  private:
   UserError other(std::string const& what) const {
-    return UserError(
-        result_error("", fmt::format("`{}` does not belong to this result: it {}", path_.string(), what), run_again()));
+    return unusable_result(fmt::format("`{}` does not belong to this result: it {}", path_.string(), what));
   }
   fs::path path_;
   NumberTable table_;
@@ -121,9 +121,10 @@ void read_particles(fs::path const& path, SelectedModel& model) {
 Report read_result(fs::path const& folder) {
   fs::path const path = folder / "report.cbor";
   if (!fs::exists(path) && fs::exists(folder / "summary.json"))
-    throw UserError(result_error("", fmt::format("the results in `{}` have no `report.cbor`", folder.string()),
+    throw UserError(result_error("E6209", fmt::format("the results in `{}` have no `report.cbor`", folder.string()),
                                  run_again("they were written by an earlier version of sysid, or the file was lost: ")));
-  Report report = read_record(read_file(path), path);
+  read_whole_summary(folder);  // the columns are those that were written
+  Report report = read_record(read_regular_file(path), path);
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
     read_chain(folder / draws_file(c), report.draws, report.draws.chains[c]);
   std::vector<std::string> const prediction_names = prediction_files(report);

@@ -118,7 +118,7 @@ std::string dump(Json const& json) { return json.dump(2, ' ', false, Json::error
 
 }  // namespace
 
-std::string summary_json(Report const& report) {
+std::string summary_json(Report const& report, FileDigests const& files) {
   Json out;
   out["task"] = report.task;
   out["what"] = report.what;
@@ -160,6 +160,9 @@ std::string summary_json(Report const& report) {
   out["ledger"] = ledger(report.ledger, report.draws.names);
   out["seed"] = report.seed;
   out["versions"] = facts(report.versions);
+  out["versions"]["form"] = stored_form;
+  out["versions"]["files"] = files;
+  out["versions"]["summary_sha256"] = unsealed();
   out["data"] = Json::array();
   for (DataInfo const& data : report.data)
     out["data"].push_back({{"name", data.name},
@@ -172,7 +175,7 @@ std::string summary_json(Report const& report) {
                            {"inputs_sha256", data.inputs_sha256},
                            {"notes", data.notes}});
   out["settings"] = facts(report.settings);
-  return dump(out);
+  return sealed_summary(dump(out));
 }
 
 std::string timing_json(Report const& report) { return dump(facts(report.timing)); }

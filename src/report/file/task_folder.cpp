@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "report/figure/figures.hpp"
 #include "report/figure/gnuplot.hpp"
@@ -59,44 +60,46 @@ std::vector<fs::path> files_of_result(fs::path const& folder) {
   return out;
 }
 
-/// The summary first: where it stands, the result is whole.
-void remove_files(fs::path const& folder) {
-  if (std::error_code ignored; fs::exists(folder / "summary.json", ignored)) remove_file(folder / "summary.json");
-  for (fs::path const& file : files_of_result(folder)) remove_file(file);
-}
-
 }  // namespace
 
 bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty(); }
 
-void prepare_result(fs::path const& folder, bool force) {
-  if (!force && holds_result(folder))
+void require_no_result(fs::path const& folder) {
+  if (holds_result(folder))
     throw UserError(result_error("", fmt::format("`{}` holds results already", folder.string()), replace_results()));
-  remove_files(folder);
-  make_folder(folder);
+}
+
+void remove_result(fs::path const& folder) {
+  // The summary first: where it stands, the result is whole.
+  if (std::error_code ignored; fs::exists(folder / "summary.json", ignored)) remove_file(folder / "summary.json");
+  for (fs::path const& file : files_of_result(folder)) remove_file(file);
 }
 
 std::vector<std::string> write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
   make_folder(folder);
   // What an interrupted run left may have more files than its end: chains of models that died later.
-  remove_files(folder);
-  for (std::size_t c = 0; c < report.draws.chains.size(); ++c)
-    write_file(folder / draws_file(c), draws_csv(report, static_cast<int>(c)));
+  remove_result(folder);
+  FileDigests digests;
+  auto const write = [&](std::string const& name, std::string const& content) {
+    write_file(folder / name, content);
+    if (is_stored_table(name)) digests[name] = sha256(content);
+  };
+  for (std::size_t c = 0; c < report.draws.chains.size(); ++c) write(draws_file(c), draws_csv(report, static_cast<int>(c)));
   if (report.selection)
-    for (auto const& [name, content] : selection_files(report)) write_file(folder / name, content);
+    for (auto const& [name, content] : selection_files(report)) write(name, content);
   if (report.discovery)
-    for (auto const& [name, content] : discovery_files(report)) write_file(folder / name, content);
-  for (FunctionReport const& function : report.functions) write_file(folder / function_file(function), function_csv(function));
+    for (auto const& [name, content] : discovery_files(report)) write(name, content);
+  for (FunctionReport const& function : report.functions) write(function_file(function), function_csv(function));
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
-    write_file(folder / prediction_names[p], predict_csv(report, report.predictions[p]));
+    write(prediction_names[p], predict_csv(report, report.predictions[p]));
   std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
   std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
   write_file(folder / "report.html", report_html(report, drawn));
   write_file(folder / "report.cbor", record_bytes(report));
   for (auto const& [name, content] : report.resolved_files) write_file(folder / name, content);
   write_file(folder / "timing.json", timing_json(report));
-  write_file(folder / "summary.json", summary_json(report));
+  write_file(folder / "summary.json", summary_json(report, digests));
   return undrawn;
 }
 

@@ -13,10 +13,12 @@ namespace sysid {
 /// True when the folder holds a result of before. A checkpoint is none.
 bool holds_result(std::filesystem::path const& folder);
 
-/// Makes the folder ready before the work begins. Throws UserError when it holds a result and `force` is not given; with `force`
-/// the files of that result are removed (draws of more chains than the new run has would otherwise stay), with the pictures, texts
-/// and scripts that lie in its figures/.
-void prepare_result(std::filesystem::path const& folder, bool force);
+/// UserError when it holds a result.
+void require_no_result(std::filesystem::path const& folder);
+
+/// Removes the files of a result (draws of more chains than a new run has would otherwise stay), with the pictures, texts and
+/// scripts that lie in its figures/.
+void remove_result(std::filesystem::path const& folder);
 
 /// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, report.cbor, resolved.sysid,
 /// timing.json and, last of all, summary.json: where it stands, the result is whole. `pictures`: what figures are drawn as, beside

@@ -134,15 +134,10 @@ Json process_object(ProcessPage const& page) {
       each["inputs"] = {{"range", line.inputs->range}, {"spacing", line.inputs->spacing}, {"places", line.inputs->places}};
     lines.push_back(std::move(each));
   }
-  return {{"channel", page.channel},
-          {"unit", page.unit},
-          {"draws", page.draws},
-          {"failed", page.failed},
-          {"rows", page.rows},
-          {"repeated_rows", page.repeated},
-          {"filtered", page.filtered},
-          {"measured_sd", page.measured_sd},
-          {"priors", lines}};
+  return {{"channel", page.channel},         {"unit", page.unit},   {"draws", page.draws},
+          {"failed", page.failed},           {"rows", page.rows},   {"repeated_rows", page.repeated},
+          {"filtered", page.filtered},       {"bytes", page.bytes}, {"seconds", page.seconds},
+          {"measured_sd", page.measured_sd}, {"priors", lines}};
 }
 
 void add_preflight(PreflightPage const& preflight, Json& out) {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/system/memory.hpp"
+#include "core/system/progress_terminal.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "diagnostics/verdict.hpp"
@@ -178,6 +180,12 @@ std::string information_text(InformationPage const& page) {
   return out;
 }
 
+/// "20 ms", "0:12 min".
+std::string seconds_text(double seconds) {
+  return seconds < 0.95 ? fmt::format("{} ms", significant(std::max(1e3 * seconds, 0.1), 1))
+                        : fmt::format("{} (h:min:s)", format_duration(seconds));
+}
+
 std::string process_text(ProcessPage const& page) {
   std::vector<std::string> lines = {page.failed == 0
                                         ? fmt::format("{} draws, the likelihood is finite at all of them", page.draws)
@@ -193,12 +201,12 @@ std::string process_text(ProcessPage const& page) {
     lines.push_back(std::move(text));
   }
   if (page.rows > 0) {
-    double const work = std::pow(page.rows, 3) / 3;
     lines.push_back(
         fmt::format("a likelihood of {} rows{}: {}", page.rows,
                     page.repeated > 0 ? fmt::format(", {} of them with the inputs of another row", page.repeated) : std::string(),
                     page.filtered ? std::string("computed by filtering, at a cost proportional to the rows")
-                                  : fmt::format("{} operations (a third of the cube of the rows)", significant(work, 2))));
+                                  : fmt::format("about {} of memory and {}, which grows with the cube of the rows",
+                                                format_bytes(page.bytes), seconds_text(page.seconds))));
   }
   return entry("processes", lines);
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "app/run/compare.hpp"
 #include "app/running.hpp"
 
 using namespace sysid;
@@ -129,6 +130,13 @@ TEST_CASE("a prediction from stored particles is the one that follows the select
   RunOptions options;
   options.output = folder.path() / "results";
   run_text(bouc_wen_file, shortened_selection(), options, {"select"});
+  try {
+    compare({options.output});
+    FAIL("a selection was compared");
+  } catch (UserError const& error) {
+    CHECK(error.diagnostic().message ==
+          "`" + options.output.string() + "` holds the selection `selection` and no result of a fit or a prediction");
+  }
   run_text(bouc_wen_file, shortened_selection(), options, {"predict"});
   CHECK(selection_files(options.output) == reference_selection());
   // Of another text of one candidate they are refused, whichever leads.

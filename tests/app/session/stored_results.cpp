@@ -1,5 +1,6 @@
 // What a run meets in its output folder: earlier results, draws of another model, damaged checkpoints, places that take no files.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/answer.hpp"
+#include "core/system/folder_lock.hpp"
 #include "core/system/interrupt.hpp"
 
 using namespace sysid;
@@ -153,12 +155,21 @@ TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   CHECK(other.exit == ExitCode::user_error);
   CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` belongs to another text, data or seed") !=
         std::string::npos);
+  for (std::size_t const at : {checkpoint.size() / 4, checkpoint.size() / 2, checkpoint.size() - 1}) {
+    std::string flipped = checkpoint;
+    flipped[at] = static_cast<char>(flipped[at] ^ 4);
+    write(output.path() / "posterior" / "checkpoint.cbor", flipped);
+    Answer const changed = run("k", output.path(), {}, options);
+    CHECK(changed.messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") != std::string::npos);
+  }
+  write(output.path() / "posterior" / "checkpoint.cbor", std::string(1000000, '\x81'));  // lists in lists
+  CHECK(run("k", output.path(), {}, options).exit == ExitCode::user_error);
   write(output.path() / "posterior" / "checkpoint.cbor", checkpoint.substr(0, checkpoint.size() / 2));
   Answer const damaged = run("k", output.path(), {}, options);
   CHECK(damaged.exit == ExitCode::user_error);
   CHECK(damaged.messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") != std::string::npos);
   nlohmann::json older = nlohmann::json::from_cbor(checkpoint);
-  older.erase("version");
+  older.erase("form");
   std::vector<std::uint8_t> const bytes = nlohmann::json::to_cbor(older);
   write(output.path() / "posterior" / "checkpoint.cbor", std::string(bytes.begin(), bytes.end()));
   CHECK(run("k", output.path(), {}, options).messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") !=
@@ -197,5 +208,82 @@ TEST_CASE("a disk that takes no byte is found before any work, and nothing half-
   CHECK(shown.messages ==
         "sysid: error: cannot write `OUT/posterior/claim`: file too large\n"
         "help: check that the folder is writable and the disk has free space\n");
-  CHECK(std::filesystem::is_empty(output.path() / "posterior"));
+  CHECK_FALSE(std::filesystem::exists(output.path() / "posterior"));
+}
+
+TEST_CASE("draws that are not all there are neither predicted with nor kept by --resume") {
+  TemporaryFolder const output;
+  CHECK(run("k", output.path()).exit <= ExitCode::doubtful);
+  std::filesystem::path const fit = output.path() / "posterior", forecast = output.path() / "forecast";
+  std::string const draws = content(fit / "draws_2.csv"), band = content(forecast / "predict.csv");
+  RunOptions force, resume;
+  force.force = resume.resume = true;
+  auto const refused = [&](std::string const& what) {
+    for (auto const& [verb, options] : {std::pair("predict", force), std::pair("fit", resume)}) {
+      CAPTURE(verb);
+      Answer const shown = run("k", output.path(), {verb}, options);
+      CHECK(shown.exit == ExitCode::user_error);
+      CHECK(shown.messages.find(what) != std::string::npos);
+    }
+    CHECK(content(forecast / "predict.csv") == band);  // a refused prediction leaves that of before
+  };
+  for (int chain : {2, 1}) {
+    std::filesystem::remove(fit / fmt::format("draws_{}.csv", chain));
+    refused("draws_");  // one, then all
+  }
+  run("k", output.path(), {"fit"}, force);
+  write(fit / "draws_2.csv", draws.substr(0, draws.rfind('\n', draws.size() / 4) + 1));
+  refused("`OUT/posterior/draws_2.csv` has been changed since it was written");
+  write(fit / "draws_2.csv", draws);
+  CHECK(run("k", output.path(), {"predict"}, force).exit <= ExitCode::doubtful);
+  CHECK(run("k", output.path(), {"fit"}, resume).exit == ExitCode::success);
+}
+
+TEST_CASE("a forced run that ends without a result leaves the old ones, and a run that fails leaves no folders") {
+  TemporaryFolder const output;
+  CHECK(run("k", output.path()).exit <= ExitCode::doubtful);
+  std::string const before = content(output.path() / "posterior" / "draws_1.csv");
+  std::string impossible = text_with("k");  // E5002: the likelihood is finite nowhere
+  impossible.replace(impossible.find("y' = -k*y"), 9, "y' = -k*y + sqrt(-1 - y^2)");
+  WorkingFolder const here(error_examples);
+  RunOptions force;
+  force.force = true;
+  Answer const failed = answer("example.sysid", impossible, Depth::run, output.path(), force, {"fit"});
+  CHECK(failed.exit == ExitCode::user_error);
+  CHECK(content(output.path() / "posterior" / "draws_1.csv") == before);
+  CHECK(std::filesystem::exists(output.path() / "forecast" / "summary.json"));
+  Answer const elsewhere = answer("example.sysid", impossible, Depth::run, output.path() / "a" / "b", {}, {});
+  CHECK(elsewhere.exit == ExitCode::user_error);
+  CHECK_FALSE(std::filesystem::exists(output.path() / "a"));
+  CHECK(run("k", output.path(), {"fit"}, force).exit <= ExitCode::doubtful);
+}
+
+TEST_CASE("a forced run that is interrupted once it samples has taken the place of the old result") {
+  TemporaryFolder const output;
+  CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
+  RunOptions options;
+  options.force = true;
+  options.interrupt_after = 1;  // in the search: nothing of its own to keep yet
+  CHECK(run("k", output.path(), {"fit"}, options).exit == ExitCode::interrupted);
+  clear_interrupt();
+  CHECK(std::filesystem::exists(output.path() / "posterior" / "summary.json"));
+  CHECK_FALSE(checkpoint_of_an_interrupted_run(output.path()).empty());
+  RunOptions resume;
+  resume.resume = true;
+  CHECK(run("k", output.path(), {"fit"}, resume).exit <= ExitCode::doubtful);
+  CHECK_FALSE(std::filesystem::exists(output.path() / "posterior" / "checkpoint.cbor"));
+}
+
+TEST_CASE("a folder that another run writes into is refused, and its results are not touched") {
+  TemporaryFolder const output;
+  std::filesystem::create_directory(output.path() / "posterior");
+  {
+    FolderLock const lock(output.path() / "posterior");
+    Answer const shown = run("k", output.path(), {"fit"});
+    CHECK(shown.exit == ExitCode::user_error);
+    CHECK(shown.messages.find("writes into `OUT/posterior`\nhelp: wait until it has ended, or write elsewhere with -o DIR") !=
+          std::string::npos);
+  }
+  CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
+  CHECK_FALSE(std::filesystem::exists(output.path() / "posterior" / "lock"));
 }

@@ -1,0 +1,11 @@
+// Files that somebody takes for a .sysid file by mistake.
+#pragma once
+#include <string_view>
+
+namespace sysid {
+
+/// What a text that cannot be read as statements looks like: "a table of numbers (CSV)", "a spreadsheet or another ZIP archive";
+/// empty where it is no file of a known other kind.
+std::string_view other_kind(std::string_view text);
+
+}  // namespace sysid
