@@ -79,7 +79,12 @@ class PriorSimulation {
     if (2 * result_.stiff_followed > result_.stiff_tried) return;
     lanes = open();
     if (lanes.size() > few_tried) lanes.resize(few_tried);
+    auto const compiled = last_compiled_;
+    SolverSettings const solver = last_solver_;
     try_stiff(lanes, std::max(implicit_steps / lanes.size(), fewest_steps * samples_));
+    if (result_.stiff_followed > 0) return;
+    last_compiled_ = compiled;  // where it ends is the budget's fault
+    last_solver_ = solver;
   }
 
   // Where the draws fail that nothing follows, each counted once.
