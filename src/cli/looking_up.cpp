@@ -20,7 +20,7 @@ ExitCode print(std::string const& text, std::string (*laid_out)(std::string_view
 
 /// what: "message E9999"; verb: the one that lists all there are.
 ExitCode unknown(Messages const& messages, std::string const& what, char const* verb) {
-  messages.complain(fmt::format("there is no {}", what), fmt::format("`sysid {}` lists all", verb));
+  messages.complain(fmt::format("there is no {}", what), fmt::format("`sysid {}` lists them all", verb));
   return ExitCode::usage;
 }
 
