@@ -40,16 +40,16 @@ ExitCode with_model_of(Messages const& messages, ExportOptions const& options, R
                        std::function<ExitCode(Session&)> const& work) {
   std::string const model = options.model.empty() ? results.file.string() : options.model;
   if (model.empty() || !std::filesystem::exists(model)) {
-    messages.complain(model.empty() ? fmt::format("`{}` does not record the file of its results", options.what)
+    messages.complain(model.empty() ? fmt::format("`{}` does not state from which .sysid file it was made", options.what)
                                     : fmt::format("`{}`, the file of these results, does not exist", model),
-                      "give it with --model FILE, or export only what the results contain with --draws 0");
+                      "name the .sysid file with --model FILE, or use --draws 0 to export only what the results contain");
     return model.empty() ? ExitCode::user_error : ExitCode::io;
   }
   return with_session(messages, options, model, results.run, work);
 }
 
 ExitCode refuse_output(Messages const& messages) {
-  messages.complain("the exports of results are written into their folders", "remove -o");
+  messages.complain("results are always exported into their own folders", "remove -o");
   return ExitCode::usage;
 }
 
@@ -134,7 +134,7 @@ Work declare_export(CLI::App& verb) {
           ->type_name("FOLDER")
           ->check(refuse_no_path)
           ->default_str(options->run.output.string());
-  verb.add_option("--model", options->model, "the .sysid file of the results (default: the one they were made from)")
+  verb.add_option("--model", options->model, "the .sysid file of the results (default: the file that they were made from)")
       ->type_name("FILE");
   CLI::Option* const draws = verb.add_option("--draws", options->draws,
                                              "number of draws to simulate for likelihoods and predictions; 0: only what is stored")

@@ -25,7 +25,7 @@ ExitCode unknown(Messages const& messages, char const* what, std::string const& 
                  char const* verb) {
   std::string const guess = did_you_mean(name, known);
   messages.complain(fmt::format("there is no {} {}", what, name),
-                    fmt::format("{}{}`sysid {}` lists all", guess, guess.empty() ? "" : " ", verb));
+                    fmt::format("{}{}`sysid {}` lists them all", guess, guess.empty() ? "" : " ", verb));
   return ExitCode::usage;
 }
 

@@ -205,7 +205,7 @@ Diagnostic missing_value(Cell const& cell, std::string const& what, Mention ment
 
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention) {
   return error("E4014", mention, fmt::format("{}: time does not increase, {} comes after {}", place(cell), now, before),
-               "sort the rows and remove repeated ones; two runs in one file need two files");
+               "sort the rows and remove repeated ones; if the file holds two runs, divide it into two files");
 }
 
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention) {

@@ -35,7 +35,7 @@ std::optional<Finding> given_up(ValidationReport const& validation) {
   if (names.empty()) return std::nullopt;
   return Finding{
       FindingCode::not_refitted, Severity::warning, names,
-      fmt::format("{} skipped: implicit equations are simulated one after the other, and {} more simulations than the limit",
+      fmt::format("{} skipped: implicit equations are simulated one after the other, and {} more simulations than are allowed",
                   quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
       "use fewer rows, or a smaller `top`, or remove the implicit terms from the dictionary"};
 }
@@ -50,7 +50,7 @@ std::optional<Finding> idle_terms(ValidatedStructure const& best) {
   if (idle.empty()) return std::nullopt;
   bool const one = idle.size() == 1;
   return Finding{FindingCode::term_idle, Severity::warning, std::move(names),
-                 fmt::format("in the simulated fit the {} of {} {} less than two sds from zero",
+                 fmt::format("in the fit by simulation the {} of {} {} less than two sds from zero",
                              one ? "coefficient" : "coefficients", fmt::join(idle, ", "), one ? "is" : "are"),
                  fmt::format("remove {0} from the dictionary, or use a record in which {1} more", one ? "it" : "them",
                              one ? "it varies" : "they vary")};
@@ -117,7 +117,7 @@ Findings validation_findings(ValidationReport const& validation) {
                                        [](ValidatedStructure const& each) { return each.of_regression == 1; });
   if (regression != validation.structures.begin())
     add(FindingCode::simulation_prefers, Severity::warning, {best.terms, regression->terms},
-        fmt::format("simulation ranks `{}` first, the regression `{}`, which {}", best.terms, regression->terms,
+        fmt::format("simulation ranks `{}` first; the regression ranks `{}` first, which {}", best.terms, regression->terms,
                     regression->failure.empty()
                         ? fmt::format("has a probability of {} by the simulated motion", probability_text(regression->probability))
                         : "could not be checked by simulation: " + regression->failure),
@@ -141,7 +141,7 @@ Findings validation_findings(ValidationReport const& validation) {
     add(FindingCode::motion_unexplained, Severity::warning, {},
         fmt::format("the residual of the simulated motion is {} times the measurement noise",
                     significant(best.residual_over_noise, 3)),
-        "look for an input that was not recorded, a state that is missing, or add terms");
+        "look for an input that was not recorded or a state that is missing, or add terms");
   if (best.bounded < best.draws)
     add(FindingCode::draws_not_bounded, Severity::warning, {},
         fmt::format("{} of {} draws of the coefficients do not stay within ten times the range of the record in a free run",

@@ -37,7 +37,7 @@ int task_of_kind(Session& session, StoredResult const& stored, char const* kind)
   int const index = find_task(session, stored);
   if (!std::holds_alternative<What>(session.file.tasks[static_cast<std::size_t>(index)].what))
     throw refused(fmt::format("`{}` is not a {} in `{}`", stored.task(), kind, session.source.name()),
-                  "give the file of the results with --model FILE");
+                  "name the .sysid file of these results with --model FILE");
   return index;
 }
 
@@ -60,8 +60,8 @@ std::vector<StoredPrediction> predictions_of(Session const& session, int source,
 /// Under another name they are a copy, and what lies beside it was predicted from the task's own folder.
 bool renamed(StoredResult const& stored, InferenceData& data) {
   if (stored.folder.filename() == stored.task()) return false;
-  data.omitted.push_back(
-      fmt::format("predictions: those beside `{}` are of the folder `{}`", stored.folder.filename().string(), stored.task()));
+  data.omitted.push_back(fmt::format("predictions: those beside `{}` were made from the folder `{}`",
+                                     stored.folder.filename().string(), stored.task()));
   return true;
 }
 

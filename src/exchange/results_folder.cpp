@@ -69,8 +69,9 @@ int find_task(Session& session, StoredResult const& stored) {
     return static_cast<int>(t);
   }
   throw refused(
-      fmt::format("`{}` has no task `{}`, whose results `{}` holds", session.source.name(), stored.task(), stored.folder.string()),
-      "give the file of these results with --model FILE, or export only what they contain with --draws 0");
+      fmt::format("`{}` holds results of the task `{}`, but `{}` has no such task", stored.folder.string(), stored.task(),
+                  session.source.name()),
+      "name the .sysid file of these results with --model FILE, or use --draws 0 to export only what the folder contains");
 }
 
 }  // namespace sysid

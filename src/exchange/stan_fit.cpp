@@ -14,7 +14,7 @@ constexpr std::string_view written_solver = "rk4";
 void require_carried(Task const& task, FitTask const& what, Model const& model, SolverSettings const& solver) {
   if (!model.processes.empty())
     throw not_carried(task, fmt::format("`{}` is a Gaussian process over its rows", model.processes.front().name),
-                      "its covariance is not written out");
+                      "an exported program contains no covariance between rows");
   if (what.start.kind == StartRule::Kind::estimated)
     throw not_carried(task, "its start is estimated inside the likelihood", "state `start = record` or `start = rest`");
   if (model.implicit)

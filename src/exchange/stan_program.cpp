@@ -16,10 +16,9 @@ namespace {
 
 std::string head(Session const& session, StanFit const& fit) {
   return fmt::format(
-      "// {0}: {1} fitted to {2}\n// Written by sysid {3}. target, without the adjustment for transforms, is the log density of "
-      "the "
-      "parameters\n"
-      "// in their declared units with all constants: log_prior__ + log_likelihood__ of the draws. Equations are in SI units.\n",
+      "// {0}: {1} fitted to {2}\n// Written by sysid {3}. Equations are in SI units.\n"
+      "// target, without the adjustment for transforms, is log_prior__ + log_likelihood__ of the draws: the log density,\n"
+      "// with all constants, of the parameters in their declared units.\n",
       fit.task.name, fit.model().name, data_names(session.file, fit.what.experiments), SYSID_VERSION);
 }
 

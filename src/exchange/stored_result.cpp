@@ -24,7 +24,7 @@ Draws stored_draws(StoredResult const& stored) {
   std::size_t const length = draws.chains.empty() ? 0 : draws.chains.front().values.size();
   for (Chain const& chain : draws.chains)
     if (chain.values.size() != length)
-      throw refused(fmt::format("the chains in `{}` are not of one length", stored.folder.string()),
+      throw refused(fmt::format("the chains in `{}` have different lengths", stored.folder.string()),
                     "a file is truncated: run the fit again with --force");
   if (length == 0)
     throw refused(fmt::format("there are no draws in `{}`", stored.folder.string()), "run the fit again with --force");

@@ -89,12 +89,12 @@ std::vector<Json> Server::notified(std::string const& method, Json const& params
 }
 
 std::vector<Json> Server::handle(Json const& message) {
-  if (!message.is_object()) return {refusal(nullptr, invalid_request, "a message is an object")};
+  if (!message.is_object()) return {refusal(nullptr, invalid_request, "a message must be an object")};
   auto const method = message.find("method");
   auto const id = message.find("id");
   if (method == message.end() || !method->is_string()) {
     if (id != message.end() && (message.contains("result") || message.contains("error"))) return {};  // an answer to nothing
-    return {refusal(id == message.end() ? Json(nullptr) : *id, invalid_request, "a message has a method")};
+    return {refusal(id == message.end() ? Json(nullptr) : *id, invalid_request, "a message must have a method")};
   }
   static Json const none = Json::object();
   auto const given = message.find("params");
@@ -136,7 +136,7 @@ int serve(std::istream& in, std::ostream& out) {
     }
     Json const message = Json::parse(incoming->body, nullptr, false);
     if (message.is_discarded())
-      write({refusal(nullptr, parse_error, "the message is no JSON")});
+      write({refusal(nullptr, parse_error, "the message is not JSON")});
     else
       write(server.handle(message));
     // While more has come already the texts may change again.

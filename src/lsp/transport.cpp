@@ -39,7 +39,7 @@ std::optional<Incoming> read_message(std::istream& in) {
     std::size_t value = 0;
     auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || end != digits.data() + digits.size() || value > most_message_bytes)
-      fault = "Content-Length is no usable number";
+      fault = "Content-Length is not a usable number";
     else
       length = value;
   }

@@ -90,7 +90,7 @@ void add_differentiated(ForceModel const& link, Displacements const& samples, Di
                         std::vector<double> const& force, Experiment const& experiment, RestoringForce& out) {
   out.why_no_data = "the samples are not equally far apart";
   if (!equidistant(experiment.time)) return;
-  out.why_no_data = "smoothing against the noise of the samples would distort the force";
+  out.why_no_data = "smoothing that removes the noise of the samples would distort the force";
   double const step = experiment.time[1] - experiment.time[0], spread = spread_of(force);
   double noise = 0;  // of the force, where second differences have none but that of the samples
   for (std::size_t k = 0; k < samples.held.size(); ++k) {
@@ -206,8 +206,8 @@ void add_data(ForceModel const& link, std::vector<MeasuredMotion> const& motions
     return values;
   };
   out.why_no_data = held.size() == 1 && !link.link().other
-                        ? "no channel measures the displacement alone, and none the acceleration"
-                        : "they need several displacements, which are not all measured, each by its own channel";
+                        ? "no channel measures the displacement alone, and no channel measures the acceleration"
+                        : "they need several displacements, and not each of these is measured by a channel of its own";
   for (Link::Held const& each : held) {
     if (motions[each.mass].displacement.empty()) return;
     samples.held.push_back(motions[each.mass].displacement);

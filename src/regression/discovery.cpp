@@ -114,8 +114,8 @@ class Finder {
       concern.clause = "no term is left to choose from";
     } else if (!(columns.known.squaredNorm() > 0) || !columns.known.allFinite()) {
       concern.kind = Concern::Kind::nothing_to_explain;
-      concern.clause = columns.known.allFinite() ? "the known side is zero on the whole record"
-                                                 : "the known side is not finite somewhere on the record";
+      concern.clause = columns.known.allFinite() ? "the known side of the equation is zero on the whole record"
+                                                 : "the known side of the equation is not finite at some samples";
     } else {
       return true;
     }
@@ -238,7 +238,7 @@ class Finder {
     concern.clause = fmt::format(
         "the residual is {:.3g} times what the measurement noise explains: a forcing or a term is "
         "missing{}",
-        found_.noise_ratio, found_.own_noise > 0 ? ", or a recorded input is noisy itself" : "");
+        found_.noise_ratio, found_.own_noise > 0 ? ", or a recorded input is itself noisy" : "");
     found_.concerns.push_back(std::move(concern));
   }
 

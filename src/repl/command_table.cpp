@@ -12,7 +12,7 @@ namespace sysid::repl {
 std::span<CommandRow const> commands() {
   static constexpr CommandRow rows[] = {
       {"load", "load FILE", "loads the statements of a file into the work; runs nothing", &command::load},
-      {"reload", "reload", "loads the file again that was loaded or saved last", &command::reload},
+      {"reload", "reload", "loads again the file that was last loaded or saved", &command::reload},
       {"save", "save FILE", "writes the work as a file for `sysid run`", &command::save},
       {"columns", "columns FILE.csv", "shows the columns of a data file", &command::columns},
       {"list", "list, list TOPIC", "lists the work; or functions, distributions, kernels, backends, discovery, solvers or modules",

@@ -129,7 +129,7 @@ bool columns(Context& context, std::string const& path) {
     try {
       values = table.numbers(column);
     } catch (UserError const&) {
-      rows.push_back({column, "not all numbers", "", "", ""});
+      rows.push_back({column, "not only numbers", "", "", ""});
       continue;
     }
     double low = std::nan(""), high = low;

@@ -273,7 +273,7 @@ bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
     std::string const near = did_you_mean(path, names);
     if (results_.empty())
       refuse(tree.span, fmt::format("there is no `{}`: no task has been run yet", path),
-             !near.empty() ? near : "expressions at the prompt are over results; run a fit first");
+             !near.empty() ? near : "expressions at the prompt use results; run a fit first");
     else if (result(path) != nullptr)
       refuse(tree.span, fmt::format("`{}` is a task, not a quantity", path),
              fmt::format("`{}.NAME` is one of its quantities; `show {}` shows all of it", path, path));
@@ -320,7 +320,7 @@ std::optional<Quantity> Evaluator::value(ast::Expression const& tree) {
     if (!first) {
       auto const why = unpaired(result, each);
       if (!why) continue;
-      refuse(tree.span, *why, "use `mean`, `sd` or another statistic of each");
+      refuse(tree.span, *why, "reduce each to one number, with `mean`, `sd` or another statistic");
       return std::nullopt;
     }
     result.kind = each.kind;

@@ -85,7 +85,7 @@ Value count(Asked const& asked) { return static_cast<double>(asked.values.size()
 
 constexpr StatisticRow statistic_rows[] = {
     {{"mean", "mean(k)", "mean over draws, or over the samples of a record"}, 1, false, &mean},
-    {{"sd", "sd(k)", "standard deviation; for an optimum by Laplace's approximation"}, 1, false, &sd},
+    {{"sd", "sd(k)", "standard deviation; for an optimum, the one of Laplace's approximation"}, 1, false, &sd},
     {{"median", "median(k)", "median of the draws"}, 1, false, &median},
     {{"quantile", "quantile(k, 0.95)", "quantile of the draws: the value below which the given fraction lies"},
      2,
@@ -101,7 +101,7 @@ constexpr StatisticRow statistic_rows[] = {
 
 constexpr PromptFunction series_rows[] = {
     {"measured", "measured(output)", "measured samples of a channel on the rows that were fitted or predicted"},
-    {"predicted", "predicted(output)", "mean prediction of a channel on these rows, without noise"},
+    {"predicted", "predicted(output)", "mean prediction of a channel, without noise, on the rows that were fitted or predicted"},
     {"residual", "residual(output)", "measured minus predicted"},
 };
 

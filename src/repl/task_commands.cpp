@@ -100,7 +100,7 @@ bool resume(Context& context, std::string const& task) {
   auto const place = context.results.interrupted.find(name);
   if (place == context.results.interrupted.end())
     return context.output.refuse(
-        context.results.interrupted.empty() ? "no task has been stopped" : "more than one task was stopped: give its name",
+        context.results.interrupted.empty() ? "no task has been stopped" : "more than one task was stopped: name one of them",
         context.results.interrupted.empty() ? "" : "`resume TASK`");
   return run_task(context, name, std::shared_ptr<CheckedText const>(place->second), true);
 }

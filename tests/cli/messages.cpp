@@ -21,8 +21,8 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   refused("list modules more",
           "sysid: error: `sysid list` takes no argument `more`\n"
           "help: `sysid list --help` lists its arguments and options\n");
-  refused("explain E9999", "sysid: error: there is no message E9999\nhelp: `sysid explain` lists all\n");
-  refused("document springs", "sysid: error: there is no module springs\nhelp: `sysid list modules` lists all\n");
+  refused("explain E9999", "sysid: error: there is no message E9999\nhelp: `sysid explain` lists them all\n");
+  refused("document springs", "sysid: error: there is no module springs\nhelp: `sysid list modules` lists them all\n");
   refused("export x.sysid -o y",
           "sysid: error: --output requires --stan\nhelp: `sysid export --help` lists its arguments and options\n");
   CHECK(desk.ask("--error-format json fit").text.starts_with("{\"file\":\"sysid\",\"severity\":\"error\",\"code\":\"\""));

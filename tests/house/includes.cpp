@@ -115,13 +115,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
      {"core", "result", "data", "likelihood", "likelihood/selection", "search", "diagnostics", "inference/backend",
       "inference/chain", "inference", "experiment", "mechanics", "report/file", "app/session"}},
     {"app/preflight",
-<<<<<<< ours
-     {"core", "linear_algebra", "result", "data", "expression", "gaussian_process", "syntax", "simulate", "likelihood", "check/expression",
-      "diagnostics", "experiment", "discovery", "app/session", "app/process"}},
-=======
-     {"core", "linear_algebra", "result", "expression", "gaussian_process", "syntax", "simulate", "likelihood", "search",
+     {"core", "linear_algebra", "result", "data", "expression", "gaussian_process", "syntax", "simulate", "likelihood", "search",
       "check/expression", "diagnostics", "experiment", "discovery", "app/session", "app/process"}},
->>>>>>> theirs
     {"app/fit",
      {"result", "data", "likelihood", "search", "diagnostics", "inference/backend", "inference", "experiment", "mechanics",
       "app/session", "app/process", "app/preflight"}},

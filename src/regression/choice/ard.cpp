@@ -13,7 +13,8 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"iterations", SettingKind::integer, "1000", 1, 1e7, "", "maximum number of updates of the precisions"},
-    {"tolerance", SettingKind::real, "1e-6", 0, 1, "", "stop when the sum of the changes of the scaled coefficients is smaller"},
+    {"tolerance", SettingKind::real, "1e-6", 0, 1, "",
+     "stop when the sum of the changes of the scaled coefficients is smaller than this"},
     {"prune", SettingKind::real, "1e4", 1, 1e300, "",
      "precision of a scaled coefficient above which its term is dropped: 1e4 is a contribution of one part in a hundred"},
 };

@@ -19,12 +19,12 @@ constexpr SettingRow rows[] = {
     {"g", SettingKind::real, "0", 0, 1e300, "",
      "for unit_information and zellner: prior variance divided by that of the estimate; 0: the number of rows"},
     {"sizes", SettingKind::word, "beta_binomial", 0, 0, "beta_binomial uniform",
-     "equal probability of every number of terms, or of every support"},
+     "equal prior probability for every number of terms, or for every support (set of terms)"},
     {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
-    {"enumerate", SettingKind::integer, "16", 0, 24, "", "number of selectable terms up to which all supports are evaluated"},
+    {"enumerate", SettingKind::integer, "16", 0, 24, "", "largest number of selectable terms for which all supports are evaluated"},
     {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "iterations of each Gibbs chain over all terms"},
     {"chains", SettingKind::integer, "4", 1, 1000, "", "Gibbs chains"},
-    {"supports", SettingKind::integer, "10", 1, 10000, "", "number of best supports that are reported"},
+    {"supports", SettingKind::integer, "10", 1, 10000, "", "number of supports that are reported, best first"},
 };
 
 /// Supports beyond this many, by falling probability, no longer enter averages of coefficients.

@@ -61,7 +61,7 @@ class SampledProjection : public Projection {
       if (channel < 0) {
         Concern concern{.kind = Concern::Kind::not_measured};
         concern.clause = fmt::format("no channel measures `{}`{}", symbol_text(dictionary_, symbol.index, symbol.order),
-                                     smoother_.derives ? " or a quantity of which it is a derivative" : "");
+                                     smoother_.derives ? ", or a quantity that gives it by differentiation" : "");
         concerns.push_back(std::move(concern));
       } else if (std::find(used.begin(), used.end(), channel) == used.end()) {
         used.push_back(channel);
@@ -170,7 +170,7 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"penalty", SettingKind::real, "0", 0, 1e16, "",
-     "weight of the squared third derivative, for a step of 1; 0: the residual is as large as the noise"},
+     "weight of the squared third derivative, for a step of 1; 0: chosen so that the residual is as large as the noise"},
 };
 constexpr int margin = 5;  // samples left out at the ends, where high derivatives of a spline are not to be trusted
 

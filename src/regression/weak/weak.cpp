@@ -20,7 +20,8 @@ constexpr SettingRow rows[] = {
      "half-width of a window in samples; 0: a third of the fastest period, at least 10"},
     {"step", SettingKind::integer, "0", 0, 1e6, "", "samples between windows; 0: a sixth of the half-width"},
     {"power", SettingKind::integer, "8", 4, 24, "", "exponent p of the test function (1 - s^2)^p"},
-    {"reweightings", SettingKind::integer, "3", 0, 20, "", "how often the noise covariance is computed anew from the coefficients"},
+    {"reweightings", SettingKind::integer, "3", 0, 20, "",
+     "how many times the noise covariance is recomputed from the coefficients"},
 };
 
 constexpr int least_half_width = 10;
@@ -111,7 +112,7 @@ class WeakProjection : public Projection {
     for (Symbol const& symbol : symbols_below(dictionary_, roots))
       if (symbol.kind == Symbol::Kind::state && base_channel(dictionary_, symbol.index, symbol.order) < 0) {
         Concern concern{.kind = Concern::Kind::not_measured};
-        concern.clause = fmt::format("no channel measures `{}` or a quantity of which it is a derivative",
+        concern.clause = fmt::format("no channel measures `{}`, or a quantity that gives it by differentiation",
                                      symbol_text(dictionary_, symbol.index, symbol.order));
         projected.concerns.push_back(std::move(concern));
       }

@@ -233,8 +233,7 @@ std::vector<std::string> Workspace::keep_earlier(std::size_t changed, std::set<s
       earlier.text = replaced(earlier.text, renamed);
       earlier.kept = true;
       if (i == changed)
-        notices.push_back(
-            fmt::format("the earlier `{}` is kept as `{}`, with the tasks that were run on it", item.name, earlier.name));
+        notices.push_back(fmt::format("the earlier `{}` is kept as `{}`, with the tasks that used it", item.name, earlier.name));
       after.push_back(std::move(earlier));
       item.lead.clear();
     }

@@ -131,7 +131,7 @@ std::string prior_text(PriorPage const& prior, std::string const& time_unit, dou
                                 significant(failure.time / time_scale, 4), time_unit));
   if (prior.untraced > 0) lines.push_back(fmt::format("  {} x not traced: only the first eight are", prior.untraced));
   for (PriorPage::Channel const& channel : prior.channels)
-    lines.push_back(fmt::format("{}: 90 % predict a range of {} to {}, median {}; measured {}", channel.name,
+    lines.push_back(fmt::format("{}: 90 % of the draws predict a range of {} to {}, median {}; measured {}", channel.name,
                                 significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
                                 number_with_unit(significant(channel.measured, 2), channel.unit)));
   return entry("prior draws", lines);
@@ -153,7 +153,7 @@ std::string information_text(InformationPage const& page) {
   }
   std::string out = table("information", rows, 1);
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("at the {} prior draws whose response is closest in size to the data{}", page.draws,
+  lines.push_back(fmt::format("computed at the {} prior draws whose response is closest in size to the data{}", page.draws,
                               page.noise.empty() ? std::string() : "; assumed noise: " + page.noise));
   lines.push_back("prior width: half the width of the central 68 % interval of the prior (the sd of a normal prior)");
   if (page.rows > 0)
@@ -174,8 +174,8 @@ std::string information_text(InformationPage const& page) {
     out += entry("", {fmt::format("a mode found from these draws with {} moves by {} sd with {}", page.moves.front().first,
                                   significant(*page.found_move, 2), page.refinement)});
   if (page.response_move && std::isfinite(*page.response_move))
-    out += entry("", {fmt::format("the median response changes by {} % of its sd with {}, an nmse of {}",
-                                  significant(100 * *page.response_move, 2), page.refinement,
+    out += entry("", {fmt::format("with {}, the median response changes by {} % of its sd, which is an nmse of {}", page.refinement,
+                                  significant(100 * *page.response_move, 2),
                                   significant(100 * *page.response_move * *page.response_move, 2))});
   return out;
 }

@@ -27,7 +27,7 @@ std::string chains_html(Report const& report) {
     table.rows.push_back({with_unit(s.name, s.unit), t.rhat, t.ess_bulk, t.ess_tail, pretty_number(significant(s.mcse_mean, 2))});
   }
   return out + html(table) +
-         paragraph("Rank-normalised split R-hat and effective sample sizes (ESS) after Vehtari et al. (2021).", "note");
+         paragraph("Rank-normalised split R-hat and effective sample sizes (ESS) as defined by Vehtari et al. (2021).", "note");
 }
 
 std::string simulations_html(Report const& report) {

@@ -192,10 +192,11 @@ std::vector<ChainWords> chain_words(Report const& report) {
     double const rate = accepted / count;
     bool const good = rate >= least_acceptance;
     out.push_back({"acceptance",
-                   fmt::format("{} % of the proposals before the kept draws were accepted on average: {}.", number(100 * rate, 2),
+                   fmt::format("The steps that led to the kept draws were accepted with a probability of {} % on average: {}.",
+                               number(100 * rate, 2),
                                !good        ? "the chains hardly moved"
                                : rate < 0.1 ? "low, but the effective sample sizes above decide"
-                               : rate > 0.6 ? "high, as for short steps, but the effective sample sizes above decide"
+                               : rate > 0.6 ? "high, as is usual for short steps, but the effective sample sizes above decide"
                                             : "as expected for a random walk"),
                    good});
   }
@@ -229,8 +230,8 @@ std::string mode_words(Report const& report) {
     bool const near = std::any_of(report.findings.begin(), report.findings.end(),
                                   [](Finding const& each) { return each.code == FindingCode::searched_near; });
     return out + fmt::format(
-                     "A check failed: a better mode may lie outside the searched region. Search {}with wider priors, or again with "
-                     "another seed.",
+                     "A check failed: a better mode may lie outside the searched region. Search again {}with wider "
+                     "priors or with another seed.",
                      near ? "everywhere (`search = everywhere`), " : "");
   }
   if (count == 1) return out + "It found no other parameter values that explain the data nearly as well.";
