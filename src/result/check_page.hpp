@@ -69,9 +69,9 @@ struct PriorPage {
   bool spent = false;           // whose work budget, not its step, is what most of them lack
   int failed_explicit = 0;      // of these with adaptive explicit steps, too
   std::string explicit_solver;  // these; empty: not tried
-  int stiff_left = 0;             // of these open where the solver for stiff equations last began,
-  int stiff_tried = 0;            // of which it has tried so many
-  int stiff_followed = 0;         // and followed so many
+  int stiff_left = 0;           // of these open where the solver for stiff equations last began,
+  int stiff_tried = 0;          // of which it has tried so many
+  int stiff_followed = 0;       // and followed so many
   std::string stiff_solver;     // this one
   std::vector<Failure> failures;  // where draws fail, one each, and
   int untraced = 0;               // so many that were not looked into

@@ -50,7 +50,7 @@ TEST_CASE("codes that are misspelt have near ones") {
   LineDesk const desk;
   Said const said = desk.ask("explain chains_disagre");
   CHECK(said.exit == 2);
-  CHECK(has(said, "did you mean `chains_disagree`? `sysid explain` lists all"));
+  CHECK(has(said, "did you mean `chains_disagree`? `sysid explain` lists them all"));
   CHECK_FALSE(has(desk.ask("explain wombat"), "did you mean"));
 }
 

@@ -144,7 +144,11 @@ TEST_CASE("a value that the data hold at a bound is not called undetermined, one
     CAPTURE(width);
     CHECK_FALSE(at_bound(width));
   }
-  CHECK(at_bound(100));
+  TestTarget const alone({"z", "q"}, {{Prior::log_uniform, 1e-4, 1}, {Prior::normal, 0, 1}}, 1, 0,
+                         [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[1] - 1) / 0.01; });
+  Bench bench;
+  Findings const found = search(alone, ObjectiveKind::likelihood, bench.context).findings;
+  CHECK(std::any_of(found.begin(), found.end(), [](Finding const& each) { return each.code == FindingCode::flat_direction; }));
 }
 
 TEST_CASE("directions of the same parameters are told once") {

@@ -35,9 +35,8 @@ std::string without_timing(FinishedFit const& fit) {
   if (model.dynamics != Dynamics::continuous) return "the model reads no input between samples";
   if (model.inputs.empty()) return "the model has no input";
   if (fit.preparation.modes.empty()) return "the search found no mode";
-  bool const explains = std::none_of(fit.report.findings.begin(), fit.report.findings.end(), [](Finding const& each) {
-    return each.code == FindingCode::worse_than_the_mean;
-  });
+  bool const explains = std::none_of(fit.report.findings.begin(), fit.report.findings.end(),
+                                     [](Finding const& each) { return each.code == FindingCode::worse_than_the_mean; });
   return explains ? "" : "the fit explains nothing of a channel";
 }
 

@@ -10,7 +10,7 @@
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
-#include "diagnostics/prior_data_conflict.hpp"
+#include "diagnostics/prior_checks.hpp"
 
 namespace sysid {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/session/fit_target.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
-#include "diagnostics/prior_data_conflict.hpp"
+#include "diagnostics/prior_checks.hpp"
 #include "gaussian_process/regression.hpp"
 
 namespace sysid {

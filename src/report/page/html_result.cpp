@@ -8,7 +8,7 @@
 
 #include "core/text/number.hpp"
 #include "core/text/xml.hpp"
-#include "diagnostics/contraction.hpp"
+#include "diagnostics/prior_checks.hpp"
 #include "report/page/html_words.hpp"
 #include "report/text/report_text.hpp"
 #include "report/text/summary_text.hpp"

@@ -10,7 +10,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "diagnostics/chain_checks.hpp"
-#include "diagnostics/contraction.hpp"
+#include "diagnostics/prior_checks.hpp"
 #include "diagnostics/residual_tests.hpp"
 #include "diagnostics/verdict.hpp"
 

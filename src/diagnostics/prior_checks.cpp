@@ -1,9 +1,12 @@
-// Compares 90 % intervals, which heavy tails do not affect.
-#include "diagnostics/contraction.hpp"
+// Contraction compares 90 % intervals, which heavy tails do not affect.
+#include "diagnostics/prior_checks.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 
 #include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
 
 namespace sysid {
 
@@ -17,6 +20,15 @@ std::optional<double> contraction(PriorInfo const& prior, Summary const& summary
   auto const [low, high] = interval_90(summary);
   double const ratio = (*prior.q95 - *prior.q5) / (high - low);
   return std::isfinite(ratio) && ratio > 0 ? std::optional(ratio) : std::nullopt;
+}
+
+std::string times_apart(double ratio) {
+  return fmt::format("{} times {}", significant(ratio > 1 ? ratio : 1 / ratio, 2), ratio > 1 ? "larger" : "smaller");
+}
+
+Finding prior_far_from_data(std::vector<std::string> names, std::string message) {
+  return {FindingCode::prior_far_from_data, Severity::warning, std::move(names), std::move(message),
+          "check the units of the data columns, and priors that are wide or misplaced"};
 }
 
 }  // namespace sysid
