@@ -66,7 +66,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
      {"core", "syntax", "check/message", "check/elaborate", "check/checked", "check/units", "check/model", "check/dictionary",
       "check/data", "check/task"}},
     {"search", {"core", "linear_algebra", "result", "gaussian_process", "likelihood"}},
-    {"diagnostics", {"core", "linear_algebra", "result", "data", "distribution", "solver", "likelihood", "search"}},
+    {"diagnostics", {"core", "linear_algebra", "result", "data", "distribution", "model", "solver", "likelihood", "search"}},
     {"inference/backend", {"core", "result", "likelihood", "likelihood/selection", "search", "diagnostics"}},
     {"inference/chain", {"core", "linear_algebra", "likelihood", "search", "diagnostics", "inference/backend"}},
     {"inference/abc", {"core", "linear_algebra", "likelihood/selection", "inference/backend"}},

@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include "report/file/csv.hpp"
+#include "report/file/stored_files.hpp"
 #include "result/function.hpp"
 
 namespace sysid {
 
 std::string function_csv(FunctionReport const& function) {
-  std::string out = fmt::format("# {} [{}] of", function.name, function.unit.empty() ? "-" : function.unit);
+  std::string out =
+      fmt::format("# format = {}\n# {} [{}] of", stored_form, function.name, function.unit.empty() ? "-" : function.unit);
   for (auto const& [name, unit] : function.inputs) out += fmt::format(" {} [{}]", name, unit.empty() ? "-" : unit);
   out += '\n';
   for (auto const& input : function.inputs) out += csv_field(input.first) + ',';
