@@ -13,7 +13,8 @@ namespace sysid {
 struct Objective {
   Target const& target;
   ObjectiveKind objective_kind;
-  Eigen::VectorXd scale;  // [P] half the central 68 % of the prior draws, > 0
+  Eigen::VectorXd scale;   // [P] half the central 68 % of the prior draws, > 0
+  Eigen::VectorXd centre;  // [P] the middle of these
   Eigen::VectorXd low,
       high;  // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
 
