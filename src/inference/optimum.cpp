@@ -11,6 +11,7 @@
 #include "inference/backend/checkpoint.hpp"
 #include "search/laplace.hpp"
 #include "search/search.hpp"
+#include "search/settle.hpp"
 
 namespace sysid::optimum {
 namespace {
@@ -28,6 +29,19 @@ std::vector<std::size_t> parameters_at_bound(Target const& target, Mode const& m
     if (below < 1e-3 * unit || above < 1e-3 * width) found.push_back(p);
   }
   return found;
+}
+
+/// Of an optimum that was not reached.
+Finding not_reached(Mode const& mode) {
+  return {
+      FindingCode::optimum_not_reached,
+      Severity::error,
+      {},
+      fmt::format("the search ended before an optimum: a further step promises to raise the log density by {:.2g}, {}", mode.gain,
+                  mode.stalled ? "but no step that was tried does" : "and the rounds of the search came to their end"),
+      mode.stalled ? "make the solver more accurate, for example `solver = cvode(relative = 1e-9)`, fix parameters that the data "
+                     "do not determine, or sample with mh"
+                   : "fit again with `search = near(...)` of this fit, which goes on from here, or sample with mh"};
 }
 
 void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {
@@ -62,6 +76,7 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
   Mode const& best = result.modes.front();
   result.findings = std::move(found.findings);
   result.search_told = true;
+  if (best.gain > large_gain) result.findings.push_back(not_reached(best));
   std::vector<std::string> names, bound;
   for (std::size_t const p : parameters_at_bound(target, best)) {
     names.push_back(target.parameters()[p].name);

@@ -2,6 +2,7 @@
 // every density becomes flat in them, whether it still rises towards the bound or not.
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "search/objective.hpp"
 
@@ -14,7 +15,8 @@ namespace sysid {
 ///                        logarithm where it is large
 ///   none                 z = theta
 ///
-/// For the density on the sampler's coordinates, which vanishes at bounds, z = theta throughout.
+/// An end is 1e-12 away from its bound in z. For the density on the sampler's coordinates, which vanishes at bounds, z = theta
+/// throughout.
 class Box {
  public:
   explicit Box(Objective const& objective);
@@ -24,6 +26,10 @@ class Box {
   /// dz/dtheta.
   Eigen::VectorXd slope(Eigen::VectorXd const& theta) const;
 
+  /// Whether a coordinate lies at a bound.
+  bool at_low(Eigen::VectorXd const& z, Eigen::Index p) const;
+  bool at_high(Eigen::VectorXd const& z, Eigen::Index p) const;
+
   Eigen::VectorXd const& low() const { return low_; }
   Eigen::VectorXd const& high() const { return high_; }
   /// Of the prior, in z.
@@ -32,8 +38,9 @@ class Box {
  private:
   enum class Kind { line, half_line, interval };
 
-  Objective const& objective_;
   std::vector<Kind> kinds_;
+  Eigen::VectorXd middle_;            // m
+  Eigen::VectorXd lowest_, highest_;  // theta
   Eigen::VectorXd low_, high_, width_;
 };
 

@@ -114,7 +114,7 @@ void climb_once(Objective const& objective, std::vector<Climber*> const& block, 
   for (std::size_t k = 0; k < block.size(); ++k) {
     for (double const factor : dampings) {
       Eigen::VectorXd const step = damped_step(objective, slopes[k], factor * block[k]->damping);
-      trials.push_back(objective.clamp(block[k]->theta + step));
+      trials.push_back(objective.clamp(block[k]->theta + step, block[k]->theta));
       promised.push_back(std::fabs(slopes[k].gradient.dot(trials.back() - block[k]->theta)));
     }
   }

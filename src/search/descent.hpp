@@ -18,6 +18,7 @@ struct Climber {
   bool done = false;          // no further step is worth taking, or none is possible
   int hits = 1;               // searches that it stands for
   double gain = infinity;     // of the log density that its next step promises, as far as bounds leave room; infinite: not asked
+  bool stalled = false;       // no step that was tried gained anything, whatever was promised
 };
 
 /// Of a prior width: residuals bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a

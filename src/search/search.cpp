@@ -16,12 +16,15 @@
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 #include "search/local_searches.hpp"
+#include "search/settle.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr int draws_per_pass = 2048;
-constexpr int early_rounds = 6, late_rounds = 100, usual_rounds = 15;
+constexpr int early_rounds = 6, late_rounds = 30, late_evaluations = 100, usual_rounds = 15;
+constexpr int patient_rounds = 300;    // along a curved valley, of searches that may end highest
+constexpr double may_end_highest = 3;  // nats below the highest
 constexpr int most_passes = 4;
 
 /// How much a search looks at: of which draws it asks the density, and how many of them it climbs from.
@@ -125,27 +128,50 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
                  "fix one of them, give them narrower priors, or measure a quantity that distinguishes them"};
 }
 
-void add_findings(Objective const& objective, SearchResult& result) {
-  std::vector<Mode> const& modes = result.modes;
-  for (std::size_t i = 1; i < modes.size() && objective.objective_kind != ObjectiveKind::likelihood; ++i) {
-    if (modes[i].share <= notable_share) continue;
-    result.findings.push_back(
-        {FindingCode::second_mode,
-         Severity::warning,
-         {},
-         fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
-                     describe(objective.target, modes[i])),
-         "compare both solutions: add data or prior knowledge that distinguishes them, or run more chains and report both"});
-  }
-  auto const parameters = static_cast<std::size_t>(objective.dimension());
-  for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters)
-    if (auto finding = flat_direction(objective.target, modes.front(), {modes.front().flat.data() + at, parameters}))
-      result.findings.push_back(std::move(*finding));
+/// Nats below the best: a likelihood has no mass to share.
+Finding second_optimum(Target const& target, std::vector<Mode> const& modes, std::size_t count) {
+  double const below = modes.front().log_density - modes[1].log_density;
+  return {FindingCode::second_mode,
+          Severity::warning,
+          {},
+          fmt::format("{} of nearly the same likelihood, {} below in log likelihood: {}",
+                      count == 1 ? "a second optimum is" : fmt::format("{} further optima are, the next", count),
+                      below < 0.005 ? std::string("nothing") : fmt::format("{:.2g}", below), describe(target, modes[1])),
+          "compare both solutions: add data that distinguish them, narrow the priors to the one that is possible, or use mh, which "
+          "describes the whole posterior"};
 }
 
 bool has_coefficients(Target const& target) {
   return std::any_of(target.parameters().begin(), target.parameters().end(),
                      [](ParameterInfo const& each) { return each.coefficient; });
+}
+
+/// Whether the best mode was met once, which may have a better neighbour that was not met, or modes are so many that others may
+/// well be missing: of the places where searches can end, those not seen hold w (w + 1) / (n (n - 1)) for w modes after n searches
+/// (Boender and Rinnooy Kan 1987).
+bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
+  constexpr double tolerable = 0.03, as_high = 0.01;
+  int places = 1, hits = modes.front().hits;
+  for (std::size_t m = 1; m < modes.size(); ++m) {
+    double const below = modes[m - 1].log_density - modes[m].log_density;
+    if (std::fabs(below) > as_high) ++places;
+    if (modes.front().log_density - modes[m].log_density < as_high) hits += modes[m].hits;
+  }
+  auto const w = static_cast<double>(places), n = static_cast<double>(searches);
+  return hits < 2 || w * (w + 1) > tolerable * n * (n - 1);
+}
+
+/// Local searches to their ends.
+void finish(Objective const& objective, std::vector<Climber>& climbers, Ledger& ledger, std::function<bool()> const& stop) {
+  climb(objective, climbers, objective.target.has_gradient() ? late_evaluations : late_rounds, ledger, stop);
+  settle(objective, climbers, settling_rounds, ledger, stop);
+  sort_best_first(climbers);
+  auto const low = std::find_if(climbers.begin(), climbers.end(), [&](Climber const& each) {
+    return each.log_density < climbers.front().log_density - may_end_highest;
+  });
+  std::vector<Climber> highest(std::make_move_iterator(climbers.begin()), std::make_move_iterator(low));
+  settle(objective, highest, patient_rounds, ledger, stop);
+  std::move(highest.begin(), highest.end(), climbers.begin());
 }
 
 LaneArray draw_prior(Target const& target, StreamKey key, int count) {
@@ -192,11 +218,11 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
     begun = begun || !starts.empty();
     climb(*objective, starts, early_rounds, context.ledger, stop);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
-    climb(*objective, last, late_rounds, context.ledger, stop);
+    finish(*objective, last, context.ledger, stop);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
     if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
-    if (!result.modes.empty() && (result.modes.front().hits > 1 || ended.size() == 1)) break;
+    if (!result.modes.empty() && (ended.size() == 1 || !may_be_missed(result.modes, ended.size()))) break;
     expected = context.ledger.solves() - before + usual;
     context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), expected);
   }
@@ -219,7 +245,7 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
     }
     return result;
   }
-  add_findings(*objective, result);
+  result.findings = mode_findings(target, objective_kind, result.modes);
   return result;
 }
 
@@ -246,10 +272,32 @@ SearchResult search_from(Target const& target, ObjectiveKind objective_kind, Con
     result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(starts.width()));
     return result;
   }
-  add_findings(
-      make_objective(target, objective_kind, draw_prior(target, {context.seed, Purpose::start, 0, search_step}, draws_per_pass)),
-      result);
+  result.findings = mode_findings(target, objective_kind, result.modes);
   return result;
+}
+
+Findings mode_findings(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes) {
+  Findings findings;
+  auto const notable = [](Mode const& mode) { return mode.share > notable_share; };
+  if (objective_kind == ObjectiveKind::likelihood) {
+    auto const others = static_cast<std::size_t>(std::count_if(modes.begin() + 1, modes.end(), notable));
+    if (others > 0) findings.push_back(second_optimum(target, modes, others));
+  }
+  for (std::size_t i = 1; i < modes.size() && objective_kind != ObjectiveKind::likelihood; ++i) {
+    if (!notable(modes[i])) continue;
+    findings.push_back(
+        {FindingCode::second_mode,
+         Severity::warning,
+         {},
+         fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
+                     describe(target, modes[i])),
+         "compare both solutions: add data or prior knowledge that distinguishes them, or run more chains and report both"});
+  }
+  auto const parameters = static_cast<std::size_t>(target.dimension());
+  for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters)
+    if (auto finding = flat_direction(target, modes.front(), {modes.front().flat.data() + at, parameters}))
+      findings.push_back(std::move(*finding));
+  return findings;
 }
 
 std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains) {

@@ -33,6 +33,9 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
 /// elsewhere is not looked for, and a note says so.
 SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context);
 
+/// What the modes of a search say about its result: others that count, and directions in which the best one is flat.
+Findings mode_findings(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes);
+
 /// Spreads `chains` over modes by their shares: every mode above 1 % gets one while chains last, the rest go where the share is
 /// most under-represented. Returns the mode of each chain; modes in order.
 std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains);

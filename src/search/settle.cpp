@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
+#include "core/numeric/elementary.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/box.hpp"
+#include "search/laplace.hpp"
 
 namespace sysid {
 namespace {
@@ -195,8 +198,10 @@ Eigen::VectorXd best_step(Eigen::MatrixXd const& h, Eigen::VectorXd const& g, Ei
       double const room = ((move(i) > 0 ? high(i) : low(i)) - s(i)) / move(i);
       if (room < part) part = room, stopped = i;
     }
-    if ((g - h * s).dot(move) > 0) s += part * move;
-    else if (stopped >= 0) return s;  // rounding: no direction up
+    if ((g - h * s).dot(move) > 0)
+      s += part * move;
+    else if (stopped >= 0)
+      return s;  // rounding: no direction up
     if (stopped >= 0) {
       s(stopped) = move(stopped) > 0 ? high(stopped) : low(stopped);
       held[static_cast<std::size_t>(stopped)] = true;
@@ -277,14 +282,13 @@ void step(Objective const& objective, Box const& box, std::vector<Settler*> cons
       settler.climber.curvature = slope.asDiagonal() * quadratics[k].curvature * slope.asDiagonal();
     } else {
       settler.damping *= 1e4;
-      settler.done = settler.damping > 1e12;  // no direction up, whatever the model promises
+      settler.done = settler.climber.stalled = settler.damping > 1e12;
     }
   }
 }
 
 /// One round: which have arrived, and a step of those that have not, if `stepping`.
-void settle_once(Objective const& objective, Box const& box, std::vector<Settler*> const& settlers, bool stepping,
-                 Ledger& ledger) {
+void settle_once(Objective const& objective, Box const& box, std::vector<Settler*> const& settlers, bool stepping, Ledger& ledger) {
   Ledger looked;
   std::vector<Eigen::VectorXd> places;
   std::vector<Eigen::MatrixXd> curvatures;
@@ -299,12 +303,14 @@ void settle_once(Objective const& objective, Box const& box, std::vector<Settler
     Settler& settler = *settlers[k];
     settler.curvature = quadratics[k].curvature;
     settler.climber.gain = gain_of(box, quadratics[k], settler.z);
-    settler.done = !(settler.climber.gain >= small_gain && settler.climber.gain < infinity);
+    double const enough = settler.climber.done ? large_gain : small_gain;
+    settler.done = !(settler.climber.gain >= enough && settler.climber.gain < infinity);
     if (settler.done) continue;
     left.push_back(&settler);
     of_left.push_back(std::move(quadratics[k]));
   }
   if (!stepping || left.empty()) return;
+  for (Settler* const settler : left) settler->climber.done = settler->climber.stalled = false;
   ledger.merge(looked);
   step(objective, box, left, of_left, ledger);
 }
@@ -333,11 +339,32 @@ void settle(Objective const& objective, std::vector<Climber>& climbers, int roun
   }
 }
 
-double promised_gain(Objective const& objective, Eigen::VectorXd const& theta, Eigen::MatrixXd const& curvature) {
+bool connected(Objective const& objective, Mode const& a, Mode const& b) {
+  constexpr double tolerable = 0.1;
   Box const box(objective);
-  Eigen::VectorXd const z = box.inside(theta);
+  Eigen::VectorXd const from = box.inside(theta_of(a)), to = box.inside(theta_of(b));
+  std::vector<Eigen::VectorXd> between;
+  for (double const part : {0.25, 0.5, 0.75}) between.push_back(box.outside(from + part * (to - from)));
   Ledger looked;
-  return gain_of(box, quadratics_at(objective, box, {z}, {in_box(box, theta, curvature)}, looked).front(), z);
+  double const least = std::min(a.log_density, b.log_density) - tolerable;
+  std::vector<double> const density = objective.log_density(to_lanes(between), looked);
+  return std::all_of(density.begin(), density.end(), [&](double each) { return each >= least; });
+}
+
+Outlook look_ahead(Objective const& objective, Eigen::VectorXd const& theta, Eigen::MatrixXd const& curvature) {
+  Box const box(objective);
+  Eigen::VectorXd const z = box.inside(theta), slope = box.slope(theta);
+  Ledger looked;
+  Quadratic const quadratic = quadratics_at(objective, box, {z}, {in_box(box, theta, curvature)}, looked).front();
+  Outlook outlook{gain_of(box, quadratic, z), 0};
+  if (objective.objective_kind == ObjectiveKind::posterior) return outlook;
+  for (Eigen::Index p = 0; p < z.size(); ++p) {
+    double const rising = quadratic.gradient(p);  // towards high
+    if (!(box.at_low(z, p) && rising < 0) && !(box.at_high(z, p) && rising > 0)) continue;
+    double const flat = longest_width * objective.scale(p) * std::sqrt(2 * std::numbers::pi) * slope(p);
+    outlook.log_mass -= elementary::log(std::max(std::fabs(rising), 1.0)) + elementary::log(flat);
+  }
+  return outlook;
 }
 
 }  // namespace sysid

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "search/local_searches.hpp"
 #include "search/refit.hpp"
+#include "search/search.hpp"
 
 namespace sysid {
 namespace {
@@ -39,10 +41,14 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
   if (context.stop_requested()) return false;
   preparation.solver = refined.solver;
   preparation.modes = std::move(refined.modes);
+  rank(objective_kind, preparation.modes);
   preparation.moves = refined.moves;
-  // What looked like several may have been the solver's.
-  if (std::count_if(preparation.modes.begin(), preparation.modes.end(), [](Mode const& each) { return each.share > 0.01; }) < 2)
-    std::erase_if(preparation.findings, [](Finding const& each) { return each.code == FindingCode::second_mode; });
+  // What looked like several may have been the solver's, and another may be the highest now.
+  std::erase_if(preparation.findings, [](Finding const& each) {
+    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
+  });
+  Findings const found = mode_findings(*make(refined.solver), objective_kind, preparation.modes);
+  preparation.findings.insert(preparation.findings.begin(), found.begin(), found.end());
   if (refined.solver != stated)
     session.notices << fmt::format("{}: {} (with {}, {} with {})\n", task.name, accuracy(refined.solver), accuracy(stated),
                                    moved(preparation.moves.front()), stated.finer_words());
