@@ -13,8 +13,8 @@ struct SampledEvidence {
   double above = 0;  // log_evidence would be larger by this
   double error = 0;  // one standard error
 
-  /// By more than a tenth, and by more than chance.
-  bool differs() const { return state == State::known && std::fabs(above) > 0.1 && std::fabs(above) > 2 * error; }
+  /// By more than two tenths, and by more than chance.
+  bool differs() const { return state == State::known && std::fabs(above) > 0.2 && std::fabs(above) > 2 * error; }
 };
 
 struct Evidence {
