@@ -53,7 +53,7 @@ struct Misfit {
   double ratio, shift;  // of the widths, posterior over stated; of the mean, in sds of the posterior
 
   bool wrong() const { return ratio > 1.5 || ratio < 0.5; }
-  bool notable() const { return wrong() || ratio > 1.25 || ratio < 0.8 || std::fabs(shift) > 0.5; }
+  bool notable() const { return wrong() || ratio > 1.3 || ratio < 0.75 || std::fabs(shift) > 0.65; }
   double size() const { return std::max(std::fabs(std::log(ratio)), 0.4 * std::fabs(shift)); }
 };
 
@@ -65,7 +65,7 @@ std::vector<Misfit> misfits(Mode const& best, WeightedDraws const& draws, std::v
     for (std::size_t at = p; at < best.flat.size(); at += best.sd.size()) flat = flat || best.flat[at] != 0;
     if (flat || !(best.sd[p] > 0)) continue;
     Misfit const each{p, draws.sd[p] / best.sd[p], (draws.mean[p] - best.declared[p]) / draws.sd[p]};
-    if (each.notable()) found.push_back(each);
+    if (draws.tell() ? each.notable() : each.wrong()) found.push_back(each);
   }
   std::stable_sort(found.begin(), found.end(), [](Misfit const& a, Misfit const& b) { return a.size() > b.size(); });
   return found;

@@ -22,7 +22,7 @@ namespace sysid {
 namespace {
 
 constexpr int draws_per_pass = 2048;
-constexpr int early_rounds = 6, late_rounds = 30, late_evaluations = 100, usual_rounds = 15;
+constexpr int early_rounds = 6, usual_rounds = 15;
 constexpr int patient_rounds = 300;    // along a curved valley, of searches that may end highest
 constexpr double may_end_highest = 3;  // nats below the highest
 constexpr int most_passes = 4;
@@ -31,13 +31,14 @@ constexpr int most_passes = 4;
 struct Breadth {
   int draws;
   std::size_t likeliest, others, finalists;
+  int rounds;  // of the finalists, before they are settled; of a target that has a gradient, evaluations
 };
-constexpr Breadth broad{draws_per_pass, 96, 32, 16};
+constexpr Breadth broad{draws_per_pass, 96, 32, 16, 30};
 /// Of a likelihood that takes a matrix decomposition each time, and tells its gradient.
-constexpr Breadth narrow{64, 6, 2, 4};
+constexpr Breadth narrow{64, 6, 2, 4, 100};
 /// Of an equation with an unknown function in it: what is not linear are the few other parameters, and every round asks for the
 /// slopes of all coefficients.
-constexpr Breadth few{draws_per_pass, 12, 4, 3};
+constexpr Breadth few{draws_per_pass, 12, 4, 3, 100};
 
 constexpr double notable_share = 0.01;
 
@@ -151,6 +152,7 @@ bool has_coefficients(Target const& target) {
 /// (Boender and Rinnooy Kan 1987).
 bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
   constexpr double tolerable = 0.03, as_high = 0.01;
+  constexpr int usual = 2;  // places, of a search of any size
   int places = 1, hits = modes.front().hits;
   for (std::size_t m = 1; m < modes.size(); ++m) {
     double const below = modes[m - 1].log_density - modes[m].log_density;
@@ -158,12 +160,13 @@ bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
     if (modes.front().log_density - modes[m].log_density < as_high) hits += modes[m].hits;
   }
   auto const w = static_cast<double>(places), n = static_cast<double>(searches);
-  return hits < 2 || w * (w + 1) > tolerable * n * (n - 1);
+  return hits < 2 || (places > usual && w * (w + 1) > tolerable * n * (n - 1));
 }
 
 /// Local searches to their ends.
-void finish(Objective const& objective, std::vector<Climber>& climbers, Ledger& ledger, std::function<bool()> const& stop) {
-  climb(objective, climbers, objective.target.has_gradient() ? late_evaluations : late_rounds, ledger, stop);
+void finish(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
+            std::function<bool()> const& stop) {
+  climb(objective, climbers, rounds, ledger, stop);
   settle(objective, climbers, settling_rounds, ledger, stop);
   sort_best_first(climbers);
   auto const low = std::find_if(climbers.begin(), climbers.end(), [&](Climber const& each) {
@@ -218,7 +221,7 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
     begun = begun || !starts.empty();
     climb(*objective, starts, early_rounds, context.ledger, stop);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
-    finish(*objective, last, context.ledger, stop);
+    finish(*objective, last, breadth.rounds, context.ledger, stop);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
     if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
