@@ -18,7 +18,7 @@ namespace {
 constexpr double of_weight = 1e-3;  // share of a mode that is followed; all others together change little
 constexpr double nearer = 0.5;      // widths: modes so near have come together
 constexpr int most_parameters = 40;
-constexpr int draws_per_round = 300, dear_draws = 100;  // even: pairs
+constexpr int draws_per_round = 300;  // even: pairs
 constexpr int most_rounds = 6;
 constexpr double freedom = 4;                                    // of Student's t
 constexpr std::uint64_t first_step = 4'000'000, scale_step = 4;  // of Purpose::start
@@ -249,14 +249,14 @@ std::vector<Mode> sampled_modes(Target const& target, ObjectiveKind objective_ki
 
 WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
                              std::function<bool()> const& stop) {
-  if (modes.empty() || target.dimension() == 0 || target.dimension() > most_parameters) return {};
+  if (modes.empty() || target.dimension() == 0 || target.dimension() > most_parameters || target.has_gradient()) return {};
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
   double heaviest = -infinity;
   for (Mode const& mode : modes) heaviest = std::max(heaviest, mode.log_mass);
   std::vector<Component> components;
   for (Mode const& mode : modes)
     components.emplace_back(std::max(0.05, elementary::exp(mode.log_mass - heaviest)), theta_of(mode), covariance_of(mode));
-  int const pairs = (target.has_gradient() ? dear_draws : draws_per_round) / 2;
+  constexpr int pairs = draws_per_round / 2;
   Population population;
   WeightedDraws result;
   for (int round = 0; round < most_rounds && !(stop && stop()); ++round) {

@@ -30,8 +30,8 @@ struct WeightedDraws {
 /// weighted draws before have as mean and covariance, only where the weights differ much. A draw counts against the mixture of all
 /// rounds.                                                                Owen 2013, ch. 9; Cornuet, Marin, Mira and Robert 2012
 ///
-/// 300 densities where the posterior is nearly normal, six times as many at most; of a target with a gradient, which is dear, a
-/// third. Nothing (no draws) above 40 parameters or without modes.
+/// 300 densities where the posterior is nearly normal, six times as many at most. Nothing (no draws) above 40 parameters, without
+/// modes, and of a target with a gradient, whose densities are dear.
 WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
                              std::function<bool()> const& stop);
 
