@@ -44,14 +44,14 @@ double evidence_of(std::vector<double> const& y, double lowest, double highest) 
   return std::log(sum);
 }
 
-std::vector<double> rows(int count) {
+std::vector<double> few_rows(int count) {
   std::vector<double> y;
   for (int i = 0; i < count; ++i) y.push_back(1 + 0.5 * std::sin(2.4 * i) + 0.3 * std::cos(5.1 * i));
   return y;
 }
 
 /// A straight line: normal in everything.
-TestTarget line() {
+TestTarget straight_line() {
   return TestTarget({"a", "b"}, {{Prior::normal, 0, 10}, {Prior::normal, 0, 10}}, 20, 0,
                     [](std::vector<double> const& w, std::vector<double>& r) {
                       for (int i = 0; i < 20; ++i) r[static_cast<std::size_t>(i)] = (1 + 2 * i - w[0] - w[1] * i) / 0.5;
@@ -60,7 +60,7 @@ TestTarget line() {
 
 /// A slow relaxation seen at its beginning: only the initial slope is known, and amplitude and time constant go together far
 /// beyond the curvature at the optimum.
-TestTarget slow() {
+TestTarget slow_relaxation() {
   return TestTarget({"amplitude", "tau"}, {{Prior::uniform, 0, 400}, {Prior::log_uniform, 10, 1e4}}, 100, 0,
                     [](std::vector<double> const& w, std::vector<double>& r) {
                       for (int i = 0; i < 100; ++i) {
@@ -70,7 +70,7 @@ TestTarget slow() {
                     });
 }
 
-Finding const* widths(FitResult const& result) {
+Finding const* widths_finding(FitResult const& result) {
   auto const found = std::find_if(result.findings.begin(), result.findings.end(),
                                   [](Finding const& each) { return each.code == FindingCode::widths_not_normal; });
   return found == result.findings.end() ? nullptr : &*found;
@@ -80,8 +80,8 @@ Finding const* widths(FitResult const& result) {
 
 TEST_CASE("draws from a normal posterior confirm its evidence and widths exactly, by one round") {
   Bench bench;
-  std::vector<Mode> const modes = search(line(), ObjectiveKind::posterior, bench.context).modes;
-  WeightedDraws const draws = weighted_draws(line(), modes, 1, bench.ledger, {});
+  std::vector<Mode> const modes = search(straight_line(), ObjectiveKind::posterior, bench.context).modes;
+  WeightedDraws const draws = weighted_draws(straight_line(), modes, 1, bench.ledger, {});
   CHECK(draws.draws == 300);
   CHECK(draws.effective > 200);
   CHECK(draws.log_evidence == doctest::Approx(modes.front().log_mass).epsilon(1e-6));
@@ -95,11 +95,11 @@ TEST_CASE("draws from a normal posterior confirm its evidence and widths exactly
 TEST_CASE("the evidence of few rows is corrected by weighted draws, that of many is confirmed") {
   for (int const count : {4, 10, 60}) {
     CAPTURE(count);
-    TestTarget const target = sample_of(rows(count), 0.01, 10);
+    TestTarget const target = sample_of(few_rows(count), 0.01, 10);
     Bench bench;
     std::vector<Mode> const modes = search(target, ObjectiveKind::posterior, bench.context).modes;
     Evidence const found = laplace_evidence(target, ObjectiveKind::posterior, modes, 1, bench.ledger);
-    double const off = evidence_of(rows(count), 0.01, 10) - *found.log_evidence;
+    double const off = evidence_of(few_rows(count), 0.01, 10) - *found.log_evidence;
     REQUIRE(found.sampled.state == SampledEvidence::State::known);
     CHECK(std::fabs(found.sampled.above - off) < 3 * found.sampled.error + 0.02);
     CHECK(found.sampled.error < 0.1);
@@ -110,12 +110,12 @@ TEST_CASE("the evidence of few rows is corrected by weighted draws, that of many
 
 TEST_CASE("map fails where the posterior is far wider than its normal distribution, and not where it is normal") {
   Bench far, near, many;
-  FitResult const wide = optimum::run_map(slow(), Settings{}, far.context);
-  REQUIRE(widths(wide) != nullptr);
-  CAPTURE(widths(wide)->message);
-  CHECK(widths(wide)->severity == Severity::error);
-  CHECK(widths(optimum::run_map(line(), Settings{}, near.context)) == nullptr);
-  CHECK(widths(optimum::run_map(sample_of(rows(200), 0.01, 10), Settings{}, many.context)) == nullptr);
+  FitResult const wide = optimum::run_map(slow_relaxation(), Settings{}, far.context);
+  REQUIRE(widths_finding(wide) != nullptr);
+  CAPTURE(widths_finding(wide)->message);
+  CHECK(widths_finding(wide)->severity == Severity::error);
+  CHECK(widths_finding(optimum::run_map(straight_line(), Settings{}, near.context)) == nullptr);
+  CHECK(widths_finding(optimum::run_map(sample_of(few_rows(200), 0.01, 10), Settings{}, many.context)) == nullptr);
 }
 
 TEST_CASE("a mode close to a bound has an evidence, one at the bound has none") {
