@@ -13,7 +13,7 @@
 namespace sysid {
 namespace {
 
-constexpr int rounds = 20, evaluations = 60;
+constexpr int rounds = 20, evaluations = 60;  // rounds of a density that vanishes at bounds, too
 constexpr std::uint64_t refit_step = 2;
 
 }  // namespace
@@ -27,7 +27,8 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
   if (points.empty()) return {};
   std::vector<double> const density = objective.log_density(to_lanes(points), ledger);
   for (std::size_t m = 0; m < modes.size(); ++m) climbers.push_back(climber_at(points[m], density[m]));
-  climb(objective, climbers, target.has_gradient() ? evaluations : rounds, ledger, stop);
+  climb(objective, climbers, target.has_gradient() || objective_kind == ObjectiveKind::posterior ? evaluations : rounds, ledger,
+        stop);
   settle(objective, climbers, settling_rounds, ledger, stop);
   std::vector<Mode> result;
   for (std::size_t m = 0; m < modes.size(); ++m) {

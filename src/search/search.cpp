@@ -22,7 +22,7 @@ namespace sysid {
 namespace {
 
 constexpr int draws_per_pass = 2048;
-constexpr int early_rounds = 6, usual_rounds = 15;
+constexpr int early_rounds = 6, usual_rounds = 15, most_rounds_inside = 100;
 constexpr int patient_rounds = 300;    // along a curved valley, of searches that may end highest
 constexpr double may_end_highest = 3;  // nats below the highest
 constexpr int most_passes = 4;
@@ -221,7 +221,9 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
     begun = begun || !starts.empty();
     climb(*objective, starts, early_rounds, context.ledger, stop);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
-    finish(*objective, last, breadth.rounds, context.ledger, stop);
+    // A density that vanishes at bounds has its optima inside: what was found there before is found to the last digit.
+    int const rounds = objective_kind == ObjectiveKind::posterior ? most_rounds_inside : breadth.rounds;
+    finish(*objective, last, rounds, context.ledger, stop);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
     if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
