@@ -9,33 +9,16 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "inference/weighted_draws.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "search/descent.hpp"
 #include "search/laplace.hpp"
-#include "search/refit.hpp"
 
 namespace sysid {
 namespace {
 
-constexpr double of_weight = 1e-3;          // share of a mode that is followed; all others together change little
-constexpr double nearer = 0.5;              // widths: modes so near have come together
 constexpr std::uint64_t evidence_step = 4;  // of Purpose::start
-
-/// Modes of the density on the sampler's coordinates, each once.
-std::vector<Mode> sampled_modes(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes,
-                                std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
-  std::vector<Mode> of_some_weight;
-  for (Mode const& mode : modes)
-    if (of_some_weight.empty() || mode.share > of_weight) of_some_weight.push_back(mode);
-  if (objective_kind == ObjectiveKind::posterior) return of_some_weight;
-  std::vector<Mode> distinct;
-  for (Mode& mode : refit(target, ObjectiveKind::posterior, of_some_weight, seed, ledger, stop)) {
-    if (!std::isfinite(mode.log_density)) continue;
-    bool const known =
-        std::any_of(distinct.begin(), distinct.end(), [&](Mode const& other) { return distance(other, mode) < nearer; });
-    if (!known) distinct.push_back(std::move(mode));
-  }
-  return distinct;
-}
+constexpr double last = 27.6;               // of a coordinate that ends at infinity: 1e-12 of the interval from its bound
 
 /// Parameters that take part in flat directions; an unknown function stands for all its coefficients.
 std::vector<std::string> names_along(Target const& target, std::vector<double> const& flat) {
@@ -59,6 +42,29 @@ std::vector<std::string> names_at_end(Objective const& objective, Mode const& mo
       names.push_back(objective.target.parameters()[static_cast<std::size_t>(p)].name);
   }
   return names;
+}
+
+/// A search ends where no draw of the prior lies, but a posterior may.
+void follow_further(Objective& objective, Mode& mode, Ledger& ledger, std::function<bool()> const& stop) {
+  for (Eigen::Index p = 0; p < objective.scale.size(); ++p) {
+    if (std::isfinite(objective.low(p))) objective.low(p) = std::min(objective.low(p), -last);
+    if (std::isfinite(objective.high(p))) objective.high(p) = std::max(objective.high(p), last);
+  }
+  constexpr int rounds = 60;
+  std::vector<Climber> climber = {climber_at(theta_of(mode), mode.log_density)};
+  climb(objective, climber, rounds, ledger, stop);
+  int const hits = mode.hits;
+  Eigen::MatrixXd const guess = climber.front().curvature.size() > 0 ? climber.front().curvature : inverse(covariance_of(mode));
+  mode = laplace_mode(objective, climber.front().theta, guess, ledger);
+  mode.hits = hits;
+}
+
+SampledEvidence by_draws(double laplace, WeightedDraws const& draws) {
+  constexpr double precise = 0.25;  // nats
+  if (draws.draws == 0) return {};
+  bool const known = draws.tell() && draws.error < precise;
+  return {known ? SampledEvidence::State::known : SampledEvidence::State::unknown, known ? draws.log_evidence - laplace : 0,
+          known ? draws.error : 0};
 }
 
 /// log of the integral along each axis of a mode over that of the normal density, summed.
@@ -100,11 +106,12 @@ Evidence laplace_evidence(Target const& target, ObjectiveKind objective_kind, st
   if (objective_kind == ObjectiveKind::likelihood)
     return {{}, "only the likelihood was maximised, but an evidence is an average over the prior", 0, 0, true};
   if (modes.empty() || target.dimension() == 0) return {{}, "no mode was searched for", 0, 0};
-  std::vector<Mode> const found = sampled_modes(target, objective_kind, modes, seed, ledger, stop);
+  std::vector<Mode> found = sampled_modes(target, objective_kind, modes, seed, ledger, stop);
   if (found.empty()) return {{}, "no mode of the posterior has a finite density", 0, 0};
   auto const best =
       std::max_element(found.begin(), found.end(), [](Mode const& a, Mode const& b) { return a.log_mass < b.log_mass; });
-  Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, evidence_step);
+  Objective objective = make_objective(target, ObjectiveKind::posterior, seed, evidence_step);
+  if (!names_at_end(objective, *best).empty()) follow_further(objective, *best, ledger, stop);
   if (auto const names = names_at_end(objective, *best); !names.empty())
     return {{}, fmt::format("the mode lies at a bound of {}", fmt::join(names, ", ")), 0, 0};
   if (!best->flat.empty())
@@ -112,7 +119,10 @@ Evidence laplace_evidence(Target const& target, ObjectiveKind objective_kind, st
   if (!std::isfinite(best->log_mass)) return {{}, "the curvature at the mode is singular", 0, 0};
   double sum = 0;
   for (Mode const& mode : found) sum += elementary::exp(mode.log_mass - best->log_mass);
-  return {best->log_mass + elementary::log(sum), "", along_axes(objective, *best, ledger), static_cast<int>(found.size())};
+  Evidence evidence{best->log_mass + elementary::log(sum), "", along_axes(objective, *best, ledger),
+                    static_cast<int>(found.size())};
+  evidence.sampled = by_draws(*evidence.log_evidence, weighted_draws(target, found, seed, ledger, stop));
+  return evidence;
 }
 
 }  // namespace sysid

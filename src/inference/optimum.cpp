@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "core/text/words.hpp"
 #include "inference/backend/checkpoint.hpp"
+#include "inference/weighted_draws.hpp"
 #include "search/laplace.hpp"
 #include "search/refit.hpp"
 #include "search/search.hpp"
+#include "search/settle.hpp"
 
 namespace sysid::optimum {
 namespace {
@@ -21,6 +25,72 @@ std::vector<std::size_t> parameters_at_bound(Target const& target, Mode const& m
   for (std::size_t p = 0; p < target.parameters().size(); ++p)
     if (at_bound(target.parameters()[p], mode.declared[p])) found.push_back(p);
   return found;
+}
+
+/// Of an optimum that was not reached.
+Finding not_reached(Mode const& mode) {
+  return {
+      FindingCode::optimum_not_reached,
+      Severity::error,
+      {},
+      fmt::format("the search ended before an optimum: a further step promises to raise the log density by {:.2g}, {}", mode.gain,
+                  mode.stalled ? "but no step that was tried does" : "and the rounds of the search came to their end"),
+      mode.stalled ? "make the solver more accurate, for example `solver = cvode(relative = 1e-9)`, fix parameters that the data "
+                     "do not determine, or sample with mh"
+                   : "fit again with `search = near(...)` of this fit, which goes on from here, or sample with mh"};
+}
+
+/// A parameter whose posterior has another width or place than its normal distribution at the optimum.
+struct Misfit {
+  std::size_t parameter;
+  double ratio, shift;  // of the widths, posterior over stated; of the mean, in sds of the posterior
+
+  bool wrong() const { return ratio > 1.5 || ratio < 0.5; }
+  bool notable() const { return wrong() || ratio > 1.3 || ratio < 0.75 || std::fabs(shift) > 0.65; }
+  double size() const { return std::max(std::fabs(std::log(ratio)), 0.4 * std::fabs(shift)); }
+};
+
+/// skipped: parameters whose sds are known to mean nothing.
+std::vector<Misfit> misfits(Mode const& best, WeightedDraws const& draws, std::vector<std::size_t> const& skipped) {
+  std::vector<Misfit> found;
+  for (std::size_t p = 0; p < best.sd.size(); ++p) {
+    bool flat = std::find(skipped.begin(), skipped.end(), p) != skipped.end();
+    for (std::size_t at = p; at < best.flat.size(); at += best.sd.size()) flat = flat || best.flat[at] != 0;
+    if (flat || !(best.sd[p] > 0)) continue;
+    Misfit const each{p, draws.sd[p] / best.sd[p], (draws.mean[p] - best.declared[p]) / draws.sd[p]};
+    if (draws.tell() ? each.notable() : each.wrong()) found.push_back(each);
+  }
+  std::stable_sort(found.begin(), found.end(), [](Misfit const& a, Misfit const& b) { return a.size() > b.size(); });
+  return found;
+}
+
+/// Whether the posterior has the widths of the normal distribution at its highest mode. Several modes are a finding of their own.
+std::optional<Finding> check_widths(Target const& target, std::vector<Mode> const& modes, std::vector<std::size_t> const& at_bound,
+                                    RunContext& context) {
+  Ledger extra;
+  auto const stop = [&] { return context.stop_requested(); };
+  std::vector<Mode> const sampled = sampled_modes(target, ObjectiveKind::declared_posterior, modes, context.seed, extra, stop);
+  if (sampled.size() != 1) return std::nullopt;
+  WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop);
+  if (draws.draws == 0 || draws.sd.empty()) return std::nullopt;
+  Mode const& best = modes.front();
+  std::vector<Misfit> const found = misfits(best, draws, at_bound);
+  if (found.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (Misfit const& each : found) names.push_back(target.parameters()[each.parameter].name);
+  std::size_t const p = found.front().parameter;
+  bool const wrong = std::any_of(found.begin(), found.end(), [](Misfit const& each) { return each.wrong(); });
+  ParameterInfo const& worst = target.parameters()[p];
+  std::string const unit = worst.unit.empty() ? "" : " " + worst.unit;
+  std::string const others =
+      found.size() > 1 ? fmt::format(", and {} are off, too", counted(found.size() - 1, "further parameter")) : "";
+  return Finding{
+      FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, names,
+      fmt::format("the posterior is not normal around its optimum: draws weighted by its density give {} = {:.3g} ± {:.2g}{}, "
+                  "the optimum {:.3g} ± {:.2g}{}{}{}",
+                  worst.name, draws.mean[p], draws.sd[p], unit, best.declared[p], best.sd[p], unit, others,
+                  draws.tell() ? "" : "; these draws are too few to tell the widths"),
+      "fit with mh, whose draws have the widths of the posterior; from `map` take the optimum alone"};
 }
 
 void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {
@@ -55,6 +125,8 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
   Mode const& best = result.modes.front();
   result.findings = std::move(found.findings);
   result.search_told = true;
+  // By a gradient, searches end where it is small: what Newton's step promises then is of the differences of its curvature.
+  if (best.gain > (target.has_gradient() ? 10 * large_gain : large_gain)) result.findings.push_back(not_reached(best));
   std::vector<std::string> names, bound;
   for (std::size_t const p : parameters_at_bound(target, best)) {
     names.push_back(target.parameters()[p].name);
@@ -68,6 +140,9 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
          fmt::format("the optimum lies at a bound of the prior: {}; its sds are not meaningful", fmt::join(bound, ", ")),
          "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
   }
+  if (objective_kind == ObjectiveKind::declared_posterior)
+    if (std::optional<Finding> misfit = check_widths(target, result.modes, parameters_at_bound(target, best), context))
+      result.findings.push_back(std::move(*misfit));
   write_draw(target, best, context, result);
   // One draw has no spread: the standard deviations are those of the Laplace approximation.
   result.summaries = summarise(result);

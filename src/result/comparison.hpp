@@ -13,11 +13,12 @@ struct ComparedFit {
   int parameters = 0;                  // sampled or integrated out
   std::string noise;                   // "sigma 0.0881 N/m": what only the noise reads
   std::optional<double> log_evidence;  // nats
-  std::optional<double> rough;         // by so much its axes would have it larger, where that is not little
-  std::optional<double> probability;   // under equal odds of the models before the data
-  std::string without;                 // why it has no evidence
-  bool pass = true;                    // its checks
-  int warnings = 0;                    // among their findings
+  std::optional<double> rough;         // by so much its axes, or weighted draws, would have it larger, where that is not little
+  bool rough_by_draws = false;
+  std::optional<double> probability;  // under equal odds of the models before the data
+  std::string without;                // why it has no evidence
+  bool pass = true;                   // its checks
+  int warnings = 0;                   // among their findings
 };
 
 /// The errors of a prediction on one channel of a record.

@@ -38,6 +38,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::flat_direction, "flat_direction", warning},
     {FindingCode::piles_up_at_bound, "piles_up_at_bound", warning},
     {FindingCode::at_bound, "at_bound", warning},
+    {FindingCode::optimum_not_reached, "optimum_not_reached", error},
+    {FindingCode::widths_not_normal, "widths_not_normal", error_or_warning},
     {FindingCode::residuals_not_white, "residuals_not_white", warning},
     {FindingCode::input_in_residuals, "input_in_residuals", warning},
     {FindingCode::input_timing, "input_timing", warning},

@@ -37,6 +37,8 @@ enum class FindingCode {
   flat_direction,
   piles_up_at_bound,
   at_bound,
+  optimum_not_reached,
+  widths_not_normal,
   residuals_not_white,
   input_in_residuals,
   input_timing,

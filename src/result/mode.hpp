@@ -17,6 +17,8 @@ struct Mode {
   int hits = 0;              // local searches that ended here
   std::vector<double> flat;  // [K x P] moves of the declared parameters, a tenth of a prior width at most, that nothing
                              // resists: widths along them are the prior's; empty: well defined
+  double gain = 0;  // of log density that a further step of the search promises, as far as bounds leave room; infinite: not known
+  bool stalled = false;  // where gain is large: no step found it; else rounds came to their end
 };
 
 }  // namespace sysid

@@ -10,10 +10,6 @@
 namespace sysid {
 namespace {
 
-// Of a prior width: residuals bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
-// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
-double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
-
 constexpr double prior_difference_width = 1e-3;  // second differences need more
 constexpr double most_step = 2;
 constexpr double worth_taking = 1e-8;  // predicted gain in log density below which a search is done
@@ -118,7 +114,7 @@ void climb_once(Objective const& objective, std::vector<Climber*> const& block, 
   for (std::size_t k = 0; k < block.size(); ++k) {
     for (double const factor : dampings) {
       Eigen::VectorXd const step = damped_step(objective, slopes[k], factor * block[k]->damping);
-      trials.push_back(objective.clamp(block[k]->theta + step));
+      trials.push_back(objective.clamp(block[k]->theta + step, block[k]->theta));
       promised.push_back(std::fabs(slopes[k].gradient.dot(trials.back() - block[k]->theta)));
     }
   }
@@ -145,15 +141,20 @@ void climb_once(Objective const& objective, std::vector<Climber*> const& block, 
 
 }  // namespace
 
+double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
+
+std::size_t climbers_per_block(Objective const& objective) {
+  int const columns = 2 * objective.dimension() + 1;
+  int const rows = std::max(1, objective.target.residual_count());
+  return static_cast<std::size_t>(std::clamp((1 << 22) / rows / columns, 1, std::max(1, 512 / columns)));
+}
+
 Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::move(theta), log_density, 1e-2, {}, false}; }
 
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop) {
   if (objective.target.has_gradient()) return climb_by_gradient(objective, climbers, rounds, ledger, stop);
-  // Blocks hold a few million residuals at most, whatever the length of the record.
-  int const columns = 2 * objective.dimension() + 1;
-  int const rows = std::max(1, objective.target.residual_count());
-  std::size_t const width = static_cast<std::size_t>(std::clamp((1 << 22) / rows / columns, 1, std::max(1, 512 / columns)));
+  std::size_t const width = climbers_per_block(objective);
   for (int round = 0; round < rounds; ++round) {
     std::vector<Climber*> active;
     for (Climber& climber : climbers)

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/numeric/not_finite.hpp"
 #include "search/objective.hpp"
 
 namespace sysid {
@@ -16,7 +17,16 @@ struct Climber {
   Eigen::MatrixXd curvature;  // Gauss-Newton plus the prior's, at the point before the last step; empty before the first
   bool done = false;          // no further step is worth taking, or none is possible
   int hits = 1;               // searches that it stands for
+  double gain = infinity;     // of the log density that its next step promises, as far as bounds leave room; infinite: not asked
+  bool stalled = false;       // no step that was tried gained anything, whatever was promised
 };
+
+/// Of a prior width: residuals bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
+/// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
+double difference_width(Target const& target);
+
+/// Blocks hold a few million residuals at most, whatever the length of the record.
+std::size_t climbers_per_block(Objective const& objective);
 
 Climber climber_at(Eigen::VectorXd theta, double log_density);
 

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "search/settle.hpp"
 
 namespace sysid {
 namespace {
@@ -193,7 +195,7 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
   bool const full = objective.dimension() <= most_parameters;
   Steps steps = steps_from(guess, scale, full);
   Eigen::MatrixXd curvature = guess;
-  double value = 0;
+  double value = 0, gain = infinity;
   for (int step = 0; step < most_steps; ++step) {
     Local const local = local_shape(objective, theta, steps.columns, full, ledger);
     value = local.value;
@@ -210,9 +212,10 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
     Steps const former = std::exchange(steps, steps_from(curvature, scale, full));
     // Steps far from what the curvature here asks for would blur it: measure again before believing.
     bool const believed = !full || fitting(former, local, steps);
+    gain = 0.5 * gradient.dot(move);
     if (gradient.dot(move) < close_enough && (believed || step + 1 == most_steps)) break;
     std::vector<Eigen::VectorXd> trials;
-    for (double const part : {1.0, 0.5, 0.2, 0.05, 0.01}) trials.push_back(objective.clamp(theta + part * move));
+    for (double const part : {1.0, 0.5, 0.2, 0.05, 0.01}) trials.push_back(objective.clamp(theta + part * move, theta));
     std::vector<double> const reached = log_density_in_blocks(objective, to_lanes(trials), ledger);
     auto const best = std::max_element(reached.begin(), reached.end());
     if (*best > value) {
@@ -234,6 +237,12 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
     mode.log_mass += elementary::log(spectrum.unit(i)) + 0.5 * elementary::log(2 * std::numbers::pi / spectrum.values(i));
   Eigen::MatrixXd const slope = fill_declared(objective.target, theta, covariance, mode);
   if (objective.objective_kind != ObjectiveKind::posterior) mode.log_mass += log_absolute_determinant(slope);
+  mode.gain = gain;
+  if (!objective.target.has_gradient()) {
+    Outlook const outlook = look_ahead(objective, theta, inverse(covariance));
+    mode.gain = outlook.gain;
+    mode.log_mass += outlook.log_mass;
+  }
   for (Eigen::Index const k : spectrum.flat) add_flat(spectrum.unit.cwiseProduct(spectrum.vectors.col(k)), scale, slope, mode);
   return mode;
 }

@@ -8,6 +8,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "search/laplace.hpp"
+#include "search/settle.hpp"
 
 namespace sysid {
 namespace {
@@ -84,6 +85,13 @@ std::vector<Climber> distinct(Objective const& objective, std::vector<Climber> c
   return apart;
 }
 
+void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes) {
+  // What is asked for is the highest point, except by chains; how much lies around it is another question.
+  auto const height = [&](Mode const& m) { return objective_kind == ObjectiveKind::posterior ? m.log_mass : m.log_density; };
+  std::stable_sort(modes.begin(), modes.end(), [&](Mode const& a, Mode const& b) { return height(a) > height(b); });
+  share_out(objective_kind, modes);
+}
+
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
                            std::function<bool()> const& stop) {
   std::vector<Mode> modes;
@@ -94,8 +102,12 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
         climber.curvature.size() > 0 ? climber.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
     Mode mode = laplace_mode(objective, climber.theta, guess, ledger);
     mode.hits = climber.hits;
-    auto const same =
-        std::find_if(modes.begin(), modes.end(), [&](Mode const& other) { return distance(mode, other) < same_mode; });
+    mode.stalled = climber.stalled;
+    // Widths say little where the density is flat up to a bound.
+    bool const bounded = objective.objective_kind != ObjectiveKind::posterior && !objective.target.has_gradient();
+    auto const same = std::find_if(modes.begin(), modes.end(), [&](Mode const& other) {
+      return distance(mode, other) < same_mode || (bounded && connected(objective, mode, other));
+    });
     if (same == modes.end()) {
       modes.push_back(std::move(mode));
     } else {
@@ -105,12 +117,7 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
     }
   }
   std::erase_if(modes, [&](Mode const& mode) { return !std::isfinite(log_weight(objective.objective_kind, mode)); });
-  // What is asked for is the highest point, except by chains; how much lies around it is another question.
-  auto const rank = [&](Mode const& m) {
-    return objective.objective_kind == ObjectiveKind::posterior ? m.log_mass : m.log_density;
-  };
-  std::stable_sort(modes.begin(), modes.end(), [&](Mode const& a, Mode const& b) { return rank(a) > rank(b); });
-  share_out(objective.objective_kind, modes);
+  rank(objective.objective_kind, modes);
   return modes;
 }
 
@@ -135,7 +142,10 @@ LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, Con
     if (std::all_of(climbers.begin(), climbers.end(), [](Climber const& each) { return each.done; })) break;
     result.given_up = highest + most_log_volume(objective) < least_log_mass;
   }
-  if (result.given_up) climbers.resize(1, climbers.front());
+  if (result.given_up)
+    climbers.resize(1, climbers.front());
+  else
+    settle(objective, climbers, settling_rounds, ledger, stop);
   result.modes = modes_of(objective, std::move(climbers), ledger, stop);
   return result;
 }

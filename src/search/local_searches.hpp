@@ -19,9 +19,11 @@ bool in_one_basin(Objective const& objective, Climber const& a, Climber const& b
 /// may be far too wide where the likelihood is no sum of squares. Best first, `hits` summed.
 std::vector<Climber> distinct(Objective const& objective, std::vector<Climber> climbers);
 
-/// The modes that searches have ended in: of a finite density not more than 30 nats below the best, and at most 12. By falling mass
-/// for a posterior, else by falling density; `share` of the mass, or of the density where there is none, among them. `stop` ends it
-/// early: the modes so far.
+/// By falling mass for a posterior, else by falling density, with their shares of it.
+void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes);
+
+/// The modes that searches have ended in: of a finite density not more than 30 nats below the best, and at most 12. Ranked.
+/// `stop` ends it early: the modes so far.
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
                            std::function<bool()> const& stop = {});
 

@@ -29,14 +29,20 @@ std::vector<double> Objective::log_density(ConstLanes theta, Ledger& ledger) con
 
 Objective make_objective(Target const& target, ObjectiveKind objective_kind, ConstLanes prior_draws) {
   int const dimension = target.dimension();
-  Objective objective{target, objective_kind, Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Constant(dimension, -infinity),
+  Objective objective{target,
+                      objective_kind,
+                      Eigen::VectorXd::Ones(dimension),
+                      Eigen::VectorXd::Zero(dimension),
+                      Eigen::VectorXd::Constant(dimension, -infinity),
                       Eigen::VectorXd::Constant(dimension, infinity)};
   for (int p = 0; p < dimension; ++p) {
     std::vector<double> finite;
     for (double const v : prior_draws.row(p))
       if (std::isfinite(v)) finite.push_back(v);
     if (finite.empty()) continue;
-    double const spread = (quantile(finite, 0.84) - quantile(finite, 0.16)) / 2;
+    double const above_middle = quantile(finite, 0.84), below_middle = quantile(finite, 0.16);
+    double const spread = (above_middle - below_middle) / 2;
+    objective.centre(p) = (above_middle + below_middle) / 2;
     if (spread > 0) objective.scale(p) = spread;
     auto const [least, most] = std::minmax_element(finite.begin(), finite.end());
     ParameterInfo const& info = target.parameters()[static_cast<std::size_t>(p)];

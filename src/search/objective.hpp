@@ -13,7 +13,8 @@ namespace sysid {
 struct Objective {
   Target const& target;
   ObjectiveKind objective_kind;
-  Eigen::VectorXd scale;  // [P] half the central 68 % of the prior draws, > 0
+  Eigen::VectorXd scale;   // [P] half the central 68 % of the prior draws, > 0
+  Eigen::VectorXd centre;  // [P] the middle of these
   Eigen::VectorXd low,
       high;  // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
 
@@ -22,7 +23,10 @@ struct Objective {
   std::vector<double> log_prior(ConstLanes theta) const;
   /// -infinity wherever it is not finite.
   std::vector<double> log_density(ConstLanes theta, Ledger& ledger) const;
-  Eigen::VectorXd clamp(Eigen::VectorXd theta) const { return theta.cwiseMax(low).cwiseMin(high); }
+  /// A step that ends beyond `low` or `high` ends there, or where it began if that was beyond already.
+  Eigen::VectorXd clamp(Eigen::VectorXd const& theta, Eigen::VectorXd const& from) const {
+    return theta.cwiseMax(low.cwiseMin(from)).cwiseMin(high.cwiseMax(from));
+  }
 };
 
 /// prior_draws [P x N] give the scales.

@@ -8,11 +8,12 @@
 #include "core/numeric/not_finite.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
+#include "search/settle.hpp"
 
 namespace sysid {
 namespace {
 
-constexpr int rounds = 60;
+constexpr int rounds = 20, evaluations = 60;  // rounds of a density that vanishes at bounds, too
 constexpr std::uint64_t refit_step = 2;
 
 }  // namespace
@@ -26,7 +27,9 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
   if (points.empty()) return {};
   std::vector<double> const density = objective.log_density(to_lanes(points), ledger);
   for (std::size_t m = 0; m < modes.size(); ++m) climbers.push_back(climber_at(points[m], density[m]));
-  climb(objective, climbers, rounds, ledger, stop);
+  climb(objective, climbers, target.has_gradient() || objective_kind == ObjectiveKind::posterior ? evaluations : rounds, ledger,
+        stop);
+  settle(objective, climbers, settling_rounds, ledger, stop);
   std::vector<Mode> result;
   for (std::size_t m = 0; m < modes.size(); ++m) {
     if (stop && stop()) {
@@ -44,6 +47,7 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
     result.push_back(laplace_mode(objective, climbers[m].theta, guess, ledger));
     result.back().share = modes[m].share;
     result.back().hits = modes[m].hits;
+    result.back().stalled = climbers[m].stalled;
   }
   for (std::size_t m = 0; gains != nullptr && m < modes.size(); ++m) gains->push_back(result[m].log_density - density[m]);
   return result;

@@ -18,27 +18,30 @@
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 #include "search/local_searches.hpp"
+#include "search/mode_findings.hpp"
+#include "search/settle.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr int draws_per_pass = 2048;
-constexpr int early_rounds = 6, late_rounds = 100, usual_rounds = 15;
+constexpr int early_rounds = 6, usual_rounds = 15, most_rounds_inside = 100;
+constexpr int patient_rounds = 300;    // along a curved valley, of searches that may end highest
+constexpr double may_end_highest = 3;  // nats below the highest
 constexpr int most_passes = 4;
 
 /// How much a search looks at: of which draws it asks the density, and how many of them it climbs from.
 struct Breadth {
   int draws;
   std::size_t likeliest, others, finalists;
+  int rounds;  // of the finalists, before they are settled; of a target that has a gradient, evaluations
 };
-constexpr Breadth broad{draws_per_pass, 96, 32, 16};
+constexpr Breadth broad{draws_per_pass, 96, 32, 16, 30};
 /// Of a likelihood that takes a matrix decomposition each time, and tells its gradient.
-constexpr Breadth narrow{64, 6, 2, 4};
+constexpr Breadth narrow{64, 6, 2, 4, 100};
 /// Of an equation with an unknown function in it: what is not linear are the few other parameters, and every round asks for the
 /// slopes of all coefficients.
-constexpr Breadth few{draws_per_pass, 12, 4, 3};
-
-constexpr double notable_share = 0.01;
+constexpr Breadth few{draws_per_pass, 12, 4, 3, 100};
 
 // Steps of Purpose::start: streams of different uses never meet.
 constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_step = 1'000'000;
@@ -76,111 +79,45 @@ std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Cl
   return chosen;
 }
 
-std::string describe(Target const& target, Mode const& mode) {
-  std::string text;
-  auto const parameters = target.parameters();
-  for (std::size_t p = 0; p < parameters.size() && p < 6; ++p)
-    text += fmt::format("{}{} = {:.4g}", p == 0 ? "" : ", ", parameters[p].name, mode.declared[p]);
-  return parameters.size() > 6 ? text + ", ..." : text;
+bool has_coefficients(Target const& target) {
+  return std::any_of(target.parameters().begin(), target.parameters().end(),
+                     [](ParameterInfo const& each) { return each.coefficient; });
 }
 
-// Whether a parameter is known to a twentieth of the range of its prior, over decades in logarithms. Near a bound the unconstrained
-// coordinate is flat, which the parameter is not.
-bool is_known(ParameterInfo const& parameter, double value, double sd) {
-  constexpr double part = 0.05;
-  if (!std::isfinite(parameter.lower) || !std::isfinite(parameter.upper)) return false;
-  if (parameter.lower > 0 && parameter.upper >= 10 * parameter.lower)
-    return sd / value < part * elementary::log(parameter.upper / parameter.lower);
-  return sd < part * (parameter.upper - parameter.lower);
-}
-
-// move [P]: of declared parameters. Nothing where all that take part are known.
-std::optional<Finding> flat_direction(Target const& target, Mode const& mode, std::span<double const> move) {
-  std::vector<std::string> names, moves;
-  bool known = true;
-  for (std::size_t p = 0; p < move.size(); ++p) {
-    ParameterInfo const& parameter = target.parameters()[p];
-    if (move[p] == 0) continue;
-    known = known && is_known(parameter, mode.declared[p], mode.sd[p]);
-    if (parameter.coefficient) {  // an unknown function stands for all its coefficients
-      std::string const function = parameter.name.substr(0, parameter.name.find('['));
-      if (std::find(names.begin(), names.end(), function) == names.end()) names.push_back(function);
-      continue;
-    }
-    names.push_back(parameter.name);
-    moves.push_back(fmt::format("{} by {:+.2g}{}", parameter.name, move[p], parameter.unit.empty() ? "" : " " + parameter.unit));
+/// Whether the best mode was met once, which may have a better neighbour that was not met, or modes are so many that others may
+/// well be missing: of the places where searches can end, those not seen hold w (w + 1) / (n (n - 1)) for w modes after n searches
+/// (Boender and Rinnooy Kan 1987).
+bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
+  constexpr double tolerable = 0.03, as_high = 0.01;
+  constexpr int usual = 2;  // places, of a search of any size
+  int places = 1, hits = modes.front().hits;
+  for (std::size_t m = 1; m < modes.size(); ++m) {
+    double const below = modes[m - 1].log_density - modes[m].log_density;
+    if (std::fabs(below) > as_high) ++places;
+    if (modes.front().log_density - modes[m].log_density < as_high) hits += modes[m].hits;
   }
-  if (known) return std::nullopt;
-  if (names.size() == 1)
-    return Finding{FindingCode::flat_direction, Severity::warning, names,
-                   fmt::format("the data do not determine {}: its posterior is as wide as its prior", names.front()),
-                   "fix it to a value, give it a narrower prior, or measure something that depends on it"};
-  if (moves.empty())
-    return Finding{
-        FindingCode::flat_direction, Severity::warning, names,
-        fmt::format("the data do not determine a combination of {}: its posterior is as wide as the prior", listed(names)),
-        "fix an amplitude or a length, or measure a quantity that distinguishes the functions"};
-  return Finding{FindingCode::flat_direction, Severity::warning, names,
-                 fmt::format("the data do not determine a combination of {}: moving {} together leaves the fit nearly unchanged, "
-                             "and along this combination the posterior is as wide as the prior",
-                             listed(names), listed(moves)),
-                 "fix one of them, give them narrower priors, or measure a quantity that distinguishes them"};
+  auto const w = static_cast<double>(places), n = static_cast<double>(searches);
+  return hits < 2 || (places > usual && w * (w + 1) > tolerable * n * (n - 1));
+}
+
+/// Local searches to their ends.
+void finish(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
+            std::function<bool()> const& stop) {
+  climb(objective, climbers, rounds, ledger, stop);
+  settle(objective, climbers, settling_rounds, ledger, stop);
+  sort_best_first(climbers);
+  auto const low = std::find_if(climbers.begin(), climbers.end(), [&](Climber const& each) {
+    return each.log_density < climbers.front().log_density - may_end_highest;
+  });
+  std::vector<Climber> highest(std::make_move_iterator(climbers.begin()), std::make_move_iterator(low));
+  settle(objective, highest, patient_rounds, ledger, stop);
+  std::move(highest.begin(), highest.end(), climbers.begin());
 }
 
 LaneArray draw_prior(Target const& target, StreamKey key, int count) {
   LaneArray draws(target.dimension(), count);
   target.sample_prior(key, draws);
   return draws;
-}
-
-/// Whether the likelihood falls far at all of the prior's 16, 50 and 84 % points of parameter p, the others as they are. At a bound
-/// the coordinate is flat for as long as one likes, though the data hold the parameter there.
-bool is_held(Target const& target, Mode const& mode, std::size_t p) {
-  constexpr double far = 4.5;  // three sds
-  std::vector<double> values;
-  LaneArray const draws = draw_prior(target, {0, Purpose::start, 0, search_step}, draws_per_pass);
-  for (double const value : draws.row(static_cast<int>(p))) values.push_back(value);
-  std::sort(values.begin(), values.end());
-  std::vector<Eigen::VectorXd> points(4, theta_of(mode));
-  for (int k = 0; k < 3; ++k)
-    points[static_cast<std::size_t>(k) + 1](static_cast<Eigen::Index>(p)) =
-        sorted_quantile(values, std::array{0.16, 0.5, 0.84}[static_cast<std::size_t>(k)]);
-  std::vector<double> reached(points.size());
-  Ledger none;
-  target.log_likelihood(to_lanes(points), reached, none);
-  return std::all_of(reached.begin() + 1, reached.end(), [&](double each) { return each < reached.front() - far; });
-}
-
-void add_findings(Objective const& objective, SearchResult& result) {
-  std::vector<Mode> const& modes = result.modes;
-  for (std::size_t i = 1; i < modes.size() && objective.objective_kind != ObjectiveKind::likelihood; ++i) {
-    if (modes[i].share <= notable_share) continue;
-    result.findings.push_back(
-        {FindingCode::second_mode,
-         Severity::warning,
-         {},
-         fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
-                     describe(objective.target, modes[i])),
-         "compare both solutions: add data or prior knowledge that distinguishes them, or run more chains and report both"});
-  }
-  auto const parameters = static_cast<std::size_t>(objective.dimension());
-  std::vector<std::vector<std::string>> told;
-  for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters) {
-    std::span<double const> const move(modes.front().flat.data() + at, parameters);
-    auto finding = flat_direction(objective.target, modes.front(), move);
-    // What concerns the same parameters is one thing to do something about, however many directions there are.
-    if (!finding || std::find(told.begin(), told.end(), finding->names) != told.end()) continue;
-    auto const moved = std::find_if(move.begin(), move.end(), [](double each) { return each != 0; });
-    bool const alone = std::count(move.begin(), move.end(), 0.0) + 1 == static_cast<std::ptrdiff_t>(parameters);
-    if (alone && is_held(objective.target, modes.front(), static_cast<std::size_t>(moved - move.begin()))) continue;
-    told.push_back(finding->names);
-    result.findings.push_back(std::move(*finding));
-  }
-}
-
-bool has_coefficients(Target const& target) {
-  return std::any_of(target.parameters().begin(), target.parameters().end(),
-                     [](ParameterInfo const& each) { return each.coefficient; });
 }
 
 /// Coefficients of unknown functions at zero, where a model is what it is without them.
@@ -221,11 +158,13 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
     begun = begun || !starts.empty();
     climb(*objective, starts, early_rounds, context.ledger, stop);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
-    climb(*objective, last, late_rounds, context.ledger, stop);
+    // A density that vanishes at bounds has its optima inside: what was found there before is found to the last digit.
+    int const rounds = objective_kind == ObjectiveKind::posterior ? most_rounds_inside : breadth.rounds;
+    finish(*objective, last, rounds, context.ledger, stop);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
     if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
-    if (!result.modes.empty() && (result.modes.front().hits > 1 || ended.size() == 1)) break;
+    if (!result.modes.empty() && (ended.size() == 1 || !may_be_missed(result.modes, ended.size()))) break;
     expected = context.ledger.solves() - before + usual;
     context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), expected);
   }
@@ -248,7 +187,7 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
     }
     return result;
   }
-  add_findings(*objective, result);
+  result.findings = mode_findings(target, objective_kind, result.modes);
   return result;
 }
 
@@ -275,9 +214,7 @@ SearchResult search_from(Target const& target, ObjectiveKind objective_kind, Con
     result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(starts.width()));
     return result;
   }
-  add_findings(
-      make_objective(target, objective_kind, draw_prior(target, {context.seed, Purpose::start, 0, search_step}, draws_per_pass)),
-      result);
+  result.findings = mode_findings(target, objective_kind, result.modes);
   return result;
 }
 

@@ -155,7 +155,10 @@ ComparedFit compared_fit(StoredSummary const& result) {
   if (evidence.contains("log_evidence") && evidence["log_evidence"].is_number()) {
     fit.log_evidence = evidence["log_evidence"].get<double>();
     double const along = evidence.value("along_axes", 0.0);
-    if (std::fabs(along) >= rough) fit.rough = along;
+    json const by_draws = evidence.value("by_draws", json(along));  // absent: they confirm it, or were not drawn
+    double const off = by_draws.is_number() ? by_draws.get<double>() : along;
+    if (std::fabs(off) >= rough) fit.rough = off;
+    fit.rough_by_draws = evidence.contains("by_draws") && by_draws.is_number();
   } else {
     fit.without = evidence.value("reason", std::string("the run was interrupted"));
   }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "search/local_searches.hpp"
+#include "search/mode_findings.hpp"
 #include "search/refit.hpp"
 
 namespace sysid {
@@ -61,11 +63,14 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
   if (context.stop_requested()) return false;
   preparation.solver = refined.solver;
   preparation.modes = std::move(refined.modes);
+  rank(objective_kind, preparation.modes);
   preparation.moves = refined.moves;
-  // What looked like several may have been the solver's.
-  if (std::count_if(preparation.modes.begin(), preparation.modes.end(),
-                    [](Mode const& each) { return each.share > weight_of_interest; }) < 2)
-    std::erase_if(preparation.findings, [](Finding const& each) { return each.code == FindingCode::second_mode; });
+  // What looked like several may have been the solver's, and another may be the highest now.
+  std::erase_if(preparation.findings, [](Finding const& each) {
+    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
+  });
+  Findings const found = mode_findings(*make(refined.solver), objective_kind, preparation.modes);
+  preparation.findings.insert(preparation.findings.begin(), found.begin(), found.end());
   if (refined.solver != stated)
     session.notices << fmt::format("{}: {} (with {}, {} with {})\n", task.name, accuracy(refined.solver), accuracy(stated),
                                    moved(preparation.moves.front()), stated.finer_words());

@@ -69,7 +69,7 @@ nlohmann::json encode(Mode const& mode) {
           {"declared", block(mode.declared)},
           {"sd", block(mode.sd)},
           {"covariance", block(mode.covariance)},
-          {"numbers", block({mode.log_density, mode.log_mass, mode.share})},
+          {"numbers", block({mode.log_density, mode.log_mass, mode.share, mode.gain, mode.stalled ? 1.0 : 0.0})},
           {"hits", mode.hits},
           {"flat", block(mode.flat)}};
 }
@@ -84,7 +84,9 @@ Mode decode_mode(nlohmann::json const& stored) {
           numbers.at(1),
           numbers.at(2),
           stored.at("hits").get<int>(),
-          decode(stored.at("flat"))};
+          decode(stored.at("flat")),
+          numbers.at(3),
+          numbers.at(4) != 0};
 }
 
 nlohmann::json encode(Findings const& findings) {

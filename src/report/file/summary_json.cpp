@@ -74,10 +74,19 @@ Json named_values(std::vector<double> const& values, std::vector<std::string> co
 /// What a fit says of its model as a whole.
 Json evidence(Evidence const& evidence) {
   if (!evidence.log_evidence) return {{"log_evidence", nullptr}, {"reason", evidence.reason}};
-  return {{"log_evidence", *evidence.log_evidence},
-          {"method", "laplace"},
-          {"along_axes", std::round(1e3 * evidence.along_axes) / 1e3 + 0.0},  // how rough the other is, no more; never -0
-          {"modes", evidence.modes}};
+  Json out = {{"log_evidence", *evidence.log_evidence},
+              {"method", "laplace"},
+              {"along_axes", std::round(1e3 * evidence.along_axes) / 1e3 + 0.0},  // how rough the other is, no more; never -0
+              {"modes", evidence.modes}};
+  SampledEvidence const& sampled = evidence.sampled;
+  bool const known = sampled.state == SampledEvidence::State::known;
+  if (sampled.differs() || (known && std::fabs(evidence.along_axes) > 0.1)) {
+    out["by_draws"] = std::round(1e3 * sampled.above) / 1e3 + 0.0;
+    out["by_draws_error"] = std::round(1e3 * sampled.error) / 1e3;
+  } else if (sampled.state == SampledEvidence::State::unknown) {
+    out["by_draws"] = nullptr;
+  }
+  return out;
 }
 
 Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
