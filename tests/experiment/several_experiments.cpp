@@ -39,7 +39,7 @@ forecast  = predict posterior on one.late, two, new with draws(50), seed = 5
 shuffled  = predict posterior on new, two with draws(40), redraw = step, seed = 6
 )";
 
-std::string record(double gain, double start, int rows, std::uint64_t seed) {
+std::string made_record(double gain, double start, int rows, std::uint64_t seed) {
   std::string csv = "t,x,y,z\n";
   Stream stream({seed, Purpose::test, 0, 0});
   double level = start;
@@ -57,8 +57,8 @@ struct Folder {
   RunOptions options;
 
   Folder() {
-    write_file(folder.path() / "one.csv", record(1, 0.7, 60, 31));
-    write_file(folder.path() / "two.csv", record(0.5, -0.4, 50, 32));
+    write_file(folder.path() / "one.csv", made_record(1, 0.7, 60, 31));
+    write_file(folder.path() / "two.csv", made_record(0.5, -0.4, 50, 32));
     options.output = folder.path() / "results";
   }
   RunResult run(std::vector<std::string> const& verbs = {}) {
@@ -124,7 +124,8 @@ TEST_CASE("a fitted experiment is predicted with its own parameters, a new one f
     messages.push_back(each["message"]);
   }
   // It is given a gain of 3 where the record was made with 0.5; the chains of the fit are short.
-  REQUIRE(codes == "fitted_rows_predicted new_experiment fitted_rows_predicted from_doubtful_fit worse_than_the_mean coverage_low ");
+  REQUIRE(codes ==
+          "fitted_rows_predicted new_experiment fitted_rows_predicted from_doubtful_fit worse_than_the_mean coverage_low ");
   CHECK(messages[5].find("level on new lie inside the 95 % band") != std::string::npos);
   CHECK(messages[1] == "`new` was not fitted: `start` is drawn from the prior given the shared parameters");
   // The second record's level is known where it was fitted; the new one's start has the population's sd of 1 at least.

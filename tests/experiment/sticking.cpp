@@ -21,7 +21,7 @@ Model rig(std::string const& force) {
 }
 
 /// Two samples, 0.02 m in 0.1 s: 0.2 m/s.
-std::vector<ExperimentData> record() {
+std::vector<ExperimentData> sticking_record() {
   ExperimentData data;
   data.experiment.time = {0, 0.1, 0.2};
   data.experiment.measured = {{0, 0.02, 0.04}};
@@ -32,10 +32,10 @@ std::vector<ExperimentData> record() {
 
 TEST_CASE("friction by the sign of a velocity is sent to a smooth form with a scale of the record") {
   CHECK(sticking_advice(rig("F*sign(y')"), {}).find("`tanh(y'/vs)`") != std::string::npos);
-  CHECK(sticking_advice(rig("F*sign(y')"), record()).find("`tanh(y'/(0.002 [m/s]))`") != std::string::npos);
+  CHECK(sticking_advice(rig("F*sign(y')"), sticking_record()).find("`tanh(y'/(0.002 [m/s]))`") != std::string::npos);
 }
 
 TEST_CASE("models that do not stick get no such advice") {
-  CHECK(sticking_advice(rig("F*tanh(y'/1 [mm/s])"), record()).empty());
-  CHECK(sticking_advice(rig("F*sign(x)"), record()).empty());
+  CHECK(sticking_advice(rig("F*tanh(y'/1 [mm/s])"), sticking_record()).empty());
+  CHECK(sticking_advice(rig("F*sign(x)"), sticking_record()).empty());
 }

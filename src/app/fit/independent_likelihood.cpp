@@ -5,7 +5,7 @@
 #include "app/session/derived_draws.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
-#include "app/session/unknown_functions.hpp"
+#include "app/process/unknown_functions.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"

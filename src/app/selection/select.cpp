@@ -22,7 +22,7 @@
 #include "app/session/session.hpp"
 #include "app/session/solver_record.hpp"
 #include "app/session/task_checkpoint.hpp"
-#include "app/session/unknown_functions.hpp"
+#include "app/process/unknown_functions.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"

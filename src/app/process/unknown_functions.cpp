@@ -1,5 +1,5 @@
 // Functions on a grid of their inputs from the draws' coefficients; a finite sum's covariance against that of its process.
-#include "app/session/unknown_functions.hpp"
+#include "app/process/unknown_functions.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@
 namespace sysid {
 namespace {
 
-constexpr int most_draws = 200, along_a_cut = 101;
+constexpr int most_shown_draws = 200, along_shown_cut = 101;
 constexpr double much = 0.1;  // of the process's variance
 
 /// An expansion as a program of the model's parameters and its inputs.
@@ -137,7 +137,7 @@ FunctionParameters function_parameters(ParameterSpace const& space, FitResult co
     space.select(rows, 0, parameters.values);
   };
   if (result.draws.total() != 1 || result.modes.empty() || result.modes.front().covariance.empty()) {
-    first_experiment(space.values_of_declared(spread(result.draws, most_draws)));
+    first_experiment(space.values_of_declared(spread(result.draws, most_shown_draws)));
     return parameters;
   }
   Mode const& mode = result.modes.front();
@@ -168,13 +168,13 @@ std::vector<FunctionReport> unknown_functions(Model const& model, FunctionParame
     std::size_t const inputs = expansion.inputs.size();
     report.visits.assign(inputs, no_visits());
     for (Expansion::Input const& input : expansion.inputs) report.inputs.emplace_back(input.name, input.unit_text());
-    for (std::vector<double> const& place : grid(expansion, inputs == 1 ? along_a_cut : inputs == 2 ? 21 : 7))
+    for (std::vector<double> const& place : grid(expansion, inputs == 1 ? along_shown_cut : inputs == 2 ? 21 : 7))
       report.grid.push_back(function.point(parameters, place));
     for (std::size_t d = 0; d < inputs; ++d) {
       report.cuts.emplace_back();
-      for (int i = 0; i < along_a_cut; ++i) {
+      for (int i = 0; i < along_shown_cut; ++i) {
         std::vector<double> place = middle(expansion);
-        place[d] = between(expansion.inputs[d], i, along_a_cut);
+        place[d] = between(expansion.inputs[d], i, along_shown_cut);
         report.cuts.back().push_back(function.point(parameters, place));
       }
     }
