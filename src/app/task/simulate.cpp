@@ -11,7 +11,7 @@
 
 #include "app/session/results.hpp"
 #include "app/session/session.hpp"
-#include "app/task/drawn_functions.hpp"
+#include "app/process/drawn_functions.hpp"
 #include "app/task/signals.hpp"
 #include "check/checked/task_kinds.hpp"
 #include "core/numeric/fourier.hpp"

@@ -1,5 +1,5 @@
 // Draws of functions along a simulated run, round by round, and draws of the coefficients of finite sums.
-#include "app/task/drawn_functions.hpp"
+#include "app/process/drawn_functions.hpp"
 
 #include <fmt/format.h>
 
