@@ -118,7 +118,8 @@ constexpr ExporterRow exporters[] = {
 Work declare_export(CLI::App& verb) {
   auto const options = std::make_shared<ExportOptions>();
   options->run.execution.threads = 0;
-  verb.add_option("WHAT", options->what, "folder of a fit or selection, or of a whole run; with --stan or --latex a .sysid file")
+  verb.add_option("WHAT", options->what,
+                  "folder of a fit or selection, or of a whole run; with --stan also a .sysid file, with --latex only that")
       ->required();
   options->exporter = &exporters[0];
   std::vector<std::pair<CLI::Option*, ExporterRow const*>> flags;

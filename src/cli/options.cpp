@@ -42,9 +42,7 @@ std::string refuse_seed(std::string const& text) {
 
 }  // namespace
 
-std::string refuse_no_path(std::string const& path) {
-  return path.empty() ? "the path is empty; `.` is the folder in which you are" : "";
-}
+std::string refuse_no_path(std::string const& path) { return path.empty() ? "the path is empty; `.` is the current folder" : ""; }
 
 std::string refuse_no_duration(std::string const& text) {
   double seconds = 0;

@@ -111,7 +111,7 @@ class InputCheck {
         fmt::format("input {}{} is smooth between its samples: with `hold cubic` in place of `hold linear` {} moves by {:.1f} "
                     "of its sds, and the fit is as good",
                     model_.inputs[i].name, on(e), parameter, most),
-        fmt::format("`hold cubic` means that {}: write it unless you know that the input went in straight lines",
+        fmt::format("`hold cubic` means that {}: write it unless you know that the input is linear between samples",
                     row_of(InputRule::cubic).summary)};
   }
 

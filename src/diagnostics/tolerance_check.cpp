@@ -257,11 +257,11 @@ std::string what_happens(SolverCheck const& check, bool conditional) {
 std::string cure(SolverCheck const& check, SolverSettings const& solver, bool chosen) {
   std::string const kind = solver.fixed_step() ? "`substeps`" : "the tolerances";
   if (check.outcome == SolverCheck::Outcome::fails && !solver.fixed_step())
-    return fmt::format("a tighter tolerance needs more steps between two samples: fit again with more `steps`, which are {}",
+    return fmt::format("a tighter tolerance needs more steps between two samples: fit again with more `steps` (now {})",
                        solver.steps);
   std::string const other = solver.other_methods();
   if (!solver.finer().within_limits())
-    return other.empty() ? "this solver cannot be made finer: the model may be chaotic on this record; fit a shorter stretch of it"
+    return other.empty() ? "this solver cannot be made finer: the model may be chaotic on this record; fit a shorter part of it"
                          : fmt::format("this solver cannot be made finer: fit with {}", other);
   SolverSettings const needed = fine_enough(solver, check.largest());
   std::string const finer = needed.option();

@@ -187,10 +187,10 @@ class Fit {
         {FindingCode::stiff_prior,
          Severity::warning,
          {},
-         fmt::format("{:.0f} % of the prior draws overflow even with {}; {} follows {} of the {} of these that it tried: the model "
-                     "is stiff there, and the search has not seen that part",
+         fmt::format("{:.0f} % of the prior draws overflow even with {}; {} succeeds on {} of the {} of these that it tried: the "
+                     "model is stiff there, and the search has left out that part of the prior",
                      100 * search.failed, accuracy(search.solver), stiff_solver().name, search.followed, search.tried),
-         fmt::format("fit with `solver = {}`, or narrow the priors if motion as fast as this is not meant", stiff_solver().name)}};
+         fmt::format("fit with `solver = {}`, or narrow the priors if such fast motion is not intended", stiff_solver().name)}};
   }
 
   // Empty: interrupted.

@@ -139,7 +139,7 @@ class Description {
 
   std::string unasked(AssessedParameter const& coordinate) {
     if (coordinate.role == ParameterRole::noise) return "from the residuals";
-    if (coordinate.role == ParameterRole::prior) return "from the parameters it is a prior of";
+    if (coordinate.role == ParameterRole::prior) return "from parameters whose prior depends on it";
     if (coordinate.role == ParameterRole::none) return "not used";  // the checker has warned of it
     add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},
         fmt::format("only derived quantities depend on {}: the data contain no information on it", coordinate.words.name),
@@ -179,7 +179,7 @@ class Description {
                                          *std::min_element(sizes.begin(), sizes.end()),
                                          *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
     if (standardised_[static_cast<std::size_t>(i)] != standardised_[static_cast<std::size_t>(j)]) {
-      page_.information->ridges.push_back(fmt::format("{}, but for the prior of the standardised members: {}", pair, size));
+      page_.information->ridges.push_back(fmt::format("{}, except for the prior of the standardised members: {}", pair, size));
       return;
     }
     if (widest < still_unknown) {

@@ -72,14 +72,14 @@ void check_stiffness(Preflight const& preflight, double share) {
       page.failed == 0 ? "all" : fmt::format("about {:.0f} %", 100 * share * page.draws / page.failed_explicit);
   preflight.add(
       FindingCode::stiff_prior, Severity::warning, {},
-      fmt::format("explicit steps ({}, {}) do not follow {:.0f} % of the prior draws, and {} follows {} of these: the model "
+      fmt::format("explicit steps ({}, {}) fail on {:.0f} % of the prior draws, and {} succeeds on {} of these: the model "
                   "is stiff there",
                   page.stated, page.explicit_solver, 100.0 * page.failed_explicit / page.draws, page.stiff_solver, followed),
-      fmt::format("use `solver = {}`, or narrow the priors if motion as fast as this is not meant", page.stiff_solver));
+      fmt::format("use `solver = {}`, or narrow the priors if such fast motion is not intended", page.stiff_solver));
 }
 
 std::string finer_advice(SolverSettings const& solver) {
-  if (!solver.fixed_step()) return fmt::format("allow more `steps` between two samples, which are {}", solver.steps);
+  if (!solver.fixed_step()) return fmt::format("allow more `steps` (now {}) between two samples", solver.steps);
   return "use shorter steps, or " + solver.other_methods();
 }
 

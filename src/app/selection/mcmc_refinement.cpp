@@ -43,7 +43,7 @@ McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const
       continue;
     }
     if (posteriors[k].given_up) {
-      missed("the search for its mode was stopped: by the likelihood another model is more probable by at least 30 nats");
+      missed("the search for its mode was stopped: by the likelihood, another model is at least exp(30) times as probable");
       continue;
     }
     auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.options.execution);

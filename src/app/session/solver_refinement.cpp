@@ -46,9 +46,9 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
       FindingCode::step_not_settled,
       Severity::error,
       {},
-      fmt::format(
-          "the result has not converged with {}, and finer ones were not tried: with {} {}, hardly less than with the step before",
-          accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
+      fmt::format("the result has not converged with {}, and finer settings were not tried: with {} {}, almost as much as in the "
+                  "refinement before",
+                  accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
       settling_advice(refined.solver)};
 }
 
@@ -81,7 +81,7 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
 
 std::string settling_advice(SolverSettings const& solver) {
   bool const stiff = solver.row().stiff;
-  return fmt::format("{}the model may {}be chaotic on this record: fit a shorter stretch of it",
+  return fmt::format("{}the model may {}be chaotic on this record: fit a shorter part of it",
                      stiff ? "" : fmt::format("if the model is stiff, fit it with `solver = {}`; ", stiff_solver().name),
                      stiff ? "" : "also ");
 }

@@ -282,8 +282,8 @@ class Discover {
                           "the equation that was found is not a model that can be simulated: " + excluded.front(), help});
     else
       findings.push_back({FindingCode::candidates_left_out, Severity::warning, std::move(names),
-                          fmt::format("`found.sysid` contains {} of {} structures; these cannot be simulated: {}", written.size(),
-                                      structures.size(), fmt::join(excluded, ", ")),
+                          fmt::format("`found.sysid` contains {} of {} structures; the others cannot be simulated: {}",
+                                      written.size(), structures.size(), fmt::join(excluded, ", ")),
                           help});
   }
 

@@ -309,9 +309,8 @@ class Simulate {
           what_.solver.fixed_step() ? fmt::format("use smaller steps (`{}`), {}, or other values",
                                                   smaller_steps(what_.solver).option(), what_.solver.other_methods())
           : what_.solver.other_methods().empty()
-              ? fmt::format("use other values, or more `steps`, which are {}", what_.solver.steps)
-              : fmt::format("use {}, more `steps`, which are {}, or other values", what_.solver.other_methods(),
-                            what_.solver.steps));
+              ? fmt::format("use other values, or more `steps` (now {})", what_.solver.steps)
+              : fmt::format("use {}, more `steps` (now {}), or other values", what_.solver.other_methods(), what_.solver.steps));
     for (auto const& channel : result.noisy)
       for (auto const& values : channel)
         if (what_.noise_fraction < 0 && std::any_of(values.begin(), values.end(), [](double y) { return std::isnan(y); }))

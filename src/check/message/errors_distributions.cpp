@@ -73,7 +73,7 @@ Diagnostic unknown_argument(ast::Name const& argument, std::string const& distri
   if (logarithmic && argument.text == "mean")
     return about({distribution, argument.text},
                  error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
-                       "write `log_mean` for the mean of the logarithm, `median` for the number that half of the values lie below; "
+                       "write `log_mean` for the mean of the logarithm, `median` for the median (half of the values lie below it); "
                        "the mean itself is median*exp(sd^2/2)"));
   return about({distribution, argument.text},
                error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
@@ -120,7 +120,7 @@ Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const&
 Diagnostic logarithm_of_shifted(Span span, std::string const& spelling, std::string const& distribution) {
   return about({distribution, spelling},
                error("E2112", span,
-                     fmt::format("the arguments of `{}` are invalid: `{}` takes a unit whose zero is the zero of the quantity",
+                     fmt::format("the arguments of `{}` are invalid: `{}` needs a unit with an absolute zero, such as [K]",
                                  distribution, spelling),
                      "give the median in its unit: `median = 20 [degC]`"));
 }
