@@ -165,13 +165,15 @@ std::optional<std::string_view> stated_separator(std::string_view line) {
   return line.size() == 5 || trimmed(line, blanks).size() == 5 ? std::optional(line.substr(4)) : std::nullopt;
 }
 
-/// Such as `1,5` or `3.2 V`, `n/a` or `#REF!`: what stands in the place of a number, and no word of a text.
+/// Such as `1,5` or `3.2 V`: a number in another notation, and no word of a text.
 bool like_a_number(std::string_view cell) {
-  constexpr std::size_t short_word = 5;
-  return cell.size() <= short_word ||
-         (cell.find_first_of("0123456789") == cell.find_first_not_of("+-.,( ") &&
-          cell.find_first_not_of("0123456789+-.,eE:/%() ") >= cell.size() - std::min<std::size_t>(3, cell.size()));
+  std::size_t const digit = cell.find_first_of("0123456789");
+  return digit != cell.npos && digit == cell.find_first_not_of("+-.,( ") &&
+         cell.find_first_not_of("0123456789+-.,eE:/%() ") >= cell.size() - std::min<std::size_t>(3, cell.size());
 }
+
+/// Such as `n/a` or `#REF!`, which stand in the place of a number. A file without numbers may hold anything in as few characters.
+bool like_a_gap(std::string_view cell) { return cell.size() <= 5; }
 
 bool all_numbers(std::vector<std::string> const& names) {
   return std::all_of(names.begin(), names.end(), [](std::string const& name) {
@@ -309,9 +311,11 @@ std::vector<double> Table::numbers(std::string const& column, std::optional<Span
     data_errors::Cell const place{name_, row, line(row), column};
     std::string_view const shown = trimmed(text, blanks);
     if (kind == Kind::text && row == 1 && names_units()) throw UserError(data_errors::row_of_units(place, shown, mention));
+    // A model of unknown origin may name any file as data: what is no number of a record is not repeated.
+    bool const shows = any || like_a_number(shown) || (like_a_gap(shown) && is_record());
     throw UserError(kind == Kind::not_finite     ? data_errors::not_finite(place, shown, mention)
                     : kind == Kind::out_of_range ? data_errors::out_of_range(place, shown, mention)
-                                                 : data_errors::not_a_number(place, shown, any || like_a_number(shown), mention));
+                                                 : data_errors::not_a_number(place, shown, shows, mention));
   }
   return values;
 }

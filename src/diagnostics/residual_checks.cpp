@@ -293,6 +293,27 @@ void name_held(Report const& report, Findings& findings) {
           fmt::format("; {} {} as wide as the prior: check this prior", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
 }
 
+namespace {
+
+/// Of a log-normal prior whose median stands where the mean of the logarithm was meant, or the other way round: the data lie within
+/// its 90 % interval when it is read so. Else empty.
+std::string other_reading(PriorInfo const& prior, double place) {
+  if (!prior.numbers || prior.numbers->distribution != "log_normal" || !(place > 0)) return {};
+  double const median = prior.numbers->arguments[0] / prior.numbers->scale,
+               width = normal_quantile_95 * prior.numbers->arguments[1];
+  if (std::abs(elementary::log(place) - median) <= width)
+    return fmt::format(
+        "; if {0:.10g} is meant as the mean of the logarithm, write `log_normal(log_mean = {0:.10g}, log_sd = {1:.10g})`", median,
+        prior.numbers->arguments[1]);
+  double const log_mean = elementary::log(median);
+  if (log_mean > 0 && std::abs(elementary::log(place / log_mean)) <= width)
+    return fmt::format("; if {0:.10g} is meant as the median, write `log_normal(median = {0:.10g}, log_sd = {1:.10g})`", log_mean,
+                       prior.numbers->arguments[1]);
+  return {};
+}
+
+}  // namespace
+
 Findings check_priors(Report const& report) {
   Findings findings;
   for (PriorInfo const& prior : report.priors)
@@ -312,7 +333,8 @@ Findings check_priors(Report const& report) {
                                       prior.name, significant(place, 4), unit, below ? "below" : "above",
                                       significant(below ? *prior.lowest : *prior.highest, 4), unit),
                           "data and prior disagree, and the posterior is a compromise: widen the prior, or find the cause in the "
-                          "data or the model"});
+                          "data or the model" +
+                              other_reading(prior, place)});
     }
   return findings;
 }

@@ -9,7 +9,7 @@ namespace sysid {
 
 Attributes provenance(StoredResult const& stored) {
   return {{"inference_library", "sysid"},
-          {"inference_library_version", stored.summary["versions"].value("sysid", std::string())},
+          {"inference_library_version", stored.summary.at("versions").value("sysid", std::string())},
           {"task", stored.task()},
           {"what", stored.what()},
           {"model", stored.summary.value("model", std::string())},

@@ -10,12 +10,27 @@
 namespace sysid {
 StoredResult read_stored_result(std::filesystem::path const& folder) {
   StoredResult stored{folder, nlohmann::ordered_json::parse(read_whole_summary(folder))};
+  interpreted(folder / "summary.json", [&] {
+    (void)stored.task(), (void)stored.what(), (void)stored.is(""), (void)stored.seed();
+    (void)stored.summary.at("versions").value("sysid", std::string());
+    (void)stored.summary.value("model", std::string());
+    for (auto const& [name, each] : stored.summary.value("parameters", nlohmann::ordered_json::object()).items())
+      if (each.is_object()) (void)each.value("unit", std::string());
+    for (auto const& [name, model] : stored.summary.value("models", nlohmann::ordered_json::object()).items()) {
+      (void)model.value("probability", 0.0);
+      for (char const* const of : {"parameters", "polished"})
+        for (auto const& [parameter, each] : model.value(of, nlohmann::ordered_json::object()).items())
+          (void)each.value("unit", std::string());
+    }
+    return true;
+  });
   return stored;
 }
 
 Draws stored_draws(StoredResult const& stored) {
   std::vector<std::string> names, units;
-  for (auto const& [name, summary] : stored.summary["parameters"].items()) {
+  auto const parameters = stored.summary.value("parameters", nlohmann::ordered_json::object());
+  for (auto const& [name, summary] : parameters.items()) {
     names.push_back(name);
     units.push_back(summary.is_object() ? summary.value("unit", std::string()) : std::string());
   }

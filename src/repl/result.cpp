@@ -78,7 +78,7 @@ Result read_result(std::filesystem::path const& folder, std::string const& task,
   if (!summary.is_object()) return result;
   if (summary.contains("parameters") && verb == "fit")
     for (auto const& [name, each] : summary["parameters"].items()) {
-      DrawColumn column{name, each.value("unit", ""), {}, {}};
+      DrawColumn column{name, interpreted(folder / "summary.json", [&, &of = each] { return of.value("unit", ""); }), {}, {}};
       if (each.contains("sd") && each["sd"].is_number()) column.sd = each["sd"].get<double>();
       result.draws.push_back(std::move(column));
     }

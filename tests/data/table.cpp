@@ -314,8 +314,16 @@ TEST_CASE("nothing of a file that is no record is quoted, and the names and cell
   Diagnostic const cell = error_of("user,password\nann,hunter22\n", "password");
   CHECK(cell.code == "E4010");
   CHECK((cell.message + cell.help).find("hunter22") == std::string::npos);
+  for (std::string const word : {"pw", "abc", "x7!", "s3cr", "hello"}) {
+    CAPTURE(word);
+    Diagnostic const of_a_word = error_of("user,password\nann," + word + "\n", "password");
+    CHECK(of_a_word.code == "E4010");
+    CHECK((of_a_word.message + of_a_word.help).find("`" + word + "`") == std::string::npos);
+  }
 
   CHECK(error_of("time,force\n0,1\n", "forse").help.find("`force`") != std::string::npos);
   CHECK(error_of("time,force\n0,1\n1,overload\n", "force").message.find("`overload`") != std::string::npos);
   CHECK(error_of("time,force\n0,12.5 kN\n", "force").message.find("`12.5 kN`") != std::string::npos);
+  CHECK(error_of("time,force\n0,n/a\n", "force").message.find("`n/a`") != std::string::npos);
+  CHECK(error_of("force\n3 V\n", "force").message.find("`3 V`") != std::string::npos);
 }

@@ -71,6 +71,32 @@ TEST_CASE("a posterior where its prior has next to nothing is named, one in its 
   }
 }
 
+TEST_CASE("a log-normal prior that fits the data in its other reading is told so, one that fits in neither is not") {
+  auto const record = [](int row, Stream& stream) { return 2 * std::exp(-0.005 * (row - 101)) + 0.01 * stream.normal(); };
+  std::string const broad = "y0 [m] ~ normal(0, sd = 3)";
+  for (auto const& [prior, cure] :
+       {std::pair("y0 [m] ~ log_normal(0.7, sd = 0.1)",
+                  "if 0.7 is meant as the mean of the logarithm, write `log_normal(log_mean = 0.7, log_sd = 0.1)`"),
+        std::pair("y0 [m] ~ log_normal(log_mean = 2, log_sd = 0.1)",
+                  "if 2 is meant as the median, write `log_normal(median = 2, log_sd = 0.1)`"),
+        std::pair("y0 [m] ~ log_normal(5, sd = 0.1)", ""), std::pair("y0 [m] ~ normal(5, sd = 0.1)", "")}) {
+    CAPTURE(prior);
+    std::string statements = decay;
+    statements.replace(statements.find(broad), broad.size(), prior);
+    json const findings = findings_of_late_rows(statements, record);
+    json const* const found = find(findings, "prior_contradicted");
+    REQUIRE(found != nullptr);
+    std::string const help = found->at("help");
+    if (*cure == '\0')
+      CHECK(help.find("is meant as") == std::string::npos);
+    else
+      CHECK(help.ends_with(cure));
+  }
+  std::string right = decay;
+  right.replace(right.find(broad), broad.size(), "y0 [m] ~ log_normal(log_mean = 0.7, log_sd = 0.1)");
+  CHECK(find(findings_of_late_rows(right, record), "prior_contradicted") == nullptr);
+}
+
 TEST_CASE("one spike neither hides what a fit misses nor is taken for it") {
   // The decay alone is fitted; the record swings as well, and one sample is far off.
   auto const record = [](int row, Stream& stream) {
@@ -115,7 +141,10 @@ TEST_CASE("an estimated noise that does not reach the residuals is not advised t
   json const findings = findings_of_late_rows(
       narrow, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + 0.3 * stream.normal(); });
   REQUIRE(find(findings, "noise_size") != nullptr);
-  CHECK(find(findings, "noise_size")->at("help").get<std::string>().starts_with("the model is incomplete, a prior excludes the values that fit"));
+  CHECK(find(findings, "noise_size")
+            ->at("help")
+            .get<std::string>()
+            .starts_with("the model is incomplete, a prior excludes the values that fit"));
 }
 
 TEST_CASE("a fit says when its prior predicts another size than was measured") {

@@ -8,6 +8,7 @@
 #include "core/system/files.hpp"
 #include "example.hpp"
 #include "fuzz/stored.hpp"
+#include "report/file/report_cbor.hpp"
 #include "report/file/sealed_cbor.hpp"
 #include "report/file/task_folder.hpp"
 #include "temporary_folder.hpp"
@@ -64,6 +65,37 @@ TEST_CASE("a result with a file missing, cut short, changed or too many is refus
   CHECK(refusal(folder.path()) == "`" + folder.path().string() + "` was written by an older version of sysid");
   write_file(summary, std::string(1000000, '['));
   CHECK(refusal(folder.path()) == "`summary.json` is not the result of a task");
+}
+
+TEST_CASE("a whole file with other content than is written is damaged") {
+  TemporaryFolder const folder;
+  write_result(example::duffing(20), folder.path(), {});
+  fs::path const path = folder.path() / "summary.json";
+  auto const original = nlohmann::ordered_json::parse(read_file(path));
+  auto const refusal_of = [&](char const* pointer, nlohmann::ordered_json const& value) {
+    auto forged = original;
+    forged[nlohmann::ordered_json::json_pointer(pointer)] = value;
+    forged["versions"]["summary_sha256"] = unsealed();
+    write_file(path, sealed_summary(forged.dump(2) + "\n"));
+    return refusal(folder.path());
+  };
+  CHECK(refusal_of("/seed", 2) == "");
+  CHECK(refusal_of("/versions/files", 3) == "`summary.json` is damaged");
+  CHECK(refusal_of("/versions/files", {{"draws_1.csv", 7}}) == "`summary.json` is damaged");
+  CHECK(refusal_of("/versions/form", "one") == "`summary.json` is damaged");
+
+  Report const report = example::duffing(20);
+  nlohmann::json const outer = nlohmann::json::from_cbor(record_bytes(report));
+  nlohmann::json const content = nlohmann::json::from_cbor(outer.at("content").get_binary());
+  auto const read = [&](char const* pointer, nlohmann::json const& value) {
+    nlohmann::json forged = content;
+    forged[nlohmann::json::json_pointer(pointer)] = value;
+    return read_record(sealed_cbor(forged, outer.at("form").get<int>()), "report.cbor");
+  };
+  CHECK(read("/seed", 5).seed == 5);
+  CHECK_THROWS_AS(read("/seed", "five"), UserError);
+  CHECK_THROWS_AS(read("/draws/chains/0/0", std::uint64_t{1} << 62), UserError);
+  CHECK_THROWS_AS(read("/draws/chains/0/1", std::uint64_t{1} << 40), UserError);
 }
 
 TEST_CASE("CBOR of any depth and length is an answer") {

@@ -134,3 +134,15 @@ TEST_CASE("a message shows of a very long line what lies around the mark") {
   CHECK(shown.find("use ;") != std::string::npos);
   CHECK(shown.find("damping") == std::string::npos);
 }
+
+TEST_CASE("a line that is no text is not shown, its place is; a line of text is shown") {
+  std::string const binary =
+      messages(std::string("\x7f"
+                           "ELF\x02\x01\x01\0\0\0\x03 model",
+                           17));
+  CHECK(binary.find("error[E1") != std::string::npos);
+  CHECK(binary.find(":1:") != std::string::npos);
+  CHECK(binary.find(" | ") == std::string::npos);
+  CHECK(binary.find("ELF") == std::string::npos);
+  CHECK(messages("model m {\n\tstate ?\r\n}\n").find("   2 |     state ?\n") != std::string::npos);
+}

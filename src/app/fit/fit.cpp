@@ -55,7 +55,7 @@ class Fit {
     if (auto const why = refusal(task_, what_, likelihood_->sampled_model(), data_)) throw UserError(*why);
     RunContext context = searching(ledger_);
     if (std::shared_ptr<json const> const stored = checkpoint_.stored()) {
-      preparation_ = restore_preparation(stored->at("preparation"));
+      preparation_ = checkpoint_.preparation(*stored);
       if (stored->contains("state")) context.resume = std::make_shared<json const>(stored->at("state"));
       session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
     } else if (!prepare()) {

@@ -56,7 +56,8 @@ StoredSummary read_summary(fs::path const& folder) {
                        {},
                        made_from_earlier(folder)};
   if (result.name.empty()) result.name = folder.lexically_normal().parent_path().filename().string();
-  result.model = result.summary.value("model", std::string());
+  interpreted(folder / "summary.json", [&] { return result.is(""); });
+  result.model = interpreted(folder / "summary.json", [&] { return result.summary.value("model", std::string()); });
   return result;
 }
 
@@ -98,7 +99,7 @@ void tell_apart(std::vector<StoredSummary>& results) {
 /// "flume.train, rows 101..500 (400)".
 std::string data_text(StoredSummary const& result) {
   std::string text;
-  for (json const& data : result.summary["data"])
+  for (json const& data : result.summary.at("data"))
     text += fmt::format("{}{}, rows {} ({})", text.empty() ? "" : "; ", data.value("name", ""), data.value("scored_rows", ""),
                         data.value("scored", 0));
   return text;
@@ -106,7 +107,7 @@ std::string data_text(StoredSummary const& result) {
 
 std::string samples_of(StoredSummary const& result) {
   std::string all;
-  for (json const& data : result.summary["data"]) {
+  for (json const& data : result.summary.at("data")) {
     std::string const digest = data.value("samples_sha256", "");
     if (digest.empty())
       throw refused(fmt::format("`{}` does not record which samples it was fitted to", result.folder.string()),
@@ -133,7 +134,7 @@ void require_same_samples(StoredSummary const& one, StoredSummary const& other) 
 std::string noise_text(json const& summary) {
   std::string text;
   for (json const& name : summary.value("noise", json::array())) {
-    json const& parameter = summary["parameters"].value(name.get<std::string>(), json::object());
+    json const& parameter = summary.at("parameters").value(name.get<std::string>(), json::object());
     if (!parameter.contains("mean") || !parameter["mean"].is_number()) continue;
     std::string const unit = parameter.value("unit", "");
     text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", name.get<std::string>(),
@@ -174,7 +175,7 @@ std::string model_text(StoredSummary const& result) {
 std::string identity(StoredSummary const& result) {
   json const settings = result.summary.value("settings", json::object());
   json all = {model_text(result), result.summary.value("prediction_rule", ""), settings.value("start_state", "")};
-  for (json const& data : result.summary["data"]) all.push_back({data.value("sha256", ""), data.value("inputs_sha256", "")});
+  for (json const& data : result.summary.at("data")) all.push_back({data.value("sha256", ""), data.value("inputs_sha256", "")});
   return all.dump();
 }
 
@@ -229,7 +230,7 @@ std::string kind_of(json const& summary) {
 
 void add_predictions(StoredSummary const& result, std::vector<ComparedPrediction>& predictions) {
   json const channels = result.summary.value("fit", json::object()).value("channels", json::object());
-  for (json const& data : result.summary["data"]) {
+  for (json const& data : result.summary.at("data")) {
     std::string const experiment = data.value("name", "");
     json const of_experiment = channels.value(experiment, json::object());
     for (auto const& [channel, scores] : of_experiment.items()) {
@@ -252,6 +253,20 @@ void add_predictions(StoredSummary const& result, std::vector<ComparedPrediction
   }
 }
 
+/// All that is read of a summary, once.
+void require_readable(StoredSummary const& result) {
+  interpreted(result.folder / "summary.json", [&] {
+    (void)result.lags();
+    (void)data_text(result);
+    (void)identity(result);
+    for (json const& data : result.summary.at("data")) (void)data.value("samples_sha256", "");
+    std::vector<ComparedPrediction> predictions;
+    add_predictions(result, predictions);
+    if (result.is("fit")) (void)compared_fit(result);
+    return true;
+  });
+}
+
 }  // namespace
 
 Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model_of) {
@@ -264,6 +279,7 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
     }
   if (model_of)
     for (StoredSummary& each : results) each.model = model_of(each.name, each.model);
+  for (StoredSummary const& each : results) require_readable(each);
   tell_apart(results);
   Comparison comparison;
   std::vector<StoredSummary> fits;

@@ -38,7 +38,7 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   auto const summary = nlohmann::json::parse(read_summary(folder));
   auto const text = [&](char const* key) {
-    auto const& versions = summary["versions"];
+    auto const& versions = summary.at("versions");
     return versions.contains(key) && versions[key].is_string() ? versions[key].get<std::string>() : std::string();
   };
   std::string const source = text(task_key), digest = text(digest_key);
@@ -55,12 +55,14 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
 void add_source(std::filesystem::path const& fit, Report& report) {
   auto const summary = nlohmann::json::parse(read_summary(fit));
   std::vector<std::string> failed, doubtful;
-  for (auto const& finding : summary["findings"]) {
-    std::string const severity = finding.value("severity", ""), code = finding.value("code", "");
-    std::vector<std::string>* const codes = severity == "error" ? &failed : severity == "warning" ? &doubtful : nullptr;
-    if (codes != nullptr && std::find(codes->begin(), codes->end(), code) == codes->end()) codes->push_back(code);
-  }
-  std::string const name = summary.value("task", "");
+  std::string const name = interpreted(fit / "summary.json", [&] {
+    for (auto const& finding : summary.at("findings")) {
+      std::string const severity = finding.value("severity", ""), code = finding.value("code", "");
+      std::vector<std::string>* const codes = severity == "error" ? &failed : severity == "warning" ? &doubtful : nullptr;
+      if (codes != nullptr && std::find(codes->begin(), codes->end(), code) == codes->end()) codes->push_back(code);
+    }
+    return summary.value("task", std::string());
+  });
   if (!failed.empty())
     report.findings.push_back(
         {FindingCode::from_doubtful_fit,

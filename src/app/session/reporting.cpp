@@ -196,9 +196,11 @@ std::string model_digest(Session const& session, std::string const& model) {
   return sha256(text);
 }
 
-std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed) {
+namespace {
+
+std::optional<Diagnostic> otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed,
+                                    nlohmann::json const& summary) {
   auto const folder = session.result_folder(task);
-  auto const summary = nlohmann::json::parse(read_whole_summary(folder));
   auto const refuse = [&](std::string const& what) {
     Help help = run_again();
     help.command_line += ", or write elsewhere with -o";
@@ -206,7 +208,7 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
     return result_error("E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
                         std::move(help));
   };
-  if (summary["versions"].value("model_sha256", "") != task_digest(session, task))
+  if (summary.at("versions").value("model_sha256", "") != task_digest(session, task))
     return refuse("text of " + task_row(task).name(session, task));
   std::vector<ExperimentUse> const experiments = task_row(task).experiments(task);
   auto const stored = summary.value("data", nlohmann::json::array());
@@ -219,9 +221,17 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
       return refuse("content of `" + block.path + "`");
   }
   if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");
-  if (summary["versions"].value("statement_sha256", "") != statement_digest(session, task))
+  if (summary.at("versions").value("statement_sha256", "") != statement_digest(session, task))
     return refuse("statement, or with other rows");
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed) {
+  auto const folder = session.result_folder(task);
+  auto const summary = nlohmann::json::parse(read_whole_summary(folder));
+  return interpreted(folder / "summary.json", [&] { return otherwise(session, task, seed, summary); });
 }
 
 }  // namespace sysid

@@ -64,7 +64,8 @@ FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::st
     fitted.draws.chains.push_back(read_chain(path, parameters));
   }
   if (fitted.draws.total() == 0) throw unusable_result(fmt::format("there are no draws in `{}`", folder.string()));
-  fitted.solver = read_solver(nlohmann::json::parse(read_summary(folder)).at("settings"));
+  auto const summary = nlohmann::json::parse(read_summary(folder));
+  fitted.solver = interpreted(folder / "summary.json", [&] { return read_solver(summary.at("settings")); });
   return fitted;
 }
 
@@ -129,7 +130,8 @@ std::vector<SelectedCandidate> const& selected_candidates(Session& session, int 
                        std::nullopt,
                        {},
                        "run the selection again, with --force or another -o"});
-    candidate.probability = summary["models"][name].value("probability", 0.0);
+    candidate.probability =
+        interpreted(folder / "summary.json", [&] { return summary.at("models").at(name).value("probability", 0.0); });
     auto const path = folder / fmt::format("draws_{}.csv", model_file_name(name));
     if (std::filesystem::exists(path)) {
       FitTask const& fit = what.fits[k];

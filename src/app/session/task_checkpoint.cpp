@@ -8,6 +8,7 @@
 #include "app/session/results.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
+#include "inference/backend/checkpoint.hpp"
 #include "report/file/sealed_cbor.hpp"
 
 namespace sysid {
@@ -22,6 +23,8 @@ UserError refused(char const* code, std::filesystem::path const& path, char cons
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});
 }
 
+UserError damaged(std::filesystem::path const& path) { return refused("E6207", path, "is damaged", "start again with --force"); }
+
 // With the members `who` and `content`.
 std::optional<json> read(std::filesystem::path const& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
@@ -31,10 +34,12 @@ std::optional<json> read(std::filesystem::path const& path) {
       throw refused("E6208", path, "was written by another version of sysid",
                     "continue with that version, or start again with --force");
     case Seal::damaged:
-      throw refused("E6207", path, "is damaged", "start again with --force");
+      throw damaged(path);
     case Seal::whole:
       break;
   }
+  // What only the seal vouches for: anyone can seal anything.
+  if (!stored.is_object() || !stored.contains("who") || !stored.contains("content")) throw damaged(path);
   return stored;
 }
 
@@ -42,7 +47,11 @@ std::optional<json> read(std::filesystem::path const& path) {
 std::uint64_t seed_of(Session& session, Task const& task, std::optional<std::uint64_t> const& stated,
                       std::filesystem::path const& path) {
   if (session.options.resume && !session.options.seed && !stated)
-    if (auto const stored = read(path)) return stored->at("who").at("seed").get<std::uint64_t>();
+    if (auto const stored = read(path)) {
+      json const& who = stored->at("who");
+      if (!who.is_object() || !who.contains("seed") || !who["seed"].is_number_unsigned()) throw damaged(path);
+      return who["seed"].get<std::uint64_t>();
+    }
   return session.seed(task, stated);
 }
 
@@ -72,6 +81,16 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
     throw refused("E6208", path_, "belongs to another text, data or seed",
                   "restore the files of that run, or start again with --force");
   return std::make_shared<json const>(stored->at("content"));
+}
+
+Preparation TaskCheckpoint::preparation(json const& content) const {
+  try {
+    return restore_preparation(content.at("preparation"));
+  } catch (json::exception const&) {
+    throw damaged(path_);
+  } catch (checkpoint::Mismatch const&) {
+    throw damaged(path_);
+  }
 }
 
 void TaskCheckpoint::save(json const& content) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/session/preparation.hpp"
 #include "app/session/session.hpp"
 #include "experiment/experiments.hpp"
 
@@ -26,6 +27,8 @@ class TaskCheckpoint {
   /// What is stored, else null, when going on was asked for and something is; UserError when it is damaged (E6207) or of another
   /// text, data or seed (E6208).
   std::shared_ptr<nlohmann::json const> stored() const;
+  /// Of what `stored` gives; UserError (E6207) when it is none.
+  Preparation preparation(nlohmann::json const& content) const;
   /// The first one of a run that goes on from nothing takes the place of an earlier run's results and checkpoint.
   void save(nlohmann::json const& content);
   /// Whether there is one of this run, to go on from.

@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "app/session/results.hpp"
 #include "app/session/session.hpp"
 #include "app/process/drawn_functions.hpp"
 #include "app/task/signals.hpp"
+#include "app/task/simulation_rounds.hpp"
 #include "check/checked/task_kinds.hpp"
-#include "core/numeric/fourier.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
@@ -29,8 +28,6 @@
 
 namespace sysid {
 namespace {
-
-constexpr double doubles = sizeof(double), characters = 2 * 22;  // of a number; of its text, which grows by doubling
 
 // Made data carry the error of the integrator: said when it is more than a tenth of the noise (or a thousandth of the response).
 void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
@@ -90,70 +87,6 @@ bool reads_samples(Model const& model) {
   return false;
 }
 
-// Takes from a run what the next one reads; false where that is what this one read.
-using Feedback = std::function<bool(Trajectory::Result const& run, Experiment& experiment)>;
-
-// A model that goes on from what it measured: noise enters all that follows.
-Feedback measured_samples(CompiledModel const& compiled) {
-  return [&compiled](Trajectory::Result const& run, Experiment& experiment) {
-    std::vector<std::vector<double>> const before = experiment.measured;
-    for (std::size_t c = 0; c < before.size(); ++c)
-      for (std::size_t i = 0; i < before[c].size(); ++i) {
-        double const made = compiled.model.channels[c].to_si(run.noisy[c][0][i]);
-        if (std::isfinite(made)) experiment.measured[c][i] = made;
-      }
-    return experiment.measured != before;
-  };
-}
-
-// Processes are the last inputs; before the record they are zero, as all inputs are. Their values may differ by rounding from round
-// to round, since jitter is a share of the mean variance.
-Feedback drawn_values(DrawnFunctions const& functions, std::vector<double> const& time, int history) {
-  return [&functions, &time, history, before = std::vector<std::vector<double>>()](Trajectory::Result const& run,
-                                                                                   Experiment& experiment) mutable {
-    std::vector<std::vector<double>> now = functions.along(run);
-    std::size_t const first = experiment.inputs.size() - now.size();
-    double change = 0, size = 0;
-    for (std::size_t p = 0; p < now.size(); ++p)
-      for (std::size_t i = 0; i < now[p].size(); ++i) {
-        change = std::max(change, std::fabs(now[p][i] - (before.empty() ? 0 : before[p][i])));
-        size = std::max(size, std::fabs(now[p][i]));
-      }
-    for (std::size_t p = 0; p < now.size(); ++p) {
-      std::vector<double> samples(static_cast<std::size_t>(history), 0.0);
-      samples.insert(samples.end(), now[p].begin(), now[p].end());
-      experiment.inputs[first + p] =
-          InputSignal(InputRule::zero_order, time, std::move(samples)).view(history, static_cast<int>(now[p].size()));
-    }
-    before = std::move(now);
-    return change > 1e-9 * size;
-  };
-}
-
-// As many rounds as there are feedbacks make at least one more sample right, the draws being the same, so that this would end, were
-// it not for rounding, which a chaotic model blows up; a stable model takes few. Nothing: interrupted.
-std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
-                                            std::shared_ptr<CompiledModel const> const& compiled, Experiment& experiment,
-                                            SimulateTask const& what, LaneArray const& parameters, StreamKey noise_key,
-                                            std::vector<Feedback>& feedbacks) {
-  auto const most = static_cast<std::size_t>(what.samples) * feedbacks.size() + 1;
-  for (std::size_t round = 0; round <= most; ++round) {
-    Trajectory const trajectory(compiled, experiment, what.solver, 0, session.interruptible());
-    Trajectory::Result result = trajectory.run(parameters, noise_key);
-    if (session.interrupted()) return std::nullopt;
-    if (result.failed() > 0) return result;
-    bool changed = false;
-    for (Feedback& feedback : feedbacks) changed = feedback(result, experiment) || changed;
-    if (!changed) return result;
-  }
-  throw UserError({Severity::error,
-                   "E5001",
-                   fmt::format("the simulation `{}` does not converge: its feedback changes in every round", task.name),
-                   Label{task.span, {}},
-                   {},
-                   "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});
-}
-
 // With another output folder a data block that reads `results/NAME/FILE` still reads what an earlier run left there.
 void warn_of_older_data(Session& session, Task const& task, std::filesystem::path const& written) {
   auto const absolute = [](std::filesystem::path const& path) { return std::filesystem::absolute(path).lexically_normal(); };
@@ -192,7 +125,8 @@ class Simulate {
       drawn_.push_back(fmt::format("function {} drawn from its prior", process.name));
     compiled_ = functions_ ? functions_->compiled() : session.compiled(what.model, false, what.solver.method, rule);
     history_ = data_lag(model());
-    require_memory(fmt::format("the simulation `{}` of {} samples", task_.name, what_.samples), bytes(), "use fewer samples");
+    require_memory(fmt::format("the simulation `{}` of {} samples", task_.name, what_.samples),
+                   bytes_to_simulate(what_, *compiled_), "use fewer samples");
     prepare();
   }
 
@@ -222,18 +156,6 @@ class Simulate {
 
  private:
   Model const& model() const { return compiled_->model; }
-  // Of inputs and their polynomials, what is recorded, simulated twice, and the text of the record.
-  double bytes() const {
-    auto const samples = static_cast<double>(what_.samples);
-    auto const records = static_cast<double>(compiled_->records.size()), inputs = static_cast<double>(model().inputs.size());
-    auto const columns = static_cast<double>(what_.inputs.size() + 2 * model().channels.size() + 1);
-    double most = 0;  // of the inputs, which are made one after the other
-    for (InputGenerator const& each : what_.inputs)
-      if (each.kind == InputGenerator::Kind::multisine)
-        most = std::max(most, bytes_to_add_harmonics(static_cast<std::size_t>(what_.samples)));
-    return most + samples * (doubles * (4 + 8 * inputs + 4 * records + columns) + characters * columns);
-  }
-
   // What takes long or much is said before it begins; the time is that of the beginning, scaled.
   void announce(Trajectory const& whole) const {
     constexpr int beginning = 20'000;
@@ -260,9 +182,9 @@ class Simulate {
     // With finer steps once more, at about twice the cost; writing takes some hundred nanoseconds a number.
     double const seconds = static_cast<double>(what_.samples) * (took.count() / beginning * (model().integrated() ? 3 : 1) +
                                                                  3e-7 * static_cast<double>(whole.quantities().size()));
-    if (seconds > 10 || bytes() > 1e9)
+    if (seconds > 10 || bytes_to_simulate(what_, *compiled_) > 1e9)
       session_.notices << fmt::format("{}: {} samples take about {} of memory and {}\n", task_.name, what_.samples,
-                                      format_bytes(bytes()), format_duration(seconds));
+                                      format_bytes(bytes_to_simulate(what_, *compiled_)), format_duration(seconds));
   }
 
   bool rows() const { return model().dynamics == Dynamics::none; }

@@ -23,7 +23,7 @@ void DictionaryChecker::parameters_used() {
     bool const before_a_term =
         std::any_of(terms_.begin(), terms_.end(), [&](Candidate const& each) { return each.written.coefficient == name.text; });
     diagnostics_.add(before_a_term ? errors::unit_of_no_term(name.span, parameter.unit ? parameter.unit->text : "", possible)
-                                   : errors::unused_parameter(name.span, name.text, false));
+                                   : errors::unused_parameter(name.span, name.text, false, errors::Declarer::dictionary));
   }
 }
 
@@ -38,7 +38,8 @@ void DictionaryChecker::inputs_used() {
     if (symbol.kind == regression::Symbol::Kind::input) read.insert(symbol.index);
   for (std::size_t i = 0; i < out_.measured.inputs.size(); ++i)
     if (!read.contains(static_cast<int>(i)))
-      diagnostics_.add(errors::unused_input(out_.measured.inputs[i].span, out_.measured.inputs[i].name, "dictionary"));
+      diagnostics_.add(
+          errors::unused_input(out_.measured.inputs[i].span, out_.measured.inputs[i].name, errors::Declarer::dictionary));
 }
 
 }  // namespace sysid

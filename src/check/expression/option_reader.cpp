@@ -198,8 +198,14 @@ void OptionReader::unknown(ast::Option const& option, std::vector<std::string> c
 
 bool OptionReader::fresh(ast::Option const& option, std::string const& key) {
   auto const [place, is_fresh] = seen_.emplace(option.input ? "input " + key : key, option.span);
-  errors::Subject const what = key == the_backend ? errors::Subject{key} : errors::named(place->first);
-  if (!is_fresh) diagnostics_.add(errors::stated_twice(option.span, place->second, what));
+  if (!is_fresh) diagnostics_.add(errors::stated_twice(option.span, place->second, errors::named(place->first)));
+  return is_fresh;
+}
+
+bool OptionReader::fresh_backend(ast::Option const& option) {
+  if (backend_) diagnostics_.add(errors::stated_twice(option.span, *backend_, errors::Subject{"the back end"}));
+  bool const is_fresh = !backend_;
+  if (is_fresh) backend_ = option.span;
   return is_fresh;
 }
 

@@ -26,9 +26,6 @@ Span head_span(ast::Expression const& expression);
 /// Of a unit's name; dimensionless for none.
 Unit unit_of(std::string_view atom);
 
-/// Under this key the back end is told apart from other options.
-inline constexpr char const* the_backend = "the back end";
-
 /// Nothing is returned, or `place` left alone, when a diagnostic was added.
 class OptionReader {
  public:
@@ -53,6 +50,8 @@ class OptionReader {
 
   /// False, with a diagnostic, when the option was given before.
   bool fresh(ast::Option const& option, std::string const& key);
+  /// The same of the back end, whichever it is.
+  bool fresh_backend(ast::Option const& option);
   void unknown(ast::Option const& option, std::vector<std::string> const& known);
 
  private:
@@ -64,7 +63,7 @@ class OptionReader {
   Graph graph_;
   Scope scope_;
   std::map<std::string, Span> seen_;
-  std::optional<Span> solver_;  // where the solver was stated
+  std::optional<Span> solver_, backend_;  // where they were stated
 };
 
 }  // namespace sysid

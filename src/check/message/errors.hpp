@@ -80,9 +80,11 @@ Diagnostic not_a_state(ast::Name const& name, Names const& states);
 Diagnostic channel_twice(ast::Name const& name, Span first);
 Diagnostic nothing_observed(ast::Name const& model);
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first);
+/// What declares a parameter or an input.
+enum class Declarer { model, dictionary };
 /// Warnings.
-Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where = "model");
-Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where = "model");
+Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, Declarer where = Declarer::model);
+Diagnostic unused_input(Span declaration, std::string const& input, Declarer where = Declarer::model);
 Diagnostic time_twice(Span second, Span first);
 
 // samples and discrete time (E31)
@@ -122,6 +124,7 @@ Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& colu
 
 // tasks (E60)
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
+Diagnostic unknown_fit(ast::Name const& name, Names const& known);
 /// A part of something named: "data `bench` has no part `trian`".
 Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::string const& kind, Names const& known);
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);

@@ -81,6 +81,8 @@ Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span f
 
 namespace {
 
+char const* word(Declarer where) { return where == Declarer::dictionary ? "dictionary" : "model"; }
+
 Diagnostic unused(Span declaration, std::string const& name, std::string message, std::string help) {
   Diagnostic result = about({name}, error("E3019", declaration, std::move(message), std::move(help)));
   result.severity = Severity::warning;
@@ -89,15 +91,15 @@ Diagnostic unused(Span declaration, std::string const& name, std::string message
 
 }  // namespace
 
-Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, std::string const& where) {
-  return unused(declaration, parameter, fmt::format("nothing in this {} uses the parameter `{}`", where, parameter),
-                where == "dictionary" ? "use it as a factor of a term or in the target, or delete it"
+Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool has_prior, Declarer where) {
+  return unused(declaration, parameter, fmt::format("nothing in this {} uses the parameter `{}`", word(where), parameter),
+                where == Declarer::dictionary ? "use it as a factor of a term or in the target, or delete it"
                 : has_prior ? "use it in an equation, an observation or another prior; otherwise its posterior equals its prior"
                             : "use it in an equation, an observation or a prior, or delete it");
 }
-Diagnostic unused_input(Span declaration, std::string const& input, std::string const& where) {
-  return unused(declaration, input, fmt::format("nothing in this {} uses the input `{}`", where, input),
-                where == "dictionary"
+Diagnostic unused_input(Span declaration, std::string const& input, Declarer where) {
+  return unused(declaration, input, fmt::format("nothing in this {} uses the input `{}`", word(where), input),
+                where == Declarer::dictionary
                     ? "use it in the target or in a term: an input that acts but is left out remains in the residual"
                     : "use it in an equation or an observation, or delete it");
 }

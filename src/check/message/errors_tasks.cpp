@@ -7,15 +7,16 @@
 namespace sysid::errors {
 
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known) {
-  if (kind == "fit" && known.empty())
-    return about({name.text},
-                 error("E6001", name.span, fmt::format("there is no fit `{}` in this file", name.text),
-                       "a fit is a task with a name: `posterior = fit MODEL to DATA with mh(samples = 1000)`"),
-                 kind);
   return about({name.text},
                error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text),
                      guess_or(name.text, known, choose(known, kind))),
                kind);
+}
+
+Diagnostic unknown_fit(ast::Name const& name, Names const& known) {
+  Diagnostic result = unknown_item(name, "fit", known);
+  if (known.empty()) result.help = "a fit is a task with a name: `posterior = fit MODEL to DATA with mh(samples = 1000)`";
+  return result;
 }
 
 Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::string const& kind, Names const& known) {

@@ -25,7 +25,7 @@ std::optional<int> TaskChecker::fitted_task(ast::Name const& subject, bool or_se
   auto const written = std::find_if(all_tasks_.begin(), all_tasks_.end(),
                                     [&](ast::Task const* each) { return each != &tree_ && task_name(*each) == name; });
   if (written == all_tasks_.end())
-    diagnostics_.add(errors::unknown_item(subject, "fit", known));
+    diagnostics_.add(errors::unknown_fit(subject, known));
   else if (written > self)
     diagnostics_.add(errors::task_too_late(subject));
   else

@@ -123,7 +123,7 @@ bool TaskChecker::backend_option(ast::Option const& option, std::string const& k
     backend = key;  // said once is enough
     return true;
   }
-  if (!options_.fresh(option, the_backend)) return true;
+  if (!options_.fresh_backend(option)) return true;
   backend = key;
   settings = Settings(row->settings);
   if (ast::Call const* call = as_call(option.value)) options_.settings(*call, row->settings, settings);

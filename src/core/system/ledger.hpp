@@ -26,7 +26,7 @@ struct Failure {
 class Ledger {
  public:
   /// Where the failures lie that are counted without a look at each.
-  static constexpr char const* untraced = "not traced: only the first eight are";
+  static constexpr char const* untraced = "not traced: only the first eight are listed";
   /// Ends the place of failures that are counted together.
   static constexpr std::string_view not_traced = ", not traced";
   void add_solves(std::uint64_t count) { solves_ += count; }

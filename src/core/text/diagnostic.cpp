@@ -151,6 +151,12 @@ std::vector<std::string> mark_rows(std::vector<Mark> marks, Severity severity, P
   return out;
 }
 
+/// Of a file that is no text a line shows nothing.
+bool printable(std::string_view line) {
+  return std::none_of(line.begin(), line.end(),
+                      [](char c) { return (static_cast<unsigned char>(c) < 0x20U && c != '\t' && c != '\r') || c == '\x7f'; });
+}
+
 std::string excerpt(Diagnostic const& diagnostic, Source const& source, Paint paint) {
   // Lines by file, that of the message first.
   int const own_file = source.place(diagnostic.primary->span.begin).file;
@@ -175,6 +181,7 @@ std::string excerpt(Diagnostic const& diagnostic, Source const& source, Paint pa
       out += paint.gutter("...") + "\n";
     previous = number;
     previous_file = file_key;
+    if (!printable(source.line(number, file))) continue;
     std::uint32_t const line_begin = source.line_begin(number, file);
     ShownLine const line = shown(source.line(number, file), labels.front().first->span.begin - line_begin);
     out += fmt::format("{} {}\n", paint.gutter(fmt::format("{:>{}} |", number, digits)), line.text);

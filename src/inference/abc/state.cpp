@@ -41,7 +41,7 @@ json store(Population const& population) {
 Population restore_population(json const& stored, SelectionTarget const& candidates) {
   Population population;
   population.number = stored.at("number").get<int>();
-  population.threshold = checkpoint::decode(stored.at("threshold")).at(0);
+  population.threshold = checkpoint::decode(stored.at("threshold"), 1).front();
   for (int m = 0; m < candidates.size(); ++m) {
     auto const at = static_cast<std::size_t>(m);
     int const dimension = candidates.dimension(m);
@@ -67,7 +67,7 @@ json store(PopulationRecord const& record) {
 
 PopulationRecord restore_record(json const& stored) {
   PopulationRecord record;
-  std::vector<double> const pair = checkpoint::decode(stored.at("numbers"));
+  std::vector<double> const pair = checkpoint::decode(stored.at("numbers"), 2);
   record.threshold = pair.at(0);
   record.ess = pair.at(1);
   auto const& counts = stored.at("counts");
@@ -76,7 +76,7 @@ PopulationRecord restore_record(json const& stored) {
   record.failed = counts.at(2).get<std::uint64_t>();
   record.accepted = counts.at(3).get<int>();
   for (auto const& model : stored.at("models")) {
-    std::vector<double> const two = checkpoint::decode(model.at(3));
+    std::vector<double> const two = checkpoint::decode(model.at(3), 2);
     record.models.push_back(
         {model.at(0).get<std::uint64_t>(), model.at(1).get<std::uint64_t>(), model.at(2).get<int>(), two.at(0), two.at(1)});
   }

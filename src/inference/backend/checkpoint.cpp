@@ -27,6 +27,12 @@ std::vector<double> decode(nlohmann::json const& stored) {
   return values;
 }
 
+std::vector<double> decode(nlohmann::json const& stored, std::size_t count) {
+  std::vector<double> values = decode(stored);
+  if (values.size() != count) throw Mismatch("it is damaged");
+  return values;
+}
+
 nlohmann::json encode(LaneArray const& values) {
   auto const size = static_cast<std::size_t>(values.rows()) * static_cast<std::size_t>(values.width());
   return encode(std::span<double const>{values.view().data(), size});
@@ -53,13 +59,29 @@ nlohmann::json encode(Ledger const& ledger) {
   return {{"solves", ledger.solves()}, {"failures", failures}};
 }
 
+namespace {
+
+FailureClass failure_class(nlohmann::json const& stored) {
+  int const number = stored.get<int>();
+  if (number < 0 || number > static_cast<int>(FailureClass::inconsistent)) throw Mismatch("it is damaged");
+  return static_cast<FailureClass>(number);
+}
+
+Severity severity(nlohmann::json const& stored) {
+  int const number = stored.get<int>();
+  if (number < 0 || number > static_cast<int>(Severity::note)) throw Mismatch("it is damaged");
+  return static_cast<Severity>(number);
+}
+
+}  // namespace
+
 Ledger decode_ledger(nlohmann::json const& stored) {
   Ledger ledger;
   ledger.add_solves(stored.at("solves").get<std::uint64_t>());
   for (nlohmann::json const& failure : stored.at("failures"))
-    ledger.add_failure(static_cast<FailureClass>(failure.at("kind").get<int>()), failure.at("where").get<std::string>(),
-                       decode(failure.at("time")).at(0), decode(failure.at("example")), failure.at("count").get<std::uint64_t>(),
-                       failure.value("names", std::vector<std::string>{}));
+    ledger.add_failure(failure_class(failure.at("kind")), failure.at("where").get<std::string>(),
+                       decode(failure.at("time"), 1).front(), decode(failure.at("example")),
+                       failure.at("count").get<std::uint64_t>(), failure.value("names", std::vector<std::string>{}));
   return ledger;
 }
 
@@ -75,7 +97,7 @@ nlohmann::json encode(Mode const& mode) {
 }
 
 Mode decode_mode(nlohmann::json const& stored) {
-  std::vector<double> const numbers = decode(stored.at("numbers"));
+  std::vector<double> const numbers = decode(stored.at("numbers"), 5);
   return {decode(stored.at("theta")),
           decode(stored.at("declared")),
           decode(stored.at("sd")),
@@ -100,8 +122,8 @@ Findings decode_findings(nlohmann::json const& stored) {
   for (auto const& f : stored) {
     auto const code = finding_code(f.at(0).get<std::string>());
     if (!code) throw nlohmann::json::other_error::create(501, "a finding without a row", &f);
-    findings.push_back({*code, static_cast<Severity>(f.at(1).get<int>()), f.at(2).get<std::vector<std::string>>(),
-                        f.at(3).get<std::string>(), f.at(4).get<std::string>()});
+    findings.push_back({*code, severity(f.at(1)), f.at(2).get<std::vector<std::string>>(), f.at(3).get<std::string>(),
+                        f.at(4).get<std::string>()});
   }
   return findings;
 }

@@ -26,6 +26,8 @@ class Mismatch : public std::exception {
 nlohmann::json encode(std::span<double const> values);
 /// Throws Mismatch for anything else, the text of an older format included.
 std::vector<double> decode(nlohmann::json const& stored);
+/// Throws Mismatch unless there are `count`.
+std::vector<double> decode(nlohmann::json const& stored, std::size_t count);
 nlohmann::json encode(LaneArray const& values);
 /// Throws Mismatch unless the stored block is rows x width.
 LaneArray decode(nlohmann::json const& stored, int rows, int width);

@@ -102,7 +102,7 @@ Adaptation Adaptation::restore(nlohmann::json const& stored) {
   a.iteration_ = stored.at("iteration").get<std::uint64_t>();
   auto const group = static_cast<Eigen::Index>(a.chains_.size());
   if (a.iteration_ > 0) a.mean_ = to_matrix(checkpoint::decode(stored.at("mean")), dimension, group);
-  std::vector<double> const scales = checkpoint::decode(stored.at("scales"));
+  std::vector<double> const scales = checkpoint::decode(stored.at("scales"), 2);
   a.log_scale_ = scales.at(0);
   a.proposal_ = {static_cast<int>(dimension), checkpoint::decode(stored.at("factor")), scales.at(1), small_share};
   if (a.proposal_.factor.size() != static_cast<std::size_t>(dimension * dimension))

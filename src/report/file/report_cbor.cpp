@@ -99,7 +99,15 @@ void from_json(json const& stored, Ledger& ledger) {
 
 namespace {
 
-std::vector<double> column_of(json const& length) { return std::vector<double>(length.get<std::size_t>(), std::nan("")); }
+/// A column takes a line of its file for each number: more are no column, and would fill the memory before that is seen.
+std::size_t length_of(json const& stored) {
+  constexpr std::size_t most = 200'000'000;
+  auto const length = stored.get<std::size_t>();
+  if (length > most) throw json::other_error::create(501, "a column longer than any file", &stored);
+  return length;
+}
+
+std::vector<double> column_of(json const& length) { return std::vector<double>(length_of(length), std::nan("")); }
 
 /// Writes members one after the other; of a column its length.
 class Writer {
@@ -141,7 +149,7 @@ void to_json(json& out, Chain const& chain) {
          chain.acceptance.size()};
 }
 void from_json(json const& stored, Chain& chain) {
-  chain.values.resize(stored.at(0).get<std::size_t>());
+  chain.values.resize(length_of(stored.at(0)));
   chain.log_prior = column_of(stored.at(1));
   chain.log_likelihood = column_of(stored.at(2));
   chain.log_density = column_of(stored.at(3));
@@ -189,8 +197,7 @@ void to_json(json& out, FunctionReport const& function) {
 void from_json(json const& stored, FunctionReport& function) {
   function_members(Reader(stored), function);
   double const none = std::nan("");
-  function.grid.assign(stored.at("grid").get<std::size_t>(),
-                       {std::vector<double>(function.inputs.size(), none), none, none, none, none});
+  function.grid.assign(length_of(stored.at("grid")), {std::vector<double>(function.inputs.size(), none), none, none, none, none});
 }
 
 // --- selections

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
@@ -17,8 +18,8 @@ constexpr std::string_view key = "\"summary_sha256\": \"";  // in a string of JS
 constexpr std::size_t digest_size = 64;
 
 void require_files(fs::path const& folder, std::string const& summary) {
-  auto const versions = nlohmann::json::parse(summary).at("versions");
-  FileDigests const files = versions.at("files").get<FileDigests>();
+  FileDigests const files = interpreted(
+      folder / "summary.json", [&] { return nlohmann::json::parse(summary).at("versions").at("files").get<FileDigests>(); });
   for (auto const& [name, digest] : files) {
     if (!fs::exists(folder / name))
       throw unusable_result(fmt::format("`{}` is not there, a file of this result", (folder / name).string()));
@@ -33,6 +34,19 @@ void require_files(fs::path const& folder, std::string const& summary) {
 }  // namespace
 
 UserError unusable_result(std::string message) { return UserError(result_error("E6209", std::move(message), run_again())); }
+
+void throw_damaged(fs::path const& path) {
+  UserError const damaged = unusable_result(fmt::format("`{}` is damaged", path.string()));
+  try {
+    throw;
+  } catch (nlohmann::json::exception const&) {
+    throw damaged;
+  } catch (std::out_of_range const&) {
+    throw damaged;
+  } catch (std::length_error const&) {
+    throw damaged;
+  }
+}
 
 bool is_stored_table(std::string const& name) {
   if (!name.ends_with(".csv")) return false;
@@ -62,7 +76,7 @@ std::string read_summary(fs::path const& folder) {
   if (place + key.size() + digest_size <= text.size()) zeros.replace(place + key.size(), digest_size, unsealed());
   if (text.compare(place + key.size(), digest_size, sha256(zeros)) != 0)
     throw unusable_result(fmt::format("`{}` has been changed since it was written", path.string()));
-  if (nlohmann::json::parse(text).at("versions").value("form", 0) != stored_form)
+  if (interpreted(path, [&] { return nlohmann::json::parse(text).at("versions").value("form", 0); }) != stored_form)
     throw unusable_result(fmt::format("`{}` was written by another version of sysid", folder.string()));
   return text;
 }

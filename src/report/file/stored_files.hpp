@@ -14,6 +14,21 @@ constexpr int stored_form = 1;
 /// Stored results that cannot be used (E6209): damaged, incomplete or of another version.
 UserError unusable_result(std::string message);
 
+/// To be called where an exception is handled: one from content of other members, types or lengths than are written becomes the
+/// UserError (E6209) that `path` is damaged; others pass on.
+[[noreturn]] void throw_damaged(std::filesystem::path const& path);
+
+/// What `read` makes of the content of a stored file. Its seal only says that the bytes are those that were written: by whom, it
+/// does not.
+template <class Read>
+auto interpreted(std::filesystem::path const& path, Read const& read) {
+  try {
+    return read();
+  } catch (...) {
+    throw_damaged(path);
+  }
+}
+
 /// SHA-256 of the files that are read back, by name.
 using FileDigests = std::map<std::string, std::string>;
 

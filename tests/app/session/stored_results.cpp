@@ -10,6 +10,8 @@
 #include "app/answer.hpp"
 #include "core/system/folder_lock.hpp"
 #include "core/system/interrupt.hpp"
+#include "report/file/sealed_cbor.hpp"
+#include "report/file/stored_files.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -174,6 +176,73 @@ TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   write(output.path() / "posterior" / "checkpoint.cbor", std::string(bytes.begin(), bytes.end()));
   CHECK(run("k", output.path(), {}, options).messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") !=
         std::string::npos);
+}
+
+TEST_CASE("a checkpoint with a whole seal and other content than is written is damaged, and one of the same content is taken up") {
+  using json = nlohmann::json;
+  TemporaryFolder const output;
+  std::string const checkpoint = checkpoint_of_an_interrupted_run(output.path());
+  REQUIRE_FALSE(checkpoint.empty());
+  json const outer = json::from_cbor(checkpoint);
+  json const content = json::from_cbor(outer.at("content").get_binary());
+  RunOptions options;
+  options.resume = true;
+  auto const resumed = [&](json const& forged) {
+    write(output.path() / "posterior" / "checkpoint.cbor", sealed_cbor(forged, outer.at("form").get<int>()));
+    return run("k", output.path(), {"fit"}, options);
+  };
+  auto const with = [&](char const* pointer, json const& value) {
+    json forged = content;
+    forged[json::json_pointer(pointer)] = value;
+    return forged;
+  };
+  json seedless = content;
+  seedless["who"].erase("seed");
+  json const short_numbers = json::binary(std::vector<std::uint8_t>(8, 0));
+  for (json const& forged :
+       {json(3), json::array(), json{{"who", 1}}, with("/content", 7), with("/content/preparation", "none"),
+        with("/content/preparation/moves", "many"), with("/content/preparation/solver/solver", 4),
+        with("/content/preparation/findings", {{"no finding", 1, json::array(), "", ""}}),
+        with("/content/preparation/modes/0/numbers", short_numbers),
+        with("/content/preparation/ledger/failures",
+             {{{"kind", 99}, {"where", ""}, {"count", 1}, {"time", short_numbers}, {"example", short_numbers}}})}) {
+    CAPTURE(forged.dump(-1, ' ', false, json::error_handler_t::replace).substr(0, 200));
+    Answer const refused = resumed(forged);
+    CHECK(refused.exit == ExitCode::user_error);
+    CHECK(refused.messages.find("error[E6207]: `OUT/posterior/checkpoint.cbor` is damaged") != std::string::npos);
+  }
+  CHECK(resumed(seedless).exit == ExitCode::user_error);
+  CHECK(resumed(content).exit <= ExitCode::doubtful);
+}
+
+TEST_CASE("a summary with a whole seal and other content than is written is damaged, and one of the same content is read") {
+  using json = nlohmann::ordered_json;
+  TemporaryFolder const output;
+  REQUIRE(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
+  std::filesystem::path const path = output.path() / "posterior" / "summary.json";
+  json const original = json::parse(content(path));
+  auto const predicted = [&](char const* pointer, json const& value) {
+    json forged = original;
+    forged[json::json_pointer(pointer)] = value;
+    forged["versions"]["summary_sha256"] = unsealed();
+    write(path, sealed_summary(forged.dump(2) + "\n"));
+    RunOptions options;
+    options.force = true;
+    return run("k", output.path(), {"predict"}, options);
+  };
+  CHECK(predicted("/task", original.at("task")).exit <= ExitCode::doubtful);
+  struct Forged {
+    char const* pointer;
+    json value;
+  };
+  for (Forged const& each : {Forged{"/settings", 3}, Forged{"/settings/solver", 3}, Forged{"/findings", json::array({4})},
+                             Forged{"/task", 9}, Forged{"/data", json::array({1})}, Forged{"/data/0/name", 1},
+                             Forged{"/versions/model_sha256", 1}, Forged{"/versions/files", 1}}) {
+    CAPTURE(each.pointer);
+    Answer const refused = predicted(each.pointer, each.value);
+    CHECK(refused.exit == ExitCode::user_error);
+    CHECK(refused.messages.find("`OUT/posterior/summary.json` is damaged") != std::string::npos);
+  }
 }
 
 TEST_CASE("an output folder that cannot be made or written is an error of input and output, before any work") {
