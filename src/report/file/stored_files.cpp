@@ -16,9 +16,23 @@ namespace fs = std::filesystem;
 constexpr std::string_view key = "\"summary_sha256\": \"";  // in a string of JSON the quotes would have backslashes
 constexpr std::size_t digest_size = 64;
 
+struct Versions {
+  int form;
+  FileDigests files;
+};
+
+/// Of a summary whose digest agrees, and which may be of another program all the same.
+Versions versions_of(fs::path const& folder, std::string const& summary) {
+  try {
+    auto const versions = nlohmann::json::parse(summary).at("versions");
+    return {versions.value("form", 0), versions.value("files", FileDigests())};
+  } catch (nlohmann::json::exception const&) {
+    throw unusable_result(fmt::format("`{}` is not the result of a task", (folder / "summary.json").string()));
+  }
+}
+
 void require_files(fs::path const& folder, std::string const& summary) {
-  auto const versions = nlohmann::json::parse(summary).at("versions");
-  FileDigests const files = versions.at("files").get<FileDigests>();
+  FileDigests const files = versions_of(folder, summary).files;
   for (auto const& [name, digest] : files) {
     if (!fs::exists(folder / name))
       throw unusable_result(fmt::format("`{}` is not there, a file of this result", (folder / name).string()));
@@ -62,7 +76,7 @@ std::string read_summary(fs::path const& folder) {
   if (place + key.size() + digest_size <= text.size()) zeros.replace(place + key.size(), digest_size, unsealed());
   if (text.compare(place + key.size(), digest_size, sha256(zeros)) != 0)
     throw unusable_result(fmt::format("`{}` has been changed since it was written", path.string()));
-  if (nlohmann::json::parse(text).at("versions").value("form", 0) != stored_form)
+  if (versions_of(folder, text).form != stored_form)
     throw unusable_result(fmt::format("`{}` was written by another version of sysid", folder.string()));
   return text;
 }
