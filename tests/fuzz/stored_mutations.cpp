@@ -193,7 +193,13 @@ std::string bytes_of(fs::path const& path) {
 }  // namespace
 
 std::vector<StoredFile> write_example(fs::path const& folder) {
-  write_result(example::duffing(12), folder, {});
+  Report report = example::duffing(12);
+  Prediction& prediction = report.predictions.front();
+  auto const shorten = [](auto&... columns) { (columns.resize(std::min<std::size_t>(columns.size(), 20)), ...); };
+  shorten(prediction.time, prediction.scored);
+  for (PredictedQuantity& each : prediction.quantities)
+    for (Band* band : {&each.response, &each.noisy}) shorten(band->mean, band->sd, band->lower, band->upper, each.measured);
+  write_result(report, folder, {});
   put(folder / "checkpoint.cbor", checkpoint());
   return stored_files(folder);
 }
