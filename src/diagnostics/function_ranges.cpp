@@ -152,7 +152,7 @@ Findings check_reach(Model const& model, std::vector<RunsAlong> const& fitted, R
     Extent const reached = middle_extent(there.values[k], predicted.experiment);
     double const width = visited.high - visited.low, beyond = std::max(reached.high - visited.high, visited.low - reached.low);
     bool const inside = reached.low >= input.low && reached.high <= input.high;
-    bool const told = std::any_of(findings.begin(), findings.end(), [&](Finding const& each) {
+    bool const told = std::any_of(findings.begin(), findings.end(), [&expansion = expansion, &input = input](Finding const& each) {
       return each.names.front() == expansion.name && each.names[1] == input.name;
     });
     if (!inside || told || !(beyond > tolerated * width)) continue;

@@ -60,19 +60,25 @@ class Validator {
       fits_.emplace(models_, guess,
                     StructureFitSettings{rows_.records, noise, std::move(priors), rows_.least, execution_, pool_, interrupted_});
       fits_->run();
+      if (interrupted_()) return interrupted();
       rank();
       score();
       check_stability();
     }
+    if (interrupted_()) return interrupted();
     Validation out;
-    out.interrupted = interrupted_();
-    if (out.interrupted) return out;
     report(out);
     if (any) out.findings = validation_findings(out.report);
     return out;
   }
 
  private:
+  static Validation interrupted() {
+    Validation out;
+    out.interrupted = true;
+    return out;
+  }
+
   struct Scored {
     double probability = 0;
     ForecastErrors errors;

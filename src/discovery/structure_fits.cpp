@@ -47,7 +47,7 @@ StructureFits::StructureFits(std::vector<ValidatedModel> const& models, StartGue
 
 void StructureFits::run() {
   climb();
-  refine();
+  if (!settings_.interrupted()) refine();  // else some have not begun, and not all have segments of one length
 }
 
 std::string const& StructureFits::failure(std::size_t m) const {

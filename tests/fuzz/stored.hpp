@@ -17,6 +17,9 @@ struct StoredFile {
 /// A result, written into `folder`, with a checkpoint beside it.
 std::vector<StoredFile> write_example(std::filesystem::path const& folder);
 
+/// Those of a folder that a run has left.
+std::vector<StoredFile> stored_files(std::filesystem::path const& folder);
+
 struct Outcome {
   std::uint64_t refused = 0, same = 0;
   std::string fault;  // what was read in place of what was written, and from which bytes; empty: nothing

@@ -1,9 +1,11 @@
 // Mutations as disks, networks and editors make them: bits and bytes, cuts, repeated and moved parts, other numbers.
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/numeric/random.hpp"
+#include "core/system/digest.hpp"
 #include "core/text/diagnostic.hpp"
 #include "fuzz/stored.hpp"
 #include "report/example.hpp"
@@ -80,6 +82,44 @@ class Mutator {
   Stream stream_;
 };
 
+template <class Rows>
+void append_rows(std::string& all, Rows const& rows) {
+  for (auto const& row : rows)
+    for (double const value : row) all.append(reinterpret_cast<char const*>(&value), sizeof value);
+}
+
+void append_draws(std::string& all, Draws const& draws) {
+  for (Chain const& chain : draws.chains) {
+    append_rows(all, std::array{chain.log_density, chain.log_prior, chain.log_likelihood, chain.acceptance});
+    append_rows(all, chain.values);
+  }
+}
+
+/// All numbers of a result, those of its tables too.
+std::string all_of(Report const& report) {
+  std::string all = record_bytes(report);
+  append_draws(all, report.draws);
+  for (Prediction const& prediction : report.predictions) {
+    append_rows(all, std::array{prediction.time});
+    all.append(prediction.scored.begin(), prediction.scored.end());
+    for (PredictedQuantity const& quantity : prediction.quantities) {
+      for (Band const* band : {&quantity.response, &quantity.noisy})
+        append_rows(all, std::array{band->mean, band->sd, band->lower, band->upper});
+      append_rows(all, std::array{quantity.measured});
+    }
+  }
+  for (FunctionReport const& function : report.functions)
+    for (FunctionPoint const& point : function.grid)
+      append_rows(all, std::array{point.inputs, std::vector{point.mean, point.sd, point.q5, point.q95}});
+  if (!report.selection) return all;
+  for (SelectedModel const& model : report.selection->result.models) {
+    append_rows(all, std::array{model.weight, model.distance});
+    for (int d = 0; d < model.declared.rows(); ++d) append_rows(all, std::array{model.declared.row(d)});
+  }
+  for (Draws const& draws : report.selection->refined_draws) append_draws(all, draws);
+  return all;
+}
+
 /// What the file gives, as text; throws where it is refused.
 std::string read_back(fs::path const& folder, StoredFile const& file, std::string const& bytes) {
   if (file.name == "checkpoint.cbor") {
@@ -88,15 +128,7 @@ std::string read_back(fs::path const& folder, StoredFile const& file, std::strin
     return sealed_cbor(content, checkpoint_form);
   }
   if (file.name == "summary.json") return read_whole_summary(folder);
-  Report const report = read_result(folder);
-  std::string all = record_bytes(report);
-  for (Chain const& chain : report.draws.chains)
-    for (auto const* column : {&chain.log_density, &chain.log_prior, &chain.log_likelihood, &chain.acceptance})
-      for (double const value : *column) all.append(reinterpret_cast<char const*>(&value), sizeof value);
-  for (Chain const& chain : report.draws.chains)
-    for (auto const& row : chain.values)
-      for (double const value : row) all.append(reinterpret_cast<char const*>(&value), sizeof value);
-  return all;
+  return all_of(read_result(folder));
 }
 
 /// Whether columns of a forged report are of lengths that can be filled a hundred thousand times.
@@ -106,45 +138,78 @@ bool moderate(json const& value) {
   return true;
 }
 
-/// Behind the checksums: parsers meet any bytes.
-void read_forged(StoredFile const& file, std::string const& bytes, Mutator& mutator) {
+std::string with_zeros(std::string text) {
+  std::string const key = "\"summary_sha256\": \"";
+  auto const place = text.find(key);
+  if (place != text.npos && place + key.size() + unsealed().size() <= text.size())
+    text.replace(place + key.size(), unsealed().size(), unsealed());
+  return text;
+}
+
+/// A summary that has the digest of `changed` for that of the file.
+std::string summary_with(std::string summary, StoredFile const& file, std::string const& changed) {
+  std::string const digest = sha256(file.bytes);
+  auto const place = summary.find(digest);
+  if (place != summary.npos) summary.replace(place, digest.size(), sha256(changed));
+  return sealed_summary(with_zeros(std::move(summary)));
+}
+
+/// Behind the checksums: with every digest and checksum as a writer of these bytes would have left it, readers meet any bytes.
+void read_forged(fs::path const& folder, StoredFile const& file, std::string const& summary, std::string const& changed,
+                 Mutator& mutator) {
   try {
     if (file.name.ends_with(".csv")) {
-      (void)parse_number_table(bytes, file.name);
+      (void)parse_number_table(changed, file.name);
+      put(folder / "summary.json", summary_with(summary, file, changed));
+      put(folder / file.name, changed);
+      (void)read_result(folder);
     } else if (file.name == "summary.json") {
-      auto const zeros = [&](std::string text) {
-        std::string const key = "\"summary_sha256\": \"";
-        auto const place = text.find(key);
-        if (place != text.npos && place + key.size() + unsealed().size() <= text.size())
-          text.replace(place + key.size(), unsealed().size(), unsealed());
-        return text;
-      };
-      if (std::string const text = zeros(bytes); text.find(unsealed()) != text.npos) (void)sealed_summary(text);
+      std::string const text = with_zeros(changed);
+      if (text.find(unsealed()) == text.npos) return;
+      put(folder / file.name, sealed_summary(text));
+      (void)read_result(folder);
     } else {
       json const outer = json::from_cbor(file.bytes);
       json::binary_t const& inner = outer.at("content").get_binary();
-      std::string const changed = mutator(std::string(inner.begin(), inner.end()));
-      if (!is_plain_cbor(changed)) return;
-      json const content = json::from_cbor(changed, true, false);
-      if (!content.is_discarded() && file.name == "report.cbor" && moderate(content))
-        (void)read_record(sealed_cbor(content, outer.at("form").get<int>()), file.name);
+      std::string const other = mutator(std::string(inner.begin(), inner.end()));
+      if (!is_plain_cbor(other)) return;
+      json const content = json::from_cbor(other, true, false);
+      if (content.is_discarded() || !moderate(content)) return;
+      std::string const sealed = sealed_cbor(content, outer.at("form").get<int>());
+      put(folder / file.name, sealed);
+      (void)read_back(folder, file, sealed);
     }
   } catch (UserError const&) {
+  } catch (IoError const&) {
   } catch (std::bad_alloc const&) {
   }
+}
+
+std::string bytes_of(fs::path const& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
 
 std::vector<StoredFile> write_example(fs::path const& folder) {
-  write_result(example::duffing(12), folder, {});
+  Report report = example::duffing(12);
+  Prediction& prediction = report.predictions.front();
+  auto const shorten = [](auto&... columns) { (columns.resize(std::min<std::size_t>(columns.size(), 20)), ...); };
+  shorten(prediction.time, prediction.scored);
+  for (PredictedQuantity& each : prediction.quantities)
+    for (Band* band : {&each.response, &each.noisy}) shorten(band->mean, band->sd, band->lower, band->upper, each.measured);
+  write_result(report, folder, {});
   put(folder / "checkpoint.cbor", checkpoint());
+  return stored_files(folder);
+}
+
+std::vector<StoredFile> stored_files(fs::path const& folder) {
   std::vector<StoredFile> files;
   for (fs::directory_entry const& entry : fs::directory_iterator(folder)) {
     std::string const name = entry.path().filename();
     if (name != "summary.json" && name != "report.cbor" && name != "checkpoint.cbor" && !is_stored_table(name)) continue;
-    std::ifstream in(entry.path(), std::ios::binary);
-    files.push_back({name, {std::istreambuf_iterator<char>(in), {}}});
+    files.push_back({name, bytes_of(entry.path())});
   }
   std::sort(files.begin(), files.end(), [](StoredFile const& a, StoredFile const& b) { return a.name < b.name; });
   return files;
@@ -154,6 +219,7 @@ Outcome mutate(fs::path const& folder, StoredFile const& file, std::uint64_t cou
   Outcome outcome;
   Mutator mutator({seed, Purpose::test, std::hash<std::string>()(file.name), 0});
   std::string const meant = read_back(folder, file, file.bytes);
+  std::string const summary = fs::exists(folder / "summary.json") ? bytes_of(folder / "summary.json") : "";
   for (std::uint64_t i = 0; i < count && outcome.fault.empty(); ++i) {
     std::string const changed = mutator(file.bytes);
     put(folder / file.name, changed);
@@ -168,7 +234,8 @@ Outcome mutate(fs::path const& folder, StoredFile const& file, std::uint64_t cou
     } catch (IoError const&) {
       ++outcome.refused;
     }
-    read_forged(file, changed, mutator);
+    read_forged(folder, file, summary, changed, mutator);
+    if (file.name.ends_with(".csv")) put(folder / "summary.json", summary);
   }
   put(folder / file.name, file.bytes);
   return outcome;

@@ -38,6 +38,7 @@ ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions con
       throw UserError(result_error("", fmt::format("`{}` holds an interrupted run", folder.string()), resume_or_replace()));
     require_no_result(folder);
   }
+  remove_partial(folder);
   // A byte, since a full disk takes empty files.
   write_file(folder / "claim", ".");
   remove_file(folder / "claim");

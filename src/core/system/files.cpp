@@ -149,6 +149,8 @@ std::uintmax_t regular_file_size(std::filesystem::path const& path) {
   return size;
 }
 
+std::filesystem::path partial_path(std::filesystem::path path) { return path += ".partial"; }
+
 void write_file(std::filesystem::path const& path, std::string_view bytes) {
   std::filesystem::path target = path;
   struct stat facts = {};
@@ -165,8 +167,7 @@ void write_file(std::filesystem::path const& path, std::string_view bytes) {
     std::filesystem::path const real = std::filesystem::canonical(path, ignored);
     if (!ignored) target = real;
   }
-  std::filesystem::path partial = target;
-  partial += ".partial";
+  std::filesystem::path const partial = partial_path(target);
   int const descriptor = open_file(partial, O_WRONLY | O_CREAT | O_TRUNC);
   if (descriptor < 0) fail("write", path, errno);
   if (there)

@@ -26,7 +26,10 @@ std::string read_regular_file(std::filesystem::path const& path, std::size_t mos
 /// The size of a regular file; IoError as above.
 std::uintmax_t regular_file_size(std::filesystem::path const& path);
 
-/// Writes `bytes` under a temporary name in the same folder (PATH.partial), flushes them to the disk and renames: `path` holds
+/// PATH.partial: what `write_file` calls a file that it has begun. One that stays is of a process that was killed.
+std::filesystem::path partial_path(std::filesystem::path path);
+
+/// Writes `bytes` under a temporary name in the same folder (`partial_path`), flushes them to the disk and renames: `path` holds
 /// either the old bytes or all of the new. On failure the temporary file is removed and IoError "cannot write `PATH`: reason" is
 /// thrown. A symbolic link is followed, permissions are kept; a device or pipe is written directly.
 void write_file(std::filesystem::path const& path, std::string_view bytes);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "report/file/sealed_cbor.hpp"
 #include "report/file/stored_files.hpp"
@@ -285,6 +286,8 @@ Report read_record(std::string const& bytes, std::filesystem::path const& path) 
     report.verdict = headline_alone(report.verdict);
     return report;
   } catch (json::exception const&) {
+    throw other;
+  } catch (std::length_error const&) {
     throw other;
   }
 }

@@ -132,6 +132,8 @@ Report read_result(fs::path const& folder) {
   for (FunctionReport& function : report.functions) read_function(folder / function_file(function), function);
   if (!report.selection) return report;
   SelectionReport& selection = *report.selection;
+  if (selection.refined_draws.size() > selection.result.models.size())
+    throw unusable_result(fmt::format("`{}` is damaged", path.string()));
   for (SelectedModel& model : selection.result.models)
     if (!model.weight.empty()) read_particles(folder / particles_file(model.name), model);
   for (std::size_t m = 0; m < selection.refined_draws.size(); ++m) {

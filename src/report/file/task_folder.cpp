@@ -49,12 +49,13 @@ bool is_figure_file(std::string const& name) {
   return false;
 }
 
+std::string task_of(fs::path const& folder) { return (folder / "").lexically_normal().parent_path().filename(); }
+
 std::vector<fs::path> files_of_result(fs::path const& folder) {
   std::vector<fs::path> out;
   std::error_code ignored;
   for (fs::directory_entry const& entry : fs::directory_iterator(folder, ignored))
-    if (is_result_file(entry.path().filename(), (folder / "").lexically_normal().parent_path().filename()))
-      out.push_back(entry.path());
+    if (is_result_file(entry.path().filename(), task_of(folder))) out.push_back(entry.path());
   for (fs::directory_entry const& entry : fs::directory_iterator(folder / "figures", ignored))
     if (is_figure_file(entry.path().filename())) out.push_back(entry.path());
   return out;
@@ -73,6 +74,22 @@ void remove_result(fs::path const& folder) {
   // The summary first: where it stands, the result is whole.
   if (std::error_code ignored; fs::exists(folder / "summary.json", ignored)) remove_file(folder / "summary.json");
   for (fs::path const& file : files_of_result(folder)) remove_file(file);
+}
+
+void remove_partial(fs::path const& folder) {
+  std::vector<fs::path> left;
+  std::error_code ignored;
+  auto const look = [&](fs::path const& where, auto const& written) {
+    for (fs::directory_entry const& entry : fs::directory_iterator(where, ignored)) {
+      fs::path const whole = entry.path().parent_path() / entry.path().stem();
+      if (entry.path() == partial_path(whole) && written(whole.filename().string())) left.push_back(entry.path());
+    }
+  };
+  look(folder, [&](std::string const& name) {
+    return is_result_file(name, task_of(folder)) || name == "checkpoint.cbor" || name == "claim";
+  });
+  look(folder / "figures", &is_figure_file);
+  for (fs::path const& file : left) remove_file(file);
 }
 
 std::vector<std::string> write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {

@@ -82,6 +82,26 @@ TEST_CASE("an interruption while the solver is chosen, or while the result is ch
   }
 }
 
+TEST_CASE("what a killed run left half written is removed by the next, and files of other names stay") {
+  auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
+  std::string const text = with(with(read_file(name), "rows 1..500, test", "rows 1..60, test"), "samples = 25000, burn_in = 5000",
+                                "samples = 600, burn_in = 200");
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  std::filesystem::path const results = options.output / "posterior";
+  std::filesystem::create_directories(results / "figures");
+  std::vector<std::string> const left = {"checkpoint.cbor.partial", "claim.partial", "draws_7.csv.partial", "summary.json.partial",
+                                         "figures/gone.svg.partial"};
+  std::vector<std::string> const others = {"notes.partial", "notes.txt.partial", "figures/mine.partial"};
+  for (auto const* names : {&left, &others})
+    for (std::string const& each : *names) write_file(results / each, "half");
+  options.resume = true;
+  CHECK(run_text(name, text, options, {"fit"}).exit != 75);
+  for (std::string const& each : left) CHECK_MESSAGE(!std::filesystem::exists(results / each), each);
+  for (std::string const& each : others) CHECK_MESSAGE(std::filesystem::exists(results / each), each);
+}
+
 TEST_CASE("two records made in one run with one seed differ, and neither is overwritten unasked") {
   auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
   std::string const text = read_file(name);
