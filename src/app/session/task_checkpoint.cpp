@@ -16,7 +16,7 @@ namespace {
 using json = nlohmann::json;
 
 // Of the file itself. A file of an older form is refused as damaged: nothing of it can be taken up.
-constexpr int form = 3;
+constexpr int form = 4;
 
 UserError refused(char const* code, std::filesystem::path const& path, char const* what, char const* help) {
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});
@@ -72,6 +72,14 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
     throw refused("E6208", path_, "belongs to another text, data or seed",
                   "restore the files of that run, or start again with --force");
   return std::make_shared<json const>(stored->at("content"));
+}
+
+UserError TaskCheckpoint::does_not_fit(std::string const& why) const {
+  return refused("E6207", path_, ("is damaged: " + why).c_str(), "start again with --force");
+}
+
+void TaskCheckpoint::drop() {
+  if (saved_) remove_file(path_);
 }
 
 void TaskCheckpoint::save(json const& content) {
