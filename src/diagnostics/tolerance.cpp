@@ -10,6 +10,7 @@
 #include "core/text/words.hpp"
 #include "search/laplace.hpp"
 #include "search/refit.hpp"
+#include "search/work_left.hpp"
 
 namespace sysid {
 namespace {
@@ -158,19 +159,12 @@ bool hopeless(std::vector<double> const& moves, SolverSettings next) {
 class Shown {
  public:
   Shown(RunContext& context, Target const& target, std::size_t modes, std::string const& what)
-      : context_(context), before_(context.ledger.solves()), expected_(modes * solves_per_mode(target)) {
-    context_.progress.begin(what, expected_);
-  }
+      : context_(context), work_(context, what, modes * solves_per_mode(target)) {}
   ~Shown() { context_.progress.end(!context_.stop_requested()); }
   Shown(Shown const&) = delete;
   Shown& operator=(Shown const&) = delete;
 
-  std::function<bool()> stop() const {
-    return [this] {
-      context_.progress.advance(std::min(context_.ledger.solves() - before_, expected_ - 1), "");
-      return context_.stop_requested();
-    };
-  }
+  std::function<bool()> stop() { return work_.stop(); }
 
  private:
   /// A handful of rounds is usual.
@@ -180,7 +174,7 @@ class Shown {
   }
 
   RunContext& context_;
-  std::uint64_t before_, expected_;
+  WorkLeft work_;
 };
 
 /// By the most that one of weight does.
@@ -224,8 +218,8 @@ RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind object
     std::uint64_t const before = context.ledger.solves();
     std::vector<double> gains;
     std::vector<Mode> const finer = [&] {
-      Shown const shown(context, *target, result.modes.size(), fmt::format("trying {}", accuracy(next)));
-      return refit(*target, objective_kind, result.modes, context.seed, context.ledger, shown.stop(), &gains);
+      Shown shown(context, *target, result.modes.size(), fmt::format("trying {}", accuracy(next)));
+      return refit(*target, objective_kind, result.modes, context.seed, context.ledger, shown.stop(), &gains, context.journal);
     }();
     steps += static_cast<double>(context.ledger.solves() - before) * target->residual_count() * next.substeps;
     Move const move = largest_of_weight(*target, result.modes, finer, gains);

@@ -12,6 +12,7 @@
 #include "core/text/words.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/weighted_draws.hpp"
+#include "search/journal.hpp"
 #include "search/laplace.hpp"
 #include "search/refit.hpp"
 #include "search/search.hpp"
@@ -107,19 +108,42 @@ void write_draw(Target const& target, Mode const& mode, RunContext& context, Fit
   result.draws.chains.push_back({{mode.declared}, {declared_prior}, {log_likelihood}, {log_prior + log_likelihood}, {1.0}});
 }
 
+/// What is known, or what a search finds that keeps its steps; nothing where a checkpoint holds another search.
+std::optional<SearchResult> modes_for(Target const& target, ObjectiveKind objective_kind, nlohmann::json const& identity,
+                                      RunContext& context, FitResult& result) {
+  if (!context.modes.empty()) return SearchResult{context.modes, context.mode_findings, {}, false};
+  if (!context.checkpoint && !context.resume) return search(target, objective_kind, context);
+  try {
+    auto const save = [&](nlohmann::json const& steps) {
+      if (context.checkpoint) context.checkpoint({{"identity", identity}, {"journal", steps}});
+    };
+    Journal journal(save, context.checkpoint_interval, context.resume ? &context.resume->at("journal") : nullptr);
+    context.journal = &journal;
+    SearchResult found = search(target, objective_kind, context);
+    context.journal = nullptr;
+    if (found.interrupted) journal.save();
+    return found;
+  } catch (checkpoint::Mismatch const& mismatch) {
+    result.failure = checkpoint::unusable(mismatch.what());
+  } catch (nlohmann::json::exception const&) {
+    result.failure = checkpoint::unusable("it is damaged");
+  }
+  context.journal = nullptr;
+  return std::nullopt;
+}
+
 FitResult run(std::string_view backend, Target const& target, ObjectiveKind objective_kind, Settings const& settings,
               RunContext& context) {
   FitResult result;
   result.settings = settings;
-  // A search starts again from its beginning: what it would lose is seconds, and its end is the same.
   nlohmann::json const identity = checkpoint::identity(backend, settings, context.seed, target);
   if (context.resume) result.failure = checkpoint::refuse(*context.resume, identity);
   if (result.failure) return result;
-  SearchResult found = context.modes.empty() ? search(target, objective_kind, context)
-                                             : SearchResult{context.modes, context.mode_findings, {}, false};
+  std::optional<SearchResult> searched = modes_for(target, objective_kind, identity, context, result);
+  if (!searched) return result;
+  SearchResult found = std::move(*searched);
   result.failure = found.failure;
   result.interrupted = found.interrupted;
-  if (found.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
   if (found.failure || found.interrupted) return result;
   result.modes = std::move(found.modes);
   Mode const& best = result.modes.front();

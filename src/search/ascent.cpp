@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "gaussian_process/maximise.hpp"
+#include "search/search_step.hpp"
 
 namespace sysid {
 namespace {
@@ -57,11 +58,16 @@ Eigen::MatrixXd curvature_at(Objective const& objective, Eigen::VectorXd const& 
 }  // namespace
 
 void climb_by_gradient(Objective const& objective, std::vector<Climber>& climbers, int evaluations, Ledger& ledger,
-                       std::function<bool()> const& stop) {
+                       std::function<bool()> const& stop, Journal* journal) {
+  if (stop && stop()) return;
+  ClimbingStep kept(journal, "climb by gradient", climbers, ledger);
+  if (kept.over()) return;
   Eigen::VectorXd const low = objective.low.cwiseQuotient(objective.scale), high = objective.high.cwiseQuotient(objective.scale);
-  for (Climber& climber : climbers) {
+  for (std::size_t k = kept.place().first; k < climbers.size(); ++k) {
+    Climber& climber = climbers[k];
     if (climber.done) continue;
     if (stop && stop()) return;
+    kept.reached({0, k, {}});
     auto const f = [&](Eigen::VectorXd const& at, Eigen::VectorXd& gradient) {
       if (stop && stop()) {  // who asks for it does not wait for a search to end
         gradient.setZero();
@@ -79,6 +85,8 @@ void climb_by_gradient(Objective const& objective, std::vector<Climber>& climber
     climber.done = found.converged;
     if (climber.done) climber.curvature = curvature_at(objective, climber.theta, ledger);
   }
+  if (stop && stop()) return;
+  kept.finish();
 }
 
 }  // namespace sysid

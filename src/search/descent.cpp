@@ -6,6 +6,7 @@
 
 #include "linear_algebra/decompositions.hpp"
 #include "search/ascent.hpp"
+#include "search/search_step.hpp"
 
 namespace sysid {
 namespace {
@@ -139,6 +140,13 @@ void climb_once(Objective const& objective, std::vector<Climber*> const& block, 
   }
 }
 
+std::vector<std::size_t> not_done(std::vector<Climber> const& climbers) {
+  std::vector<std::size_t> left;
+  for (std::size_t k = 0; k < climbers.size(); ++k)
+    if (!climbers[k].done) left.push_back(k);
+  return left;
+}
+
 }  // namespace
 
 double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
@@ -152,21 +160,26 @@ std::size_t climbers_per_block(Objective const& objective) {
 Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::move(theta), log_density, 1e-2, {}, false}; }
 
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
-           std::function<bool()> const& stop) {
-  if (objective.target.has_gradient()) return climb_by_gradient(objective, climbers, rounds, ledger, stop);
+           std::function<bool()> const& stop, Journal* journal) {
+  if (objective.target.has_gradient()) return climb_by_gradient(objective, climbers, rounds, ledger, stop, journal);
   std::size_t const width = climbers_per_block(objective);
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<Climber*> active;
-    for (Climber& climber : climbers)
-      if (!climber.done) active.push_back(&climber);
-    if (active.empty()) return;
-    for (std::size_t first = 0; first < active.size(); first += width) {
+  if (stop && stop()) return;
+  ClimbingStep kept(journal, "climb", climbers, ledger);
+  if (kept.over()) return;
+  for (LoopPlace place = kept.place(); place.round < rounds; place = {place.round + 1, 0, {}}) {
+    if (place.active.empty()) place.active = not_done(climbers);
+    if (place.active.empty()) break;
+    for (; place.first < place.active.size(); place.first += width) {
       if (stop && stop()) return;
-      std::size_t const last = std::min(active.size(), first + width);
-      climb_once(objective,
-                 {active.begin() + static_cast<std::ptrdiff_t>(first), active.begin() + static_cast<std::ptrdiff_t>(last)}, ledger);
+      kept.reached(place);
+      std::vector<Climber*> block;
+      for (std::size_t i = place.first; i < std::min(place.active.size(), place.first + width); ++i)
+        block.push_back(&climbers[place.active[i]]);
+      climb_once(objective, block, ledger);
     }
   }
+  if (stop && stop()) return;
+  kept.finish();
 }
 
 }  // namespace sysid

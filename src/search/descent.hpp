@@ -9,6 +9,8 @@
 
 namespace sysid {
 
+class Journal;
+
 /// One local search.
 struct Climber {
   Eigen::VectorXd theta;
@@ -30,7 +32,8 @@ std::size_t climbers_per_block(Objective const& objective);
 
 Climber climber_at(Eigen::VectorXd theta, double log_density);
 
-/// Up to `rounds` steps of every climber that is not done; stops early when `stop` says so.
+/// Up to `rounds` steps of every climber that is not done; stops early when `stop` says so. A `journal` keeps it, as a step of
+/// its own; none costs nothing.
 ///
 ///   maximise  -1/2 sum r(theta)^2 + log prior(theta);   (J'J + P + damping D) step = -J'r + grad log prior,   D = diag(J'J + P)
 ///
@@ -39,6 +42,6 @@ Climber climber_at(Eigen::VectorXd theta, double log_density);
 /// long in any coordinate. A target that has a gradient is climbed by that instead. Levenberg 1944, Marquardt 1963; as in More 1978
 /// but for the choice of damping, which lanes make cheap.
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
-           std::function<bool()> const& stop);
+           std::function<bool()> const& stop, Journal* journal = nullptr);
 
 }  // namespace sysid

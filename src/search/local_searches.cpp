@@ -8,6 +8,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "search/laplace.hpp"
+#include "search/search_step.hpp"
 #include "search/settle.hpp"
 
 namespace sysid {
@@ -93,14 +94,14 @@ void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes) {
 }
 
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
-                           std::function<bool()> const& stop) {
+                           std::function<bool()> const& stop, Journal* journal) {
   std::vector<Mode> modes;
   for (Climber const& climber : distinct(objective, std::move(climbers))) {
     if ((stop && stop()) || modes.size() >= most_modes || !std::isfinite(climber.log_density)) break;
     if (!modes.empty() && climber.log_density < modes.front().log_density - hopeless) break;
     Eigen::MatrixXd const guess =
         climber.curvature.size() > 0 ? climber.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
-    Mode mode = laplace_mode(objective, climber.theta, guess, ledger);
+    Mode mode = kept_mode(journal, ledger, stop, [&] { return laplace_mode(objective, climber.theta, guess, ledger); });
     mode.hits = climber.hits;
     mode.stalled = climber.stalled;
     // Widths say little where the density is flat up to a bound.
@@ -122,9 +123,9 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
 }
 
 LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, double least_log_mass,
-                         std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
+                         std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop, Journal* journal) {
   Objective const objective = make_objective(target, objective_kind, seed, scale_step);
-  std::vector<double> const density = log_density_in_blocks(objective, starts, ledger, stop);
+  std::vector<double> const density = log_density_in_blocks(objective, starts, ledger, stop, journal);
   std::vector<Climber> climbers;
   for (int w = 0; w < starts.width(); ++w)
     if (std::isfinite(density[static_cast<std::size_t>(w)]))
@@ -133,7 +134,7 @@ LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, Con
   for (int round = 0; round < most_rounds && !climbers.empty() && !result.given_up; round += rounds_apart) {
     std::vector<double> reach;  // where each would come to at the rate of these rounds
     for (Climber const& each : climbers) reach.push_back(each.log_density);
-    climb(objective, climbers, rounds_apart, ledger, stop);
+    climb(objective, climbers, rounds_apart, ledger, stop, journal);
     int const as_many_again = (most_rounds - round - rounds_apart) / rounds_apart;
     for (std::size_t k = 0; k < climbers.size(); ++k)
       reach[k] = climbers[k].log_density + (climbers[k].done ? 0 : as_many_again * (climbers[k].log_density - reach[k]));
@@ -145,8 +146,8 @@ LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, Con
   if (result.given_up)
     climbers.resize(1, climbers.front());
   else
-    settle(objective, climbers, settling_rounds, ledger, stop);
-  result.modes = modes_of(objective, std::move(climbers), ledger, stop);
+    settle(objective, climbers, settling_rounds, ledger, stop, journal);
+  result.modes = modes_of(objective, std::move(climbers), ledger, stop, journal);
   return result;
 }
 

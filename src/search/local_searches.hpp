@@ -25,7 +25,7 @@ void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes);
 /// The modes that searches have ended in: of a finite density not more than 30 nats below the best, and at most 12. Ranked.
 /// `stop` ends it early: the modes so far.
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
-                           std::function<bool()> const& stop = {});
+                           std::function<bool()> const& stop = {}, Journal* journal = nullptr);
 
 struct LocalSearches {
   std::vector<Mode> modes;
@@ -38,6 +38,6 @@ struct LocalSearches {
 /// reach one of more at that rate, with the largest volume that Laplace's approximation allows, the best stands for all where it
 /// is.
 LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, double least_log_mass,
-                         std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {});
+                         std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop = {}, Journal* journal = nullptr);
 
 }  // namespace sysid

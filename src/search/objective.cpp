@@ -7,6 +7,8 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
+#include "search/journal.hpp"
+#include "search/stored_values.hpp"
 
 namespace sysid {
 
@@ -77,18 +79,31 @@ Eigen::VectorXd column(ConstLanes theta, int lane) {
 }
 
 std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger,
-                                          std::function<bool()> const& stop) {
+                                          std::function<bool()> const& stop, Journal* journal) {
   constexpr int block = 512;
+  auto const width = static_cast<std::size_t>(theta.width());
   std::vector<double> out;
-  for (int first = 0; first < theta.width(); first += block) {
+  if (nlohmann::json const* const kept = journal == nullptr ? nullptr : journal->begin("densities")) {
+    out = checkpoint::decode(kept->at("values"));
+    if (out.size() > width || (out.size() < width && (journal->finished() || out.size() % block != 0)))
+      throw checkpoint::Mismatch("its densities differ in number");
+    ledger = checkpoint::decode_ledger(kept->at("ledger"));
+    if (journal->finished()) return out;
+  }
+  auto const state = [&]() -> nlohmann::json {
+    return {{"values", checkpoint::encode(std::span<double const>(out))}, {"ledger", checkpoint::encode(ledger)}};
+  };
+  for (int first = static_cast<int>(out.size()); first < theta.width(); first += block) {
     if (stop && stop()) {
-      out.resize(static_cast<std::size_t>(theta.width()), -std::numeric_limits<double>::infinity());
-      break;
+      out.resize(width, -std::numeric_limits<double>::infinity());
+      return out;
     }
+    if (journal != nullptr && journal->wants()) journal->reached(state());
     int const count = std::min(block, theta.width() - first);
     std::vector<double> const part = objective.log_density(theta.columns(first, count), ledger);
     out.insert(out.end(), part.begin(), part.end());
   }
+  if (journal != nullptr && !(stop && stop())) journal->finish(state());
   return out;
 }
 

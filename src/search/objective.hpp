@@ -10,6 +10,8 @@
 
 namespace sysid {
 
+class Journal;
+
 struct Objective {
   Target const& target;
   ObjectiveKind objective_kind;
@@ -41,6 +43,6 @@ Eigen::VectorXd column(ConstLanes theta, int lane);
 /// The log density of the columns in blocks of at most 512 lanes: enough to fill any machine, little enough to hold. `stop` is
 /// asked before each; what it leaves out is -infinity.
 std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger,
-                                          std::function<bool()> const& stop = {});
+                                          std::function<bool()> const& stop = {}, Journal* journal = nullptr);
 
 }  // namespace sysid

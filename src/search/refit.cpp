@@ -8,6 +8,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
+#include "search/search_step.hpp"
 #include "search/settle.hpp"
 
 namespace sysid {
@@ -19,17 +20,17 @@ constexpr std::uint64_t refit_step = 2;
 }  // namespace
 
 std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
-                        Ledger& ledger, std::function<bool()> const& stop, std::vector<double>* gains) {
+                        Ledger& ledger, std::function<bool()> const& stop, std::vector<double>* gains, Journal* journal) {
   Objective const objective = make_objective(target, objective_kind, seed, refit_step);
   std::vector<Climber> climbers;
   std::vector<Eigen::VectorXd> points;
   for (Mode const& mode : modes) points.push_back(theta_of(mode));
   if (points.empty()) return {};
-  std::vector<double> const density = objective.log_density(to_lanes(points), ledger);
+  std::vector<double> const density = log_density_in_blocks(objective, to_lanes(points), ledger, stop, journal);
   for (std::size_t m = 0; m < modes.size(); ++m) climbers.push_back(climber_at(points[m], density[m]));
   climb(objective, climbers, target.has_gradient() || objective_kind == ObjectiveKind::posterior ? evaluations : rounds, ledger,
-        stop);
-  settle(objective, climbers, settling_rounds, ledger, stop);
+        stop, journal);
+  settle(objective, climbers, settling_rounds, ledger, stop, journal);
   std::vector<Mode> result;
   for (std::size_t m = 0; m < modes.size(); ++m) {
     if (stop && stop()) {
@@ -44,7 +45,7 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
     Eigen::MatrixXd const guess = climbers[m].curvature.size() > 0
                                       ? climbers[m].curvature
                                       : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
-    result.push_back(laplace_mode(objective, climbers[m].theta, guess, ledger));
+    result.push_back(kept_mode(journal, ledger, stop, [&] { return laplace_mode(objective, climbers[m].theta, guess, ledger); }));
     result.back().share = modes[m].share;
     result.back().hits = modes[m].hits;
     result.back().stalled = climbers[m].stalled;

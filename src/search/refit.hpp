@@ -10,12 +10,15 @@
 
 namespace sysid {
 
+class Journal;
+
 /// Local searches on `target` from each of `modes`, which are those of a target with the same parameters and the same objective
 /// kind. Modes come back in the order given (shares as they were); one whose density is not finite any more keeps its place with
 /// log_density -infinity. `stop` ends it early: the modes as far as they have come. gains, where asked for: by how much each search
 /// has raised the log density of `target`.
 std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
-                        Ledger& ledger, std::function<bool()> const& stop = {}, std::vector<double>* gains = nullptr);
+                        Ledger& ledger, std::function<bool()> const& stop = {}, std::vector<double>* gains = nullptr,
+                        Journal* journal = nullptr);
 
 /// Whether a declared value lies at a bound of its prior's support: within a thousandth of the support's width, or of a positive
 /// lower bound. Coordinates end there at infinity, so that what a Laplace approximation says of the parameter means nothing.

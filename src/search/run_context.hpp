@@ -13,6 +13,8 @@
 
 namespace sysid {
 
+class Journal;
+
 /// All that a run gets from outside, and the only way anything but the result leaves it.
 struct RunContext {
   std::uint64_t seed;
@@ -31,6 +33,8 @@ struct RunContext {
   /// instead of searching again.
   std::vector<Mode> modes = {};
   Findings mode_findings = {};  // of that search
+  /// Keeps the steps of a search; null: an interrupted one begins anew.
+  Journal* journal = nullptr;
 
   bool stop_requested() const { return interrupted && interrupted(); }
 };

@@ -20,6 +20,7 @@
 #include "search/local_searches.hpp"
 #include "search/mode_findings.hpp"
 #include "search/settle.hpp"
+#include "search/work_left.hpp"
 
 namespace sysid {
 namespace {
@@ -48,8 +49,8 @@ constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_ste
 
 /// The draws worth a local search: the likeliest, and the first of the rest.
 std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Breadth const& breadth, Ledger& ledger,
-                                   std::function<bool()> const& stop) {
-  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger, stop);
+                                   std::function<bool()> const& stop, Journal* journal) {
+  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger, stop, journal);
   std::vector<int> order;
   for (int w = 0; w < draws.width(); ++w)
     if (std::isfinite(density[static_cast<std::size_t>(w)])) order.push_back(w);
@@ -102,15 +103,15 @@ bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
 
 /// Local searches to their ends.
 void finish(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
-            std::function<bool()> const& stop) {
-  climb(objective, climbers, rounds, ledger, stop);
-  settle(objective, climbers, settling_rounds, ledger, stop);
+            std::function<bool()> const& stop, Journal* journal) {
+  climb(objective, climbers, rounds, ledger, stop, journal);
+  settle(objective, climbers, settling_rounds, ledger, stop, journal);
   sort_best_first(climbers);
   auto const low = std::find_if(climbers.begin(), climbers.end(), [&](Climber const& each) {
     return each.log_density < climbers.front().log_density - may_end_highest;
   });
   std::vector<Climber> highest(std::make_move_iterator(climbers.begin()), std::make_move_iterator(low));
-  settle(objective, highest, patient_rounds, ledger, stop);
+  settle(objective, highest, patient_rounds, ledger, stop, journal);
   std::move(highest.begin(), highest.end(), climbers.begin());
 }
 
@@ -132,41 +133,38 @@ void begin_without_functions(Target const& target, LaneArray& draws) {
 SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context) {
   SearchResult result;
   Breadth const& breadth = target.has_gradient() ? narrow : has_coefficients(target) ? few : broad;
-  // All that a search of one pass does but its last rounds, of which a handful is usual.
   auto const dimension = static_cast<std::uint64_t>(target.dimension());
   std::uint64_t const round = target.has_gradient() ? 1 : 2 * dimension + 1 + 4,
-                      usual = static_cast<std::uint64_t>(breadth.draws) +
-                              (breadth.likeliest + breadth.others) * early_rounds * round +
-                              breadth.finalists * usual_rounds * round;
-  std::uint64_t const before = context.ledger.solves();
-  std::uint64_t expected = usual;
-  auto const stop = [&] {
-    context.progress.advance(std::min(context.ledger.solves() - before, expected - 1), "");
-    return context.stop_requested();
-  };
-  context.progress.begin("searching the prior", expected);
+                      of_draws = static_cast<std::uint64_t>(breadth.draws),
+                      early = (breadth.likeliest + breadth.others) * early_rounds * round,
+                      last_part = breadth.finalists * usual_rounds * round;
+  int const passes = has_coefficients(target) ? 1 : most_passes;
+  WorkLeft work(context, "searching the prior", of_draws + early + last_part);
+  auto const stop = work.stop();
   StreamKey const key{context.seed, Purpose::start, 0, search_step};
   std::optional<Objective> objective;
   std::vector<Climber> ended;
   bool begun = false;
-  int const passes = has_coefficients(target) ? 1 : most_passes;
   for (int pass = 0; pass < passes && !stop(); ++pass) {
     LaneArray draws = draw_prior(target, key.with_index(static_cast<std::uint64_t>(pass * draws_per_pass)), draws_per_pass);
     if (!objective) objective.emplace(make_objective(target, objective_kind, draws));
     begin_without_functions(target, draws);
-    std::vector<Climber> starts = choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop);
+    std::vector<Climber> starts =
+        choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop, context.journal);
     begun = begun || !starts.empty();
-    climb(*objective, starts, early_rounds, context.ledger, stop);
+    work.part(starts.size() * early_rounds * round, last_part);
+    climb(*objective, starts, early_rounds, context.ledger, stop, context.journal);
     std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
     // A density that vanishes at bounds has its optima inside: what was found there before is found to the last digit.
     int const rounds = objective_kind == ObjectiveKind::posterior ? most_rounds_inside : breadth.rounds;
-    finish(*objective, last, rounds, context.ledger, stop);
+    work.part(last.size() * usual_rounds * round, 0);
+    finish(*objective, last, rounds, context.ledger, stop, context.journal);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
-    if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, [&] { return context.stop_requested(); });
+    if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, stop, context.journal);
     if (!result.modes.empty() && (ended.size() == 1 || !may_be_missed(result.modes, ended.size()))) break;
-    expected = context.ledger.solves() - before + usual;
-    context.progress.begin(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), expected);
+    if (pass + 1 < passes)
+      work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part);
   }
   bool const stopped = stop();
   context.progress.end(!stopped);
@@ -193,17 +191,12 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
 
 SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context) {
   SearchResult result;
-  std::uint64_t const before = context.ledger.solves();
   auto const round = static_cast<std::uint64_t>(target.has_gradient() ? 1 : 2 * target.dimension() + 1 + 4);
-  std::uint64_t const expected = static_cast<std::uint64_t>(starts.width()) * round * usual_rounds;
-  auto const stop = [&] {
-    context.progress.advance(std::min(context.ledger.solves() - before, expected - 1), "");
-    return context.stop_requested();
-  };
-  context.progress.begin("searching near an earlier fit", expected);
-  result.modes =
-      modes_from(target, objective_kind, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger, stop)
-          .modes;
+  WorkLeft work(context, "searching near an earlier fit", static_cast<std::uint64_t>(starts.width()) * round * usual_rounds);
+  auto const stop = work.stop();
+  result.modes = modes_from(target, objective_kind, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger,
+                            stop, context.journal)
+                     .modes;
   result.interrupted = stop();
   context.progress.end(!result.interrupted);
   if (result.interrupted) {

@@ -10,6 +10,8 @@
 #include "linear_algebra/decompositions.hpp"
 #include "search/box.hpp"
 #include "search/laplace.hpp"
+#include "search/search_step.hpp"
+#include "search/stored_values.hpp"
 
 namespace sysid {
 namespace {
@@ -315,28 +317,71 @@ void settle_once(Objective const& objective, Box const& box, std::vector<Settler
   step(objective, box, left, of_left, ledger);
 }
 
+/// Of each: damping, whether it is done, its place and, where it has one, its curvature.
+std::vector<double> numbers_of(std::vector<Settler> const& settlers) {
+  std::vector<double> numbers;
+  for (Settler const& each : settlers) {
+    numbers.insert(numbers.end(), {each.damping, each.done ? 1.0 : 0.0, each.curvature.size() > 0 ? 1.0 : 0.0});
+    append(numbers, each.z);
+    append(numbers, each.curvature);
+  }
+  return numbers;
+}
+
+void restore_settlers(ClimbingStep const& kept, std::vector<Settler>& settlers) {
+  std::vector<double> const& numbers = kept.rest();
+  if (numbers.empty()) return;
+  std::size_t at = 0;
+  auto const take = [&](Eigen::Index count) {
+    if (numbers.size() - at < static_cast<std::size_t>(count)) throw checkpoint::Mismatch("its searches differ in number");
+    double const* const taken = numbers.data() + at;
+    at += static_cast<std::size_t>(count);
+    return taken;
+  };
+  for (Settler& each : settlers) {
+    Eigen::Index const n = each.z.size();
+    double const* const head = take(3);
+    each.damping = head[0];
+    each.done = head[1] != 0;
+    each.z = Eigen::Map<Eigen::VectorXd const>(take(n), n);
+    each.curvature = head[2] != 0 ? Eigen::MatrixXd(Eigen::Map<Eigen::MatrixXd const>(take(n * n), n, n)) : Eigen::MatrixXd();
+  }
+  bool const fits = at == numbers.size() && std::all_of(kept.place().active.begin(), kept.place().active.end(),
+                                                        [&](std::size_t k) { return k < settlers.size(); });
+  if (!fits) throw checkpoint::Mismatch("its searches differ in number");
+}
+
 }  // namespace
 
 void settle(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
-            std::function<bool()> const& stop) {
-  if (objective.target.has_gradient()) return;
+            std::function<bool()> const& stop, Journal* journal) {
+  if (objective.target.has_gradient() || (stop && stop())) return;
+  ClimbingStep kept(journal, "settle", climbers, ledger);
+  if (kept.over()) return;
   Box const box(objective);
   std::vector<Settler> settlers;
   for (Climber& climber : climbers)
     if (std::isfinite(climber.log_density))
       settlers.push_back({climber, box.inside(climber.theta), in_box(box, climber.theta, climber.curvature)});
+  restore_settlers(kept, settlers);
   std::size_t const width = climbers_per_block(objective);
-  for (int round = 0; round <= rounds; ++round) {  // after the last step only a look
-    std::vector<Settler*> active;
-    for (Settler& settler : settlers)
-      if (!settler.done) active.push_back(&settler);
-    for (std::size_t first = 0; first < active.size(); first += width) {
+  for (LoopPlace place = kept.place(); place.round <= rounds;
+       place = {place.round + 1, 0, {}}) {  // after the last step only a look
+    bool const begun = !place.active.empty();
+    for (std::size_t k = 0; !begun && k < settlers.size(); ++k)
+      if (!settlers[k].done) place.active.push_back(k);
+    if (place.active.empty()) break;
+    for (; place.first < place.active.size(); place.first += width) {
       if (stop && stop()) return;
-      std::vector<Settler*> const block(active.begin() + static_cast<std::ptrdiff_t>(first),
-                                        active.begin() + static_cast<std::ptrdiff_t>(std::min(active.size(), first + width)));
-      settle_once(objective, box, block, round < rounds, ledger);
+      kept.reached(place, [&] { return numbers_of(settlers); });
+      std::vector<Settler*> block;
+      for (std::size_t i = place.first; i < std::min(place.active.size(), place.first + width); ++i)
+        block.push_back(&settlers[place.active[i]]);
+      settle_once(objective, box, block, place.round < rounds, ledger);
     }
   }
+  if (stop && stop()) return;
+  kept.finish();
 }
 
 bool connected(Objective const& objective, Mode const& a, Mode const& b) {

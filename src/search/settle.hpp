@@ -28,7 +28,7 @@ constexpr int settling_rounds = 60;
 /// check. One that is done already is left where it was unless it promises more than `large_gain`. Those of a
 /// target that has a gradient are left alone.
 void settle(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
-            std::function<bool()> const& stop);
+            std::function<bool()> const& stop, Journal* journal = nullptr);
 
 /// Whether the log density falls by no more than a tenth between two places: they are of one hill, however far apart.
 bool connected(Objective const& objective, Mode const& a, Mode const& b);

@@ -205,6 +205,7 @@ TEST_CASE("progress counts simulations up to those of a usual search") {
     int calls = 0;
     bool finished = false;
     void begin(std::string_view, std::uint64_t of) override { total = of; }
+    void expect(std::uint64_t of) override { total = of; }
     void advance(std::uint64_t done, std::string_view) override {
       CHECK(done >= last);
       last = done;

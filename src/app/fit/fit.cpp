@@ -22,8 +22,10 @@
 #include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "experiment/sticking.hpp"
+#include "inference/backend/checkpoint.hpp"
 #include "inference/evidence.hpp"
 #include "inference/table.hpp"
+#include "search/journal.hpp"
 #include "search/search.hpp"
 
 namespace sysid {
@@ -54,11 +56,12 @@ class Fit {
   ExitCode run() {
     if (auto const why = refusal(task_, what_, likelihood_->sampled_model(), data_)) throw UserError(*why);
     RunContext context = searching(ledger_);
-    if (std::shared_ptr<json const> const stored = checkpoint_.stored()) {
+    std::shared_ptr<json const> const stored = checkpoint_.stored();
+    if (stored) session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
+    if (stored && stored->contains("preparation")) {
       preparation_ = checkpoint_.preparation(*stored);
       if (stored->contains("state")) context.resume = std::make_shared<json const>(stored->at("state"));
-      session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
-    } else if (!prepare()) {
+    } else if (!prepare(stored.get())) {
       return stop_early(session_, task_, checkpoint_);
     }
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
@@ -78,7 +81,7 @@ class Fit {
             ledger, [this] { return session_.interrupted(); },
             {},     session_.options.checkpoint_interval,
             {},     {},
-            {}};
+            {},     nullptr};
   }
 
   FitResult sample(RunContext& context) {
@@ -135,10 +138,31 @@ class Fit {
     return failure;
   }
 
+  // From what an interrupted run has kept, if there is anything. False: interrupted, and kept.
+  bool prepare(json const* stored) {
+    try {
+      Journal journal(
+          [this](json const& steps) {
+            checkpoint_.save({{"journal", steps}});
+          },
+          session_.options.checkpoint_interval, stored != nullptr ? &stored->at("journal") : nullptr);
+      bool const prepared = prepare(journal);
+      if (!prepared && !journal.empty()) journal.save();
+      // What took so long that it has been kept on the way is kept at its end.
+      if (prepared && checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
+      return prepared;
+    } catch (checkpoint::Mismatch const& mismatch) {
+      throw checkpoint_.does_not_fit(mismatch.what());
+    } catch (json::exception const&) {
+      throw checkpoint_.does_not_fit("its search is damaged");
+    }
+  }
+
   // Search and, unless the user fixed it, the step. False: interrupted.
-  bool prepare() {
+  bool prepare(Journal& journal) {
     MakeTarget const make = [this](SolverSettings const& solver) { return interruptible_target(solver); };
     RunContext context = searching(preparation_.ledger);
+    context.journal = &journal;
     Findings ahead = check_method(session_, what_);
     for (Finding& each : check_prior_size(session_, what_, data_)) ahead.push_back(std::move(each));
     print_data_findings(session_, task_, data_, model_);
@@ -164,6 +188,7 @@ class Fit {
         failure.help = stiff.front().help;
       }
       if (std::string advice = sticking_advice(model_, data_); sticks && !advice.empty()) failure.help = std::move(advice);
+      checkpoint_.drop();
       throw UserError(no_result(task_, failure));
     }
     preparation_.modes = std::move(found.modes);

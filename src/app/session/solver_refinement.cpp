@@ -58,7 +58,8 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
                    SolverSettings const& stated, Preparation& preparation, RunContext& context) {
   // Modes may need fewer steps than far corners of the prior.
   if (preparation.solver != stated)
-    preparation.modes = refit(*make(stated), objective_kind, preparation.modes, context.seed, context.ledger, context.interrupted);
+    preparation.modes = refit(*make(stated), objective_kind, preparation.modes, context.seed, context.ledger, context.interrupted,
+                              nullptr, context.journal);
   RefinedSolver refined = find_converged_solver(make, objective_kind, stated, std::move(preparation.modes), context);
   if (context.stop_requested()) return false;
   preparation.solver = refined.solver;

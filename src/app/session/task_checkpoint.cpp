@@ -17,7 +17,7 @@ namespace {
 using json = nlohmann::json;
 
 // Of the file itself. A file of an older form is refused as damaged: nothing of it can be taken up.
-constexpr int form = 3;
+constexpr int form = 4;
 
 UserError refused(char const* code, std::filesystem::path const& path, char const* what, char const* help) {
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});
@@ -91,6 +91,14 @@ Preparation TaskCheckpoint::preparation(json const& content) const {
   } catch (checkpoint::Mismatch const&) {
     throw damaged(path_);
   }
+}
+
+UserError TaskCheckpoint::does_not_fit(std::string const& why) const {
+  return refused("E6207", path_, ("is damaged: " + why).c_str(), "start again with --force");
+}
+
+void TaskCheckpoint::drop() {
+  if (saved_) remove_file(path_);
 }
 
 void TaskCheckpoint::save(json const& content) {

@@ -31,6 +31,10 @@ class TaskCheckpoint {
   Preparation preparation(nlohmann::json const& content) const;
   /// The first one of a run that goes on from nothing takes the place of an earlier run's results and checkpoint.
   void save(nlohmann::json const& content);
+  /// What is stored is whole, but not what this run needs (E6207).
+  UserError does_not_fit(std::string const& why) const;
+  /// A run that will never have a result leaves nothing to go on from.
+  void drop();
   /// Whether there is one of this run, to go on from.
   bool kept() const;
 

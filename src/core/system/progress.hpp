@@ -9,6 +9,8 @@ class Progress {
  public:
   virtual ~Progress() = default;
   virtual void begin(std::string_view what, std::uint64_t total) = 0;
+  /// The job turns out longer or shorter than `begin` was told.
+  virtual void expect(std::uint64_t /*total*/) {}
   /// done: units of `total` finished so far; note: a few words of the current state ("acceptance 0.24").
   virtual void advance(std::uint64_t done, std::string_view note) = 0;
   /// finished: false where the job was stopped on the way.

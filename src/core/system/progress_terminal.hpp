@@ -22,6 +22,7 @@ class TerminalProgress : public Progress {
   ~TerminalProgress() override;
 
   void begin(std::string_view what, std::uint64_t total) override;
+  void expect(std::uint64_t total) override { total_ = total; }
   void advance(std::uint64_t done, std::string_view note) override;
   void end(bool finished = true) override;
 

@@ -1,42 +1,15 @@
-// The state of a run as a JSON value that CBOR brings back bit for bit: a block of doubles is one byte string of their
-// little-endian bytes, so infinities, NaN and last digits survive.
+// The state of a run as a JSON value: whose it is, and why one cannot be gone on from.
 #pragma once
 #include <nlohmann/json.hpp>
-#include <span>
-#include <vector>
+#include <optional>
+#include <string>
+#include <string_view>
 
-#include "core/numeric/lanes.hpp"
 #include "core/setting/settings.hpp"
-#include "core/system/ledger.hpp"
 #include "inference/backend/backend.hpp"
+#include "search/stored_values.hpp"
 
 namespace sysid::checkpoint {
-
-/// A stored state that is not what it should be: damaged, or of another run.
-class Mismatch : public std::exception {
- public:
-  explicit Mismatch(std::string what) : what_(std::move(what)) {}
-  char const* what() const noexcept override { return what_.c_str(); }
-
- private:
-  std::string what_;
-};
-
-/// A byte string, which CBOR has and JSON as text has not.
-nlohmann::json encode(std::span<double const> values);
-/// Throws Mismatch for anything else, the text of an older format included.
-std::vector<double> decode(nlohmann::json const& stored);
-/// Throws Mismatch unless there are `count`.
-std::vector<double> decode(nlohmann::json const& stored, std::size_t count);
-nlohmann::json encode(LaneArray const& values);
-/// Throws Mismatch unless the stored block is rows x width.
-LaneArray decode(nlohmann::json const& stored, int rows, int width);
-nlohmann::json encode(Ledger const& ledger);
-Ledger decode_ledger(nlohmann::json const& stored);
-nlohmann::json encode(Mode const& mode);
-Mode decode_mode(nlohmann::json const& stored);
-nlohmann::json encode(Findings const& findings);
-Findings decode_findings(nlohmann::json const& stored);
 
 /// Who made a checkpoint: back end, its settings, seed, and the target's parameters.
 nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, Target const& target);

@@ -102,6 +102,38 @@ TEST_CASE("what a killed run left half written is removed by the next, and files
   for (std::string const& each : others) CHECK_MESSAGE(std::filesystem::exists(results / each), each);
 }
 
+TEST_CASE("a fit that is interrupted in its search goes on from there, to the same bytes") {
+  auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
+  std::string const rows = with(read_file(name), "rows 1..500, test", "rows 1..60, test");
+  std::string const chains = with(rows, "samples = 25000, burn_in = 5000", "samples = 2000, burn_in = 500");
+  for (std::string const& text : {chains, with(chains, "mh(samples = 2000, burn_in = 500, chains = 4)", "map"),
+                                  with(chains, "mh(samples = 2000, burn_in = 500, chains = 4)", "ml")}) {
+    TemporaryFolder folder;
+    RunOptions options;
+    options.output = folder.path() / "unbroken";
+    run_text(name, text, options, {"fit"});
+    for (std::uint64_t const poll : {5, 14, 23, 41, 67}) {
+      CAPTURE(poll);
+      options = {};
+      options.output = folder.path() / std::to_string(poll);
+      options.checkpoint_interval = 0;
+      options.interrupt_after = poll;
+      RunResult const broken = run_text(name, text, options, {"fit"});
+      clear_interrupt();
+      REQUIRE(broken.exit == 75);
+      CHECK(broken.notices.find("continues from there") != std::string::npos);
+      REQUIRE(std::filesystem::exists(options.output / "posterior/checkpoint.cbor"));
+      options.interrupt_after = 0;
+      options.resume = true;
+      RunResult const resumed = run_text(name, text, options, {"fit"});
+      CHECK(resumed.notices.find("continuing from the checkpoint") != std::string::npos);
+      CHECK_FALSE(std::filesystem::exists(options.output / "posterior/checkpoint.cbor"));
+      for (char const* file : {"summary.json", "draws_1.csv"})
+        CHECK(read_file(options.output / "posterior" / file) == read_file(folder.path() / "unbroken/posterior" / file));
+    }
+  }
+}
+
 TEST_CASE("two records made in one run with one seed differ, and neither is overwritten unasked") {
   auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
   std::string const text = read_file(name);
