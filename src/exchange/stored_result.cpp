@@ -14,13 +14,18 @@ StoredResult read_stored_result(std::filesystem::path const& folder) {
     (void)stored.task(), (void)stored.what(), (void)stored.is(""), (void)stored.seed();
     (void)stored.summary.at("versions").value("sysid", std::string());
     (void)stored.summary.value("model", std::string());
-    for (auto const& [name, each] : stored.summary.value("parameters", nlohmann::ordered_json::object()).items())
+    auto const members = [](nlohmann::ordered_json const& of, char const* name) {
+      return of.value(name, nlohmann::ordered_json::object());
+    };
+    nlohmann::ordered_json const parameters = members(stored.summary, "parameters"), models = members(stored.summary, "models");
+    for (auto const& each : parameters)
       if (each.is_object()) (void)each.value("unit", std::string());
-    for (auto const& [name, model] : stored.summary.value("models", nlohmann::ordered_json::object()).items()) {
+    for (auto const& model : models) {
       (void)model.value("probability", 0.0);
-      for (char const* const of : {"parameters", "polished"})
-        for (auto const& [parameter, each] : model.value(of, nlohmann::ordered_json::object()).items())
-          (void)each.value("unit", std::string());
+      for (char const* const name : {"parameters", "polished"}) {
+        nlohmann::ordered_json const summaries = members(model, name);
+        for (auto const& each : summaries) (void)each.value("unit", std::string());
+      }
     }
     return true;
   });
