@@ -13,6 +13,7 @@
 #include "app/session/reporting.hpp"
 #include "app/session/resolved.hpp"
 #include "app/session/solver_record.hpp"
+#include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/coverage.hpp"
@@ -89,7 +90,9 @@ class Predict {
            ""});
     Trajectory const trajectory = trajectories_.trajectory(e);
     LaneArray const draws = trajectories_.parameters(e);
+    stop_if_interrupted();
     Trajectory::Result const result = trajectories_.run(e, trajectory, draws);
+    stop_if_interrupted();
     report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model_));
     for (Finding& finding : check_ranges(model_, experiment, trajectories_.fitted().solver, trajectories_.start_rows(), draws,
                                          session_.options.execution))
