@@ -107,7 +107,8 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
     // Widths say little where the density is flat up to a bound.
     bool const bounded = objective.objective_kind != ObjectiveKind::posterior && !objective.target.has_gradient();
     auto const same = std::find_if(modes.begin(), modes.end(), [&](Mode const& other) {
-      return distance(mode, other) < same_mode || (bounded && connected(objective, mode, other));
+      return distance(mode, other) < same_mode ||
+             (bounded && kept_answer(journal, stop, [&] { return connected(objective, mode, other); }));
     });
     if (same == modes.end()) {
       modes.push_back(std::move(mode));

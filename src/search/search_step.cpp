@@ -94,4 +94,15 @@ Mode kept_mode(Journal* journal, Ledger& ledger, std::function<bool()> const& st
   return mode;
 }
 
+bool kept_answer(Journal* journal, std::function<bool()> const& stop, std::function<bool()> const& ask) {
+  if (journal == nullptr) return ask();
+  if (nlohmann::json const* const kept = journal->begin("answer")) {
+    if (!journal->finished()) throw checkpoint::Mismatch("its search is damaged");
+    return kept->get<bool>();
+  }
+  bool const answer = ask();
+  if (!stop || !stop()) journal->finish(answer);
+  return answer;
+}
+
 }  // namespace sysid

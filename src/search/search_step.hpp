@@ -49,4 +49,7 @@ void append(std::vector<double>& values, Eigen::MatrixXd const& matrix);
 /// The mode that `compute` makes, or what is kept of it. Of no worth where `stop` says so afterwards.
 Mode kept_mode(Journal* journal, Ledger& ledger, std::function<bool()> const& stop, std::function<Mode()> const& compute);
 
+/// As `kept_mode`, of a question that simulations answer and no ledger counts.
+bool kept_answer(Journal* journal, std::function<bool()> const& stop, std::function<bool()> const& ask);
+
 }  // namespace sysid

@@ -118,7 +118,7 @@ TEST_CASE("map and ml are in the table beside mh, with their settings") {
   CHECK(find_backend("hmc") == nullptr);
 }
 
-TEST_CASE("a point estimate stopped in its search starts again to the same answer") {
+TEST_CASE("a point estimate stopped in its search goes on to the same answer") {
   TestTarget const target = normal_sample(sample, {Prior::log_uniform, 0.01, 1000});
   Bench whole(4), first(4), second(4), other(5);
   FitResult const unbroken = optimum::run_map(target, Settings{}, whole.context);

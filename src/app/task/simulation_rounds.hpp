@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/session/session.hpp"
-#include "app/task/drawn_functions.hpp"
+#include "app/process/drawn_functions.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {

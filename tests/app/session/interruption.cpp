@@ -106,8 +106,8 @@ TEST_CASE("a fit that is interrupted in its search goes on from there, to the sa
   auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
   std::string const rows = with(read_file(name), "rows 1..500, test", "rows 1..60, test");
   std::string const chains = with(rows, "samples = 25000, burn_in = 5000", "samples = 2000, burn_in = 500");
-  for (std::string const& text : {chains, with(chains, "mh(samples = 2000, burn_in = 500, chains = 4)", "map"),
-                                  with(chains, "mh(samples = 2000, burn_in = 500, chains = 4)", "ml")}) {
+  for (std::string const& text : {chains, with(chains, "mh(samples = 2000, burn_in = 500, thin = 10, chains = 4)", "map"),
+                                  with(chains, "mh(samples = 2000, burn_in = 500, thin = 10, chains = 4)", "ml")}) {
     TemporaryFolder folder;
     RunOptions options;
     options.output = folder.path() / "unbroken";
