@@ -72,7 +72,7 @@ TEST_CASE("a posterior where its prior has next to nothing is named, one in its 
 }
 
 TEST_CASE("a log-normal prior that fits the data in its other reading is told so, one that fits in neither is not") {
-  auto const record = [](int row, Stream& stream) { return 2 * std::exp(-0.005 * (row - 101)) + 0.01 * stream.normal(); };
+  auto const record = [](int row, Stream& stream) { return 2 * std::exp(-0.005 * (row - 1)) + 0.01 * stream.normal(); };
   std::string const broad = "y0 [m] ~ normal(0, sd = 3)";
   for (auto const& [prior, cure] :
        {std::pair("y0 [m] ~ log_normal(0.7, sd = 0.1)",
