@@ -104,8 +104,10 @@ double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
   bool const last = sample + 1 == samples();
   int const row = sample - leaf.lag;
   switch (leaf.kind) {
-    case LeafKind::input:
-      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].sample(row);
+    case LeafKind::input: {
+      InputSignal const& signal = experiment_.inputs[static_cast<std::size_t>(leaf.index)];
+      return signal.earlier() + row < 0 ? std::nan("") : signal.sample(row);  // nothing is known of what was before the record
+    }
     case LeafKind::input_rate:
       return experiment_.inputs[static_cast<std::size_t>(leaf.index)].rate(last ? sample - 1 : sample, last ? 1 : 0);
     case LeafKind::time:
