@@ -150,7 +150,7 @@ std::string decimal_comma(Gap const& gap) {
                       right.text.find_first_not_of("0123456789") == std::string_view::npos &&
                       left->text.find_first_not_of("0123456789") == std::string_view::npos;
   bool const close = left->span.end == gap.found->span.begin && gap.found->span.end == right.span.begin;
-  return digits && close ? fmt::format("a number has a decimal point: write `{}.{}`", left->text, right.text) : std::string();
+  return digits && close ? fmt::format("write the number with a decimal point: `{}.{}`", left->text, right.text) : std::string();
 }
 
 /// The tokens from `from` on that are a unit on paper, `N s/m^2`: one past the last; `from` where there is none.

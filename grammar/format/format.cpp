@@ -102,7 +102,7 @@ std::optional<std::string> formatted(Source const& source, Diagnostics& diagnost
   Source const result(source.name(), text);
   Diagnostics none;
   if (parse(result, none) != tree || grammar::comments_of(result) != grammar::comments_of(source))
-    throw InternalError("the canonical layout of this file would change what it says");
+    throw InternalError("the canonical layout would change the meaning of this file");
   return text;
 }
 

@@ -170,7 +170,7 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
 
 Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention) {
   return error("E4010", mention,
-               fmt::format("{} holds words, not numbers: a row of units under the header, as it seems",
+               fmt::format("{} holds words, not numbers: it seems to be a row of units below the header",
                            place(cell.file, cell.row, cell.line)),
                fmt::format("delete this line; units are written in the data block: `{} [{}]`", cell.column, shown(text)));
 }

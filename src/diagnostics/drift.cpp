@@ -18,12 +18,13 @@ Findings drift_findings(Source const& source, Model const& model, Trajectory::Re
     double largest = 0;
     for (double const drift : result.drift[i])
       if (drift > largest) largest = drift;
-    findings.push_back({FindingCode::constraint_drift,
-                        largest > tolerable_drift ? Severity::warning : Severity::note,
-                        {record},
-                        fmt::format("`{}` was differentiated to solve the model; on {} its largest relative violation is {:.2g}",
-                                    source.text(model.invariants[i].span), record, largest),
-                        largest > tolerable_drift ? "integrate more accurately: more `substeps`, or a smaller `relative`" : ""});
+    findings.push_back(
+        {FindingCode::constraint_drift,
+         largest > tolerable_drift ? Severity::warning : Severity::note,
+         {record},
+         fmt::format("the solution does not satisfy the constraint `{}` exactly; its largest relative violation on {} is {:.2g}",
+                     source.text(model.invariants[i].span), record, largest),
+         largest > tolerable_drift ? "integrate more accurately: more `substeps`, or a smaller `relative`" : ""});
   }
   return findings;
 }

@@ -108,10 +108,10 @@ class InputCheck {
         FindingCode::input_rule,
         Severity::warning,
         {model_.inputs[i].name, experiments_[e].name, std::string(rule_name(InputRule::cubic)), parameter},
-        fmt::format("input {}{} is smooth between its samples: with `hold cubic` in place of `hold linear` {} moves by {:.1f} "
-                    "of its sds, and the fit is as good",
+        fmt::format("input {}{} is smooth between its samples: with `hold cubic` in place of `hold linear`, {} changes by {:.1f} "
+                    "sds, and the fit is as good",
                     model_.inputs[i].name, on(e), parameter, most),
-        fmt::format("`hold cubic` means that {}: write it unless you know that the input is linear between samples",
+        fmt::format("write `hold cubic` ({}) unless you know that the input is linear between samples",
                     row_of(InputRule::cubic).summary)};
   }
 
@@ -182,18 +182,18 @@ class InputCheck {
         fmt::format("the fit is clearly better with `hold {}` than with `hold {}` for input {}{} (log posterior higher by {:.0f} "
                     "for {} samples)",
                     better, stated, model_.inputs[i].name, on(e), other.gain, scored),
-        fmt::format("`hold {}` means that {}: write it if that is so, else check the delay of the recording", better,
-                    row_of(*other.rule).summary)};
+        fmt::format("write `hold {}` if {}; otherwise check the delay of the recording", better, row_of(*other.rule).summary)};
   }
 
   Finding other_timing(Alternative const& other, std::size_t e, std::size_t i, int scored) const {
-    return {FindingCode::input_timing,
-            Severity::warning,
-            {model_.inputs[i].name, experiments_[e].name},
-            fmt::format(
-                "the fit is much better with input {}{} shifted half a sample {} (log posterior higher by {:.0f} for {} samples)",
-                model_.inputs[i].name, on(e), other.shift > 0 ? "later" : "earlier", other.gain, scored),
-            "check the delay of the recording: no other rule between input samples explains the record as well"};
+    return {
+        FindingCode::input_timing,
+        Severity::warning,
+        {model_.inputs[i].name, experiments_[e].name},
+        fmt::format(
+            "the fit is much better with input {}{} shifted {} by half a sample (log posterior higher by {:.0f} for {} samples)",
+            model_.inputs[i].name, on(e), other.shift > 0 ? "later" : "earlier", other.gain, scored),
+        "check the delay of the recording: no other rule between input samples explains the record as well"};
   }
 
   FitOfExperiments const& fit_;

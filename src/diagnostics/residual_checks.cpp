@@ -205,12 +205,11 @@ void check_memory(ScoredChannel const& of, std::vector<double> const& residuals,
                   Findings& findings) {
   line.scores.push_back({"whiteness_p", white.p_value});
   if (white.fires())
-    findings.push_back(
-        {FindingCode::residuals_not_white, Severity::warning, of.names(),
-         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(), white.outside,
-                     white.correlation.size()),
-         "a force or part of the dynamics is missing, or the noise is coloured: estimates can be several of the stated "
-         "sds off"});
+    findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
+                        fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
+                                    white.outside, white.correlation.size()),
+                        "a force or part of the dynamics is missing, or the noise is coloured: the errors of the estimates can be "
+                        "several times their sds"});
   std::vector<Quantity> const& inputs = of.model().inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     std::vector<double> input;

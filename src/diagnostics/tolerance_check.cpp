@@ -240,9 +240,9 @@ std::string what_happens(SolverCheck const& check, bool conditional) {
     case SolverCheck::Outcome::width_moves: {
       Moved const& worst = check.moved.front();
       std::string const unit = worst.unit.empty() ? "" : " " + worst.unit;
-      return fmt::format("the optimum {}, but not the curvature around it: the sd of {} {} {:.2g}{} in place of {:.2g}{}",
-                         verb("stays", "would stay"), worst.parameter, verb("is", "would be"), worst.finer_sd, unit, worst.sd,
-                         unit);
+      return fmt::format("the optimum {} the same, but the curvature around it {}: the sd of {} {} {:.2g}{} in place of {:.2g}{}",
+                         verb("stays", "would stay"), verb("changes", "would change"), worst.parameter, verb("is", "would be"),
+                         worst.finer_sd, unit, worst.sd, unit);
     }
     case SolverCheck::Outcome::modes_merge:
       return fmt::format("the {} modes that were found {} {}", check.modes, verb("are", "would be"), check.apart);

@@ -42,7 +42,7 @@ constexpr Row rows[] = {
     {Kind::correlated, Severity::warning, FindingCode::residual_correlated,
      "the sds are underestimated and the probabilities overconfident; a longer record, or the terms that are missing, may help"},
     {Kind::other_rule, Severity::warning, FindingCode::input_rule,
-     "write that rule in the data block if the input acted so, and run again: the terms and coefficients may be wrong as they are"},
+     "if the input followed that rule, write it in the data block and run again: the present terms and coefficients may be wrong"},
     {Kind::smoothed, Severity::note, FindingCode::derivative_smoothed,
      "if its accuracy matters, measure that derivative or leave the term out"},
     {Kind::missing, Severity::note, FindingCode::windows_missing, ""},

@@ -39,7 +39,7 @@ Finding constant_channel(ExperimentData const& data, ColumnUse const& column, Ch
   return {FindingCode::column_constant,
           Severity::warning,
           {channel.name, data.experiment.name},
-          fmt::format("{}, column `{}` of {}, is {} in all {} scored samples: a sensor that gave nothing?", channel.name,
+          fmt::format("{}, column `{}` of {}, is {} in all {} scored samples: was the sensor connected?", channel.name,
                       column.column, data.experiment.name, number_in(column, channel, value), samples),
           "check the column and the sensor; a channel that does not change gives no information about the dynamics"};
 }
@@ -50,7 +50,7 @@ Finding constant_input(ExperimentData const& data, ColumnUse const& column, Quan
           {input.name, data.experiment.name},
           fmt::format("input {}, column `{}` of {}, is {} in {}{}", input.name, column.column, data.experiment.name,
                       number_in(column, input, value), whole_file ? "all rows of its file" : "all rows that are used",
-                      whole_file ? ": a sensor that gave nothing?" : ""),
+                      whole_file ? ": was the sensor connected?" : ""),
           "check the column; if the input was not measured, or is a constant of the test, make it a parameter or "
           "`constant` of the model"};
 }
@@ -111,10 +111,10 @@ Findings find_time_gaps(CheckedFile const& file, ExperimentData const& data, Mod
            fmt::format("the time of {} has a gap of {:.3g} {} between rows {} and {}{}; the usual step is {:.3g} {}",
                        experiment.name, *longest / scale, unit, row, row + 1, others, usual / scale, unit),
            model.inputs.empty()
-               ? fmt::format("the simulation goes on through the gap; if the recording began anew there, give the "
+               ? fmt::format("the simulation continues through the gap; if the recording was restarted there, give the "
                              "rows after it a part of their own in `split` of `{}`",
                              block.name)
-               : fmt::format("no rule between samples knows the input there: give the rows before and after the gap "
+               : fmt::format("the input during the gap is unknown: give the rows before and after the gap "
                              "parts of their own in `split` of `{}`, and fit both",
                              block.name)}};
 }

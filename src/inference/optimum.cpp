@@ -30,15 +30,15 @@ std::vector<std::size_t> parameters_at_bound(Target const& target, Mode const& m
 
 /// Of an optimum that was not reached.
 Finding not_reached(Mode const& mode) {
-  return {
-      FindingCode::optimum_not_reached,
-      Severity::error,
-      {},
-      fmt::format("the search ended before an optimum: a further step promises to raise the log density by {:.2g}, {}", mode.gain,
-                  mode.stalled ? "but no step that was tried does" : "and the rounds of the search came to their end"),
-      mode.stalled ? "make the solver more accurate, for example `solver = cvode(relative = 1e-9)`, fix parameters that the data "
-                     "do not determine, or sample with mh"
-                   : "fit again with `search = near(...)` of this fit, which goes on from here, or sample with mh"};
+  return {FindingCode::optimum_not_reached,
+          Severity::error,
+          {},
+          fmt::format("the search ended before it reached an optimum: another step should raise the log density by {:.2g}, {}",
+                      mode.gain, mode.stalled ? "but no step that was tried raises it" : "and the search used up its rounds"),
+          mode.stalled
+              ? "make the solver more accurate, for example `solver = cvode(relative = 1e-9)`, fix parameters that the data "
+                "do not determine, or sample with mh"
+              : "fit again with `search = near(...)` to continue from this result, or sample with mh"};
 }
 
 /// A parameter whose posterior has another width or place than its normal distribution at the optimum.
@@ -84,14 +84,14 @@ std::optional<Finding> check_widths(Target const& target, std::vector<Mode> cons
   ParameterInfo const& worst = target.parameters()[p];
   std::string const unit = worst.unit.empty() ? "" : " " + worst.unit;
   std::string const others =
-      found.size() > 1 ? fmt::format(", and {} are off, too", counted(found.size() - 1, "further parameter")) : "";
+      found.size() > 1 ? fmt::format("; the same holds for {}", counted(found.size() - 1, "further parameter")) : "";
   return Finding{
       FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, names,
       fmt::format("the posterior is not normal around its optimum: draws weighted by its density give {} = {:.3g} ± {:.2g}{}, "
                   "the optimum {:.3g} ± {:.2g}{}{}{}",
                   worst.name, draws.mean[p], draws.sd[p], unit, best.declared[p], best.sd[p], unit, others,
-                  draws.tell() ? "" : "; these draws are too few to tell the widths"),
-      "fit with mh, whose draws have the widths of the posterior; from `map` take the optimum alone"};
+                  draws.tell() ? "" : "; these draws are too few to determine the sds"),
+      "fit with mh, whose draws have the sds of the posterior; of this result use only the optimum"};
 }
 
 void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {

@@ -109,7 +109,7 @@ bool save(Context& context, std::string const& path) {
   moved.move_to(to);
   Diagnostics diagnostics;
   auto const text = formatted(Source(to.string(), moved.text()), diagnostics);
-  if (!text) throw InternalError("the work cannot be formatted");
+  if (!text) throw InternalError("the session cannot be formatted");
   write_file(to, *text);
   if (!adopt(context, std::move(moved), "")) return false;
   context.work.file = to;

@@ -92,7 +92,7 @@ bool Output::guarded(Source const& source, std::function<bool()> const& act) {
     return refuse("out of memory");
   } catch (std::exception const& error) {
     return refuse(fmt::format("this is an error in sysid, not in your file: {}", error.what()),
-                  "please `save` the work and report it with that file");
+                  "please `save` the session and report it with that file");
   }
 }
 

@@ -24,7 +24,7 @@ void keep_unsaved(Workbench const& workbench) {
   work.move_to(path);
   try {
     write_file(path, work.text());
-    std::cerr << fmt::format("the work was not saved; a copy is in {}\n", path.string());
+    std::cerr << fmt::format("the session was not saved; a copy is in {}\n", path.string());
   } catch (IoError const&) {
     // There is nothing better to do with it.
   }

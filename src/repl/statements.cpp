@@ -66,7 +66,7 @@ void keep_unnamed(Context const& context, ast::Item const& tree, WorkItem& item,
   std::size_t const place = work.find(ItemKind::task, item.name);
   if (place == work.items.size() || work.items[place].text == item.text || !context.results.tasks().contains(item.name)) return;
   std::string const name = free_task_name(context, item.name);
-  notices.push_back(fmt::format("`{}` is an earlier task that stays as it is: this one is `{}`", item.name, name));
+  notices.push_back(fmt::format("`{}` is an earlier task, which is kept: the new task is called `{}`", item.name, name));
   name_task(item, name);
 }
 

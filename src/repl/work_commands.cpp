@@ -87,7 +87,7 @@ bool show(Context& context, std::string const& name) {
   if (result == nullptr && place == context.work.statements.items.size()) {
     std::vector<std::string> known;
     for (WorkItem const& item : context.work.statements.items) known.push_back(item.name);
-    return context.output.refuse(fmt::format("there is no `{}` in the work", name), did_you_mean(name, known));
+    return context.output.refuse(fmt::format("there is no `{}` in the session", name), did_you_mean(name, known));
   }
   if (place < context.work.statements.items.size()) context.output.answers() << laid_out(context.work.statements.items[place].text);
   if (result != nullptr) context.output.answer(fmt::format("\n{}files: {}\n", result->summary, result->folder.string()));
@@ -106,7 +106,8 @@ bool change(Context& context, std::string const& block) {
   std::vector<std::string> known;
   for (WorkItem const& item : context.work.statements.items)
     if (item.kind == ItemKind::model || item.kind == ItemKind::data) known.push_back(item.name);
-  return context.output.refuse(fmt::format("there is no model or data block `{}` in the work", block), did_you_mean(block, known));
+  return context.output.refuse(fmt::format("there is no model or data block `{}` in the session", block),
+                               did_you_mean(block, known));
 }
 
 bool drop(Context& context, std::string const& name) {
@@ -115,17 +116,17 @@ bool drop(Context& context, std::string const& name) {
   std::size_t const model = draft.find(ItemKind::model, context.work.model);
   if (name.empty())
     return context.output.refuse("drop what?",
-                                 "`drop NAME` removes a statement of the work, or a declaration of the current model");
+                                 "`drop NAME` removes a statement of the session, or a declaration of the current model");
   if (place < draft.items.size()) {
     draft.items.erase(draft.items.begin() + static_cast<std::ptrdiff_t>(place));
   } else if (model < draft.items.size()) {
     WorkItem without = without_statement(draft.items[model], name);
     if (without.text == draft.items[model].text)
       return context.output.refuse(
-          fmt::format("there is no `{}` in the work, and no declaration of it in `{}`", name, context.work.model));
+          fmt::format("there is no `{}` in the session, and no declaration of it in `{}`", name, context.work.model));
     for (std::string const& notice : draft.put(std::move(without), context.results.tasks())) context.output.say(notice);
   } else {
-    return context.output.refuse(fmt::format("there is no `{}` in the work", name));
+    return context.output.refuse(fmt::format("there is no `{}` in the session", name));
   }
   draft.prune();
   if (!adopt(context, std::move(draft), "")) return false;

@@ -75,9 +75,10 @@ Finding second_optimum(Target const& target, std::vector<Mode> const& modes, std
   return {FindingCode::second_mode,
           Severity::warning,
           {},
-          fmt::format("{} of nearly the same likelihood, {} below in log likelihood: {}",
-                      count == 1 ? "a second optimum is" : fmt::format("{} further optima are, the next", count),
-                      below < 0.005 ? std::string("nothing") : fmt::format("{:.2g}", below), describe(target, modes[1])),
+          fmt::format("{} nearly the same likelihood{} (log likelihood lower by {}): {}",
+                      count == 1 ? "a second optimum has" : fmt::format("{} further optima have", count),
+                      count == 1 ? "" : ", the best of them",
+                      below < 0.005 ? std::string("less than 0.01") : fmt::format("{:.2g}", below), describe(target, modes[1])),
           "compare both solutions: add data that distinguish them, narrow the priors to the one that is possible, or use mh, which "
           "describes the whole posterior"};
 }

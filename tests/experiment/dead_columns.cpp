@@ -61,7 +61,7 @@ TEST_CASE("a channel that is one number in its scored samples is a warning, what
     if (row > 100) all.level = 2.5;
   });
   CHECK(messages(dead, "column_constant") ==
-        Messages{"z, column `level` of record.middle, is 2.5 mm in all 90 scored samples: a sensor that gave nothing?"});
+        Messages{"z, column `level` of record.middle, is 2.5 mm in all 90 scored samples: was the sensor connected?"});
   CHECK(task(dead, "posterior").findings.front().severity == Severity::warning);
 }
 
@@ -73,7 +73,7 @@ TEST_CASE("an input that is constant in its file is a warning, one that is so in
   };
   CheckResult const dead = check_of([](int, Row& all) { all.force = 0; });
   CHECK(messages(dead, "column_constant") ==
-        Messages{"input u, column `force` of record.middle, is 0 mN in all rows of its file: a sensor that gave nothing?"});
+        Messages{"input u, column `force` of record.middle, is 0 mN in all rows of its file: was the sensor connected?"});
   CHECK(severity(dead) == Severity::warning);
   std::string const rest = with(still_text, "with map", "with map, start = rest");
   CheckResult const over = check_of(

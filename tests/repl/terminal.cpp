@@ -34,7 +34,7 @@ TEST_CASE("on a narrow screen a source is shown as it is, messages go on below")
   write_file(folder.path() / "long.sysid", comment + "\nfunction twice(a) = 2*a\n");
   terminal.enter("load long.sysid");
   CHECK(shows(terminal.enter("show"), comment));
-  CHECK(shows(terminal.enter("drop a"), "there is no `a` in the work"));
+  CHECK(shows(terminal.enter("drop a"), "there is no `a` in the session"));
   CHECK(shows(terminal.enter("load \"of a file that is nowhere to be found, by a long name.sysid\""), "\r\n    "));
   terminal.type("\x04");
   CHECK(terminal.ended() == 0);

@@ -417,7 +417,7 @@ TEST_CASE("a fit without a name is refitted after its model has changed, and ent
   REQUIRE_MESSAGE(d.enter("fit oscillator to bench.train with map"), d.messages());
   REQUIRE_MESSAGE(d.enter("parameter k [N/m] ~ log_uniform(1e3, 1e6)"), d.messages());
   REQUIRE_MESSAGE(d.enter("fit oscillator to bench.train with map"), d.messages());
-  CHECK(has(d.messages(), "`fit_oscillator` is an earlier task that stays as it is: this one is `fit_oscillator2`"));
+  CHECK(has(d.messages(), "`fit_oscillator` is an earlier task, which is kept: the new task is called `fit_oscillator2`"));
   REQUIRE_MESSAGE(d.enter("refit fit_oscillator"), d.messages());
   CHECK(has(d.messages(), "fit_oscillator3 = fit oscillator to bench.train with map"));
 }

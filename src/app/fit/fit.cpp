@@ -212,9 +212,9 @@ class Fit {
         {FindingCode::stiff_prior,
          Severity::warning,
          {},
-         fmt::format("{:.0f} % of the prior draws overflow even with {}; {} succeeds on {} of the {} of these that it tried: the "
-                     "model is stiff there, and the search has left out that part of the prior",
-                     100 * search.failed, accuracy(search.solver), stiff_solver().name, search.followed, search.tried),
+         fmt::format("{:.0f} % of the prior draws overflow even with {}; {} of these were simulated with {}, {} of them without "
+                     "failure: the model is stiff there, and the search ignores that part of the prior",
+                     100 * search.failed, accuracy(search.solver), search.tried, stiff_solver().name, search.followed),
          fmt::format("fit with `solver = {}`, or narrow the priors if such fast motion is not intended", stiff_solver().name)}};
   }
 

@@ -50,7 +50,8 @@ void check_bands(TaskPage& page) {
             {FindingCode::input_band,
              Severity::warning,
              {input.name, coverage.name},
-             fmt::format("{} of {} has power up to {:.3g} Hz, {:.2f} of the sampling rate, but `{}` is exact only up to {} of it",
+             fmt::format("{} of {} has power up to {:.3g} Hz, which is {:.2f} of the sampling rate, but `{}` is exact only up to "
+                         "{} of this rate",
                          input.name, coverage.name, input.high, input.high / coverage.rate, input.rule, row_of(*rule).band),
              "check whether it was held between the samples, or sampled without an anti-aliasing filter"});
 }
@@ -69,16 +70,17 @@ void check_rules(TaskPage& page) {
             {FindingCode::input_rule,
              Severity::note,
              {input.name, coverage.name, "cubic"},
-             fmt::format("{} of {} is smooth, and the straight lines of `hold linear` leave out {} % of its sd between samples",
-                         input.name, coverage.name, significant(100 * input.chords, 2)),
+             fmt::format(
+                 "{} of {} is smooth, and linear interpolation (`hold linear`) has an error of {} % of its sd between samples",
+                 input.name, coverage.name, significant(100 * input.chords, 2)),
              "write `hold cubic` if the input was sampled from a smooth signal"});
       else if (input.top > rough)
         page.findings.push_back(
             {FindingCode::input_rule,
              Severity::note,
              {input.name, coverage.name, "zero_order"},
-             fmt::format("{:.0f} % of the power of {} of {} is above 0.4 of the sampling rate: its samples do not show the curve "
-                         "between them",
+             fmt::format("{:.0f} % of the power of {} of {} is above 0.4 of the sampling rate: the samples do not determine the "
+                         "input between them",
                          100 * input.top, input.name, coverage.name),
              "write `hold zero_order` if a generator held the input between its samples; else sample it faster"});
     }

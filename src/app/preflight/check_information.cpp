@@ -171,7 +171,7 @@ class Description {
       for (double const simple : {1.0, 2.0, 0.5})
         if (std::abs(std::abs(middle) / simple - 1) < 0.1) slope = middle > 0 ? simple : -simple;
       NullDirection const direction{NullDirection::Kind::sum, {{static_cast<int>(i), 1, 1}, {static_cast<int>(j), slope, slope}}};
-      combination = fmt::format("hardly more than {} is determined, ", determined_combination(direction, asked_));
+      combination = fmt::format("the data determine little more than {}; ", determined_combination(direction, asked_));
     }
     std::string const pair = fmt::format("{} and {} are nearly confounded", asked_[static_cast<std::size_t>(i)].name,
                                          asked_[static_cast<std::size_t>(j)].name);

@@ -136,7 +136,7 @@ void check_motion(Preflight const& preflight, PriorPage::Channel const& line, Ch
       still.push_back(preflight.model().inputs[i].name);
   bool const driven = !preflight.model().inputs.empty(), dead = driven && still.size() == preflight.model().inputs.size();
   preflight.add(FindingCode::prior_at_rest, Severity::warning, {line.name},
-                fmt::format("{} does not move in the simulation of any prior draw, but its measured range is {}{}", line.name,
+                fmt::format("{} is constant in the simulation of every prior draw, but its measured range is {}{}", line.name,
                             significant(line.measured, 2), line.unit.empty() ? "" : " " + line.unit),
                 dead     ? fmt::format("{} constant in the data: check the column, or give initial values other than zero",
                                        quoted(still) + (still.size() == 1 ? " is" : " are"))

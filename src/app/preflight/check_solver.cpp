@@ -49,7 +49,7 @@ void describe_distances(Preflight const& preflight, PriorDraws const& prior, dou
   Severity const severity = preflight.what.solver.as_model ? Severity::note : Severity::warning;
   if (!(response_move <= gross_move))
     preflight.add(FindingCode::integration_step, severity, {},
-                  fmt::format("with {} the solver changes the distances: {} moves the median response by {} of its sd",
+                  fmt::format("the distances depend on the accuracy of {}: with {} the median response changes by {} of its sd",
                               preflight.what.solver.text(), preflight.what.solver.finer_words(),
                               std::isfinite(response_move) ? fmt::format("{:.2g} %", 100 * response_move) : "more than 100 %"),
                   help);
@@ -57,7 +57,7 @@ void describe_distances(Preflight const& preflight, PriorDraws const& prior, dou
     preflight.add(
         FindingCode::integration_step, severity, {},
         fmt::format(
-            "with {} the solver changes the distances: {} moves them by {:.2g} of the distance that the stated noise leaves",
+            "the distances depend on the accuracy of {}: with {} they change by {:.2g} times the distance due to the stated noise",
             preflight.what.solver.text(), preflight.what.solver.finer_words(), shift),
         help);
 }
@@ -110,8 +110,9 @@ void confirm(Preflight const& preflight, PriorDraws const& prior, double suggest
     std::string const sds = suggested > 5 ? "many sds" : fmt::format("{:.2g} sd", suggested);
     preflight.add(
         FindingCode::integration_step, Severity::note, {},
-        fmt::format("with {} parameters would move by up to {} at draws of the prior, with {}; no mode was found to confirm it",
-                    solver.finer_words(), sds, solver.text()),
+        fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by up to {} with {}, but no mode "
+                    "was found that confirms this",
+                    solver.text(), sds, solver.finer_words()),
         solver.as_model ? "the solver is part of the model" : "the fit checks its own result");
     return;
   }

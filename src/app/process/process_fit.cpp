@@ -42,8 +42,8 @@ void require_process_work(Session& session, ProcessModel const& model, std::vect
     std::string const what = fmt::format("a likelihood of {} rows with a Gaussian process", rows);
     require_memory(what, bytes, "fit fewer rows: choose them with `split` in the data block");
     if (seconds > worth_saying)
-      session.notices << fmt::format("{} takes about {} of memory and {}, thousands of times in a fit\n", what, format_bytes(bytes),
-                                     format_duration(seconds));
+      session.notices << fmt::format("{} takes about {} of memory and {}; a fit computes thousands of them\n", what,
+                                     format_bytes(bytes), format_duration(seconds));
   }
 }
 

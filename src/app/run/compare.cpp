@@ -200,8 +200,9 @@ std::vector<std::string> models_of_one_name(std::vector<StoredSummary> const& re
       }
     }
     if (fits.size() > 1)
-      notes.push_back(fmt::format("the fits of `{}` are of different {}: {}", first.model,
-                                  other_text ? "models" : "starts, rules of prediction or inputs", fmt::join(fits, "; ")));
+      notes.push_back(fmt::format("the fits of `{}` differ in {}: {}", first.model,
+                                  other_text ? "the text of the model" : "start, prediction rule or inputs",
+                                  fmt::join(fits, "; ")));
   }
   return notes;
 }

@@ -114,7 +114,7 @@ void add_comparisons(std::vector<StoredTask> const& tasks, RunReport& run) {
   add(predictions);
   if (fits.size() > 1)
     run.apart =
-        fmt::format("The fits are to {} different sets of samples, between which evidences cannot be compared. ", fits.size());
+        fmt::format("The fits use {} different sets of samples; evidences can be compared only within one set. ", fits.size());
 }
 
 }  // namespace

@@ -117,9 +117,9 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     examined[k] = true;
     refine_solver_of(session, candidates[k], seed, posteriors[k]);
     if (posteriors[k].solver != candidates[k].fit->solver)
-      finer +=
-          fmt::format("the likelihood of `{}` with {}: with {} {} with {}\n", candidates[k].what->name, posteriors[k].solver.text(),
-                      candidates[k].fit->solver.text(), moved(*posteriors[k].move), candidates[k].fit->solver.finer_words());
+      finer += fmt::format("the likelihood of `{}` is computed with {} (with {}, {} with {})\n", candidates[k].what->name,
+                           posteriors[k].solver.text(), candidates[k].fit->solver.text(), moved(*posteriors[k].move),
+                           candidates[k].fit->solver.finer_words());
     if (stopped()) return std::nullopt;
     k = 0;
   }
@@ -160,8 +160,8 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
           {FindingCode::integration_step,
            stated.as_model ? Severity::note : Severity::warning,
            {candidates[k].what->name},
-           fmt::format("with {}, the solver of its particles, parameters of `{}` are wrong by about {} of the likelihood",
-                       stated.text(), candidates[k].what->name,
+           fmt::format("the particles of `{}` were simulated with {}, whose error moves parameters by about {} of the likelihood",
+                       candidates[k].what->name, stated.text(),
                        *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
            stated.as_model ? "the solver is part of the model" : fmt::format("select again with `{}`", finer)});
     }
@@ -170,8 +170,8 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
         posterior.modes.empty()
             ? fmt::format("with a finer solver than {} the likelihood of `{}` is not finite at any mode near its particles",
                           posterior.solver.text(), candidates[k].what->name)
-            : fmt::format("even with {} there is no converged likelihood of `{}`", posterior.solver.text(),
-                          candidates[k].what->name);
+            : fmt::format("the likelihood of `{}` has not converged even with {}", candidates[k].what->name,
+                          posterior.solver.text());
     findings.push_back(
         {FindingCode::step_not_settled, Severity::warning, {candidates[k].what->name}, what, settling_advice(posterior.solver)});
   }

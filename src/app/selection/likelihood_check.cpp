@@ -90,7 +90,7 @@ Findings compare_probabilities(SelectionResult const& result, std::vector<std::o
     names.push_back(model.name);
     each += fmt::format("{}`{}` has probability {:.2f} by the particles and {:.2f} by the likelihood", each.empty() ? "" : "; ",
                         model.name, model.probability, *by_likelihood[difference.model]);
-    if (model.died_in > 0) each += fmt::format(", it was lost in population {}", model.died_in);
+    if (model.died_in > 0) each += fmt::format(" and died in population {}", model.died_in);
   }
   return {{FindingCode::probabilities_disagree, Severity::warning, std::move(names), each,
            "stop at a smaller change of the threshold, use more `particles`, or use the probabilities by the likelihood if its "

@@ -105,13 +105,14 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
   selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", lowest->noise);
   double const threshold = selection.result.threshold;
   if (!std::isfinite(threshold) || threshold <= far_above_floor * lowest->distance) return {};
-  return {{FindingCode::threshold_above_noise,
-           Severity::warning,
-           {},
-           fmt::format("the final threshold {} is {} times the distance that {} leaves, {}", significant(threshold, 4),
-                       significant(threshold / lowest->distance, 2), selection.floor_words, significant(lowest->distance, 4)),
-           "models that differ by less cannot be distinguished: stop at a smaller change of the threshold, or none of the "
-           "models is right"}};
+  return {
+      {FindingCode::threshold_above_noise,
+       Severity::warning,
+       {},
+       fmt::format("the final threshold {} is {} times the noise floor {}, the distance that {} leaves", significant(threshold, 4),
+                   significant(threshold / lowest->distance, 2), significant(lowest->distance, 4), selection.floor_words),
+       "models that differ by less cannot be distinguished: stop at a smaller change of the threshold, or none of the "
+       "models is right"}};
 }
 
 FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
@@ -139,8 +140,8 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
   std::string const what =
       !std::isfinite(median) ? std::string("half of the particles or more overflow: their distances depend on the integrator")
       : result.threshold == 0
-          ? fmt::format("distances move by {:.2g} from a threshold of 0: they depend on the integrator", median)
-          : fmt::format("distances move by {:.2g} of the threshold: they depend on the integrator", median / result.threshold);
+          ? fmt::format("distances change by {:.2g} at a threshold of 0: they depend on the integrator", median)
+          : fmt::format("distances change by {:.2g} times the threshold: they depend on the integrator", median / result.threshold);
   return {{FindingCode::step_not_settled,
            Severity::warning,
            {selected.name},

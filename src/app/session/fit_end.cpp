@@ -43,7 +43,8 @@ Findings failure_findings(Ledger const& sampling) {
   return {{FindingCode::failed_solves,
            severity,
            {},
-           fmt::format("{:.1f} % of the solves while sampling failed, first in {}", 100 * share, sampling.failures().front().where),
+           fmt::format("{:.1f} % of the simulations failed during sampling, first in {}", 100 * share,
+                       sampling.failures().front().where),
            "the model diverges in a part of the posterior: narrow the prior, or check the equation there"}};
 }
 

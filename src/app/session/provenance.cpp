@@ -99,8 +99,8 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
       info.notes.push_back(fmt::format("{} = {}{}", parameter.name, shortest(parameter.from_si(*data.use.constants[p])), unit));
     }
   if (int const history = data_lag(model); history > 0)
-    info.notes.push_back(
-        fmt::format("the first {} the model looks back to {} not scored", counted(history, "row"), history == 1 ? "is" : "are"));
+    info.notes.push_back(fmt::format("the first {} {} not scored: the model uses {} only as past samples", counted(history, "row"),
+                                     history == 1 ? "is" : "are", history == 1 ? "it" : "them"));
   for (std::size_t c = 0; c < data.experiment.has_lags.size(); ++c) {
     std::vector<std::uint8_t> const& has_lags = data.experiment.has_lags[c];
     auto const without = std::count(has_lags.begin(), has_lags.end(), 0);

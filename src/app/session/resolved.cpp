@@ -75,7 +75,8 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
   // An accuracy that the run chose is chosen again: a search with it from the beginning would end some digits away.
   std::string const solver_words = what.refine_solver ? without_accuracy(what.solver) : solver.text();
   return fmt::format(
-      "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} with {}, "
+      "# all settings of `{}`, defaults included; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} "
+      "with {}, "
       "{}{}, seed = {}\n",
       task.name, without_tasks(session, &what), task.name, model.name, data_names(session.file, what.experiments),
       settings_text(what.backend, settings), simulation_text(model, what, solver_words),
@@ -88,7 +89,8 @@ std::string resolved_select(Session const& session, Task const& task, SelectTask
   for (std::size_t c = 0; c < what.distance.channels.size(); ++c)
     weights += fmt::format("{}{} = {}", c == 0 ? "" : ", ", what.distance.channels[c], what.distance.weights[c]);
   return fmt::format(
-      "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = select {} to {} with {}, "
+      "# all settings of `{}`, defaults included; paths are relative to the folder of the original file\n{}\n{} = select {} to {} "
+      "with {}, "
       "distance = {}, weights({}), {}, seed = {}\n",
       task.name, without_tasks(session), task.name, session.file.candidates[static_cast<std::size_t>(what.candidates)].name,
       data_names(session.file, first.experiments), settings_text(what.backend, what.settings), what.distance.text, weights,
@@ -113,7 +115,8 @@ std::string resolved_discover(Session const& session, Task const& task, Discover
                          channel.unit ? fmt::format(" [{}]", channel.unit->text) : "");
   }
   return fmt::format(
-      "# every setting of `{}` spelt out; paths are relative to the folder of the original file\n{}\n{} = discover {} from {} with "
+      "# all settings of `{}`, defaults included; paths are relative to the folder of the original file\n{}\n{} = discover {} from "
+      "{} with "
       "{}, {}top = {}, candidates = {}, refit = {}, seed = {}\n",
       task.name, without_tasks(session), task.name, dictionary.name, data_names(session.file, what.experiments), selector,
       noise.empty() ? "" : fmt::format("noise({}), ", noise), what.top, what.candidates ? "yes" : "no", what.refit ? "yes" : "no",
@@ -165,7 +168,7 @@ std::vector<std::pair<std::string, std::string>> resolved_files(Session const& s
                                                                 std::string const& resolved) {
   fs::path const folder = session.result_folder(task);
   std::map<std::string, int> const beside = modules_beside(session.source);
-  std::string const head = fmt::format("# every setting of `{}` spelt out; data are named from this folder\n", task.name);
+  std::string const head = fmt::format("# all settings of `{}`, defaults included; data are named from this folder\n", task.name);
   std::vector<std::pair<std::string, std::string>> files = {{"resolved.sysid", head + moved(resolved, session, folder, beside)}};
   for (auto const& [name, file] : beside)
     files.emplace_back(resolved_module(name) + ".sysid", moved(std::string(session.source.text(file)), session, folder, beside));

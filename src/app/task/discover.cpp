@@ -154,7 +154,7 @@ class Discover {
                               Findings const& findings) {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
-      if (each.equation.empty()) terms += fmt::format("{}{}: nothing found", terms.empty() ? "" : "; ", each.target);
+      if (each.equation.empty()) terms += fmt::format("{}{}: no equation found", terms.empty() ? "" : "; ", each.target);
     return terms + "; " + verdict_of(findings).headline;
   }
 

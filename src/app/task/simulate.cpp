@@ -8,9 +8,9 @@
 #include <cmath>
 #include <optional>
 
+#include "app/process/drawn_functions.hpp"
 #include "app/session/results.hpp"
 #include "app/session/session.hpp"
-#include "app/process/drawn_functions.hpp"
 #include "app/task/signals.hpp"
 #include "app/task/simulation_rounds.hpp"
 #include "check/checked/task_kinds.hpp"
@@ -37,8 +37,8 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
   stop_if_interrupted();
   char const* const severity = what.solver.as_model ? "" : "warning: ";
   if (fine.failed() > 0) {
-    session.notices << fmt::format("{}: {}with {} the simulation fails, so the error of this one is not known\n", task.name,
-                                   severity, what.solver.finer_words());
+    session.notices << fmt::format("{}: {}with {} the simulation fails, so the error of the chosen solver is not known\n",
+                                   task.name, severity, what.solver.finer_words());
     return;
   }
   double const tolerable = what.noise_fraction > 0 ? 0.1 * what.noise_fraction : 1e-3;
@@ -48,7 +48,7 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= fine.values[q][0][i];
     double const share = std::sqrt(population_variance(difference)) / std::sqrt(population_variance(fine.values[q][0]));
     if (share > tolerable)
-      session.notices << fmt::format("{}: {}with {} {} changes by {:.2g} % of its size{}\n", task.name, severity,
+      session.notices << fmt::format("{}: {}with {} {} changes by {:.2g} % of its sd{}\n", task.name, severity,
                                      what.solver.finer_words(), finer.quantities()[q].name, 100 * share,
                                      what.solver.as_model ? "; the solver is part of the model"
                                                           : fmt::format("; add `{}` or finer", what.solver.finer().option()));

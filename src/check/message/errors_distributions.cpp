@@ -53,7 +53,7 @@ std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
     ast::Argument const &left = call.arguments[i - 1], &right = call.arguments[i];
     std::string const whole = digits_of(left), fraction = digits_of(right);
     if (!whole.empty() && !fraction.empty() && left.span.end + 1 == right.span.begin)
-      return fmt::format("a number has a decimal point: write `{}.{}`", whole, fraction);
+      return fmt::format("write the number with a decimal point: `{}.{}`", whole, fraction);
   }
   return {};
 }

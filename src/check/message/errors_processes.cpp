@@ -174,7 +174,8 @@ Diagnostic expansion_of_lags(Span span, std::string const& name) {
 }
 Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted) {
   return about({name},
-               error("E3234", span, fmt::format("`{}` was applied to [{}] before, but this is [{}]", name, wanted.text, given.text),
+               error("E3234", span,
+                     fmt::format("an earlier argument of `{}` is in [{}], but this one is in [{}]", name, wanted.text, given.text),
                      "declare a second function, or convert"));
 }
 Diagnostic process_out_of_place(Span span, std::string const& what) {

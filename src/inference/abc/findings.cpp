@@ -28,7 +28,7 @@ void add_deaths(SelectionResult const& result, Findings& findings) {
     findings.push_back({FindingCode::model_lost_by_chance,
                         Severity::warning,
                         {model.name},
-                        fmt::format("`{}` was lost in population {}, possibly by chance: none of {} proposals was accepted{}",
+                        fmt::format("`{}` died in population {}, possibly by chance: none of {} proposals was accepted{}",
                                     model.name, model.died_in, result.populations[t].models[m].proposed, before),
                         "use more `particles`, or repeat with other seeds: its probability may be larger than 0"});
   }

@@ -23,9 +23,9 @@ std::optional<Stop> end_after_population(State const& state, Plan const& plan) {
   } else if (last.threshold <= plan.target) {
     return Stop{fmt::format("the threshold has reached the target {}", plan.target)};
   } else if (fall <= plan.threshold_change) {
-    return Stop{fmt::format("the next threshold would decrease by {:.2g}, not by more than {}", fall, plan.threshold_change)};
+    return Stop{fmt::format("the next decrease of the threshold would be {:.2g}, not more than {}", fall, plan.threshold_change)};
   } else if (fall <= plan.relative_change * next.threshold) {
-    return Stop{fmt::format("the next threshold would decrease by {:.2g} %, not by more than {} %", 100 * fall / next.threshold,
+    return Stop{fmt::format("the next decrease of the threshold would be {:.2g} %, not more than {} %", 100 * fall / next.threshold,
                             100 * plan.relative_change)};
   }
   if (double const accepted = state.records.back().acceptance(); accepted < plan.acceptance)

@@ -23,7 +23,7 @@ void require_files(fs::path const& folder, std::string const& summary) {
   for (auto const& [name, digest] : files) {
     std::error_code error;  // of names that no file can have
     if (!is_stored_table(name) || name.find('/') != name.npos || !fs::exists(folder / name, error))
-      throw unusable_result(fmt::format("`{}` is not there, a file of this result", (folder / name).string()));
+      throw unusable_result(fmt::format("`{}`, a file of this result, is missing", (folder / name).string()));
     if (sha256(read_regular_file(folder / name)) != digest)
       throw unusable_result(fmt::format("`{}` has been changed since it was written", (folder / name).string()));
   }

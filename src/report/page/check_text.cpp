@@ -120,7 +120,7 @@ std::string failures_text(PriorPage const& prior) {
   if (prior.stiff_tried > 0)
     text += fmt::format(", {}{} with {}", prior.stiff_tried < prior.stiff_left ? "about " : "", prior.failed, prior.stiff_solver);
   return text + fmt::format(": {} for {} of them",
-                            prior.spent ? "it needs more steps between two samples" : "its steps are too long",
+                            prior.spent ? "more steps between two samples are needed" : "the steps are too long",
                             prior.failed_as_stated - prior.failed);
 }
 
@@ -163,7 +163,7 @@ std::string information_text(InformationPage const& page) {
   out += entry("", lines);
   std::string moves;
   for (auto const& [solver, move] : page.moves)
-    moves += fmt::format("{}{} sd from {}", moves.empty() ? "" : ", ", move > 5 ? "many" : significant(move, 2), solver);
+    moves += fmt::format("{}{} sd for {}", moves.empty() ? "" : ", ", move > 5 ? "many" : significant(move, 2), solver);
   if (!moves.empty())
     out +=
         entry("solver", {fmt::format("with {}, parameters change by {}", page.refinement, moves),
@@ -254,11 +254,12 @@ std::string check_text(CheckPage const& page) {
   for (ModelPage const& model : page.models) out += model_text(model) + "\n";
   for (DictionaryPage const& dictionary : page.dictionaries) out += dictionary_text(dictionary) + "\n";
   for (TaskPage const& task : page.tasks) out += task_text(task) + "\n";
-  int serious = 0, warnings = page.warnings;
+  int serious = 0, warnings = page.warnings, notes = 0;
   for (TaskPage const& task : page.tasks)
     for (Finding const& finding : task.all_findings()) {
       serious += finding.severity == Severity::error;
       warnings += finding.severity == Severity::warning;
+      notes += finding.severity == Severity::note;
     }
   out += fmt::format("{}: {}, {}, {}: ", page.file, counted(page.models.size(), "model"), counted(page.data_blocks, "data block"),
                      counted(page.tasks.size(), "task"));
@@ -270,8 +271,9 @@ std::string check_text(CheckPage const& page) {
     return std::all_of(task.preflights.begin(), task.preflights.end(),
                        [](PreflightPage const& each) { return each.not_examined.empty(); });
   });
-  out += fmt::format("{}\n", found.empty() ? all ? "nothing found" : "nothing found in the parts that were checked"
-                                           : fmt::format("{}", fmt::join(found, ", ")));
+  if (found.empty()) found.push_back(all ? "no errors or warnings" : "no errors or warnings in the parts that were checked");
+  if (notes > 0) found.push_back(counted(notes, "note"));
+  out += fmt::format("{}\n", fmt::join(found, ", "));
   return out;
 }
 

@@ -91,7 +91,7 @@ std::string verdict_words(Report const& report) {
   if (!report.discovery || !has_verdict(report)) return verdict_headline(report);
   std::string missing;
   for (DiscoveredEquation const& each : report.discovery->equations)
-    if (each.equation.empty()) missing += fmt::format("{}`{}`", missing.empty() ? "nothing found for " : ", ", each.target);
+    if (each.equation.empty()) missing += fmt::format("{}`{}`", missing.empty() ? "no equation found for " : ", ", each.target);
   return missing + (missing.empty() ? "" : "; ") + verdict_of(report.findings).headline;
 }
 

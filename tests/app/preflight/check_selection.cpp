@@ -100,7 +100,7 @@ TEST_CASE("the integrator of a selection is judged by what it does to distances"
       with(duffing_selection("", task + "\n"), "beta [1/m^2] ~ log_uniform(1e8, 1e13)", "beta [1/m^2] = 1e16");
   PreflightPage const exact = preflight(checked(models / "duffing/one.sysid", quiet), "which", "duffing");
   REQUIRE(find(exact, "integration_step") != nullptr);
-  CHECK(find(exact, "integration_step")->message.find("of the distance that the stated noise leaves") != std::string::npos);
+  CHECK(find(exact, "integration_step")->message.find("times the distance due to the stated noise") != std::string::npos);
 }
 
 TEST_CASE("prior mass that cannot be simulated is a candidate's handicap: a note, and a warning where it may decide") {

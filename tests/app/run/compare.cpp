@@ -164,7 +164,7 @@ b_self = fit still to self.train with map, seed = 1
   CHECK(*found.fits[0].probability + *found.fits[1].probability == doctest::Approx(1));
   CHECK((*found.fits[0].probability > *found.fits[1].probability) == (*found.fits[0].log_evidence > *found.fits[1].log_evidence));
   REQUIRE(found.notes.size() == 1);
-  CHECK(found.notes[0] == "the fits of `still` are of different starts, rules of prediction or inputs: a_input; b_self");
+  CHECK(found.notes[0] == "the fits of `still` differ in start, prediction rule or inputs: a_input; b_self");
   auto const page = run.folder.path() / "page.html";
   report_results(run.folder.path() / "results", page, false);
   CHECK(read_file(page).find("are of different starts, rules of prediction or inputs: a_input; b_self") != std::string::npos);

@@ -152,7 +152,7 @@ TEST_CASE("each model whose probabilities disagree is named, the largest differe
   CHECK(findings.front().code == FindingCode::probabilities_disagree);
   // 0.15/0.02, 0.6/0.2, 0.45/0.2 of what is tolerable; c differs by 0.01, e is left 0.01 though it died, of f nothing was found.
   CHECK(findings.front().message ==
-        "`d` has probability 0.00 by the particles and 0.15 by the likelihood, it was lost in population 3; "
+        "`d` has probability 0.00 by the particles and 0.15 by the likelihood and died in population 3; "
         "`a` has probability 0.70 by the particles and 0.10 by the likelihood; "
         "`b` has probability 0.05 by the particles and 0.50 by the likelihood");
   CHECK(compare_probabilities(result, {0.6, 0.15, 0.24, 0.01, 0.0, 0.0}).empty());

@@ -106,7 +106,7 @@ best = fit ar to record with map, prediction = one_step, seed = 1
     CHECK(std::fabs(parameter(summary, names[p]).at("mean").get<double>() - exact.mean(p)) <
           1e-4 * std::sqrt(exact.covariance(p, p)));
   CHECK(summary.dump().find("one_step: from measured samples, one step ahead") != std::string::npos);
-  CHECK(summary.dump().find("the first 2 rows the model looks back to are not scored") != std::string::npos);
+  CHECK(summary.dump().find("the first 2 rows are not scored: the model uses them only as past samples") != std::string::npos);
   CHECK(run.file("best/resolved.sysid").find("prediction = one_step") != std::string::npos);
 }
 
