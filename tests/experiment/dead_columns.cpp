@@ -111,7 +111,7 @@ TEST_CASE("a model that nothing moves is named with what should move it") {
   std::string const at_zero = with(still_text, "initial y = 0.003", "initial y = 0");
   CheckResult const still = check_of([](int, Row& all) { all.force = 0; }, at_zero);
   REQUIRE(messages(still, "prior_at_rest").size() == 1);
-  CHECK(messages(still, "prior_at_rest")[0].starts_with("z does not move in the simulation of any prior draw"));
+  CHECK(messages(still, "prior_at_rest")[0].starts_with("z is constant in the simulation of every prior draw"));
   CHECK(messages(check_of(nothing, at_zero), "prior_at_rest").empty());
   CHECK(messages(check_of(nothing), "prior_at_rest").empty());
 }

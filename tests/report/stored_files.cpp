@@ -45,7 +45,7 @@ TEST_CASE("a result with a file missing, cut short, changed or too many is refus
   fs::path const draws = folder.path() / "draws_2.csv";
   std::string const content = read_file(draws);
   remove_file(draws);
-  CHECK(refusal(folder.path()) == "`draws_2.csv` is not there, a file of this result");
+  CHECK(refusal(folder.path()) == "`draws_2.csv`, a file of this result, is missing");
   write_file(draws, content.substr(0, content.rfind('\n', content.size() / 4) + 1));
   CHECK(refusal(folder.path()) == "`draws_2.csv` has been changed since it was written");
   write_file(draws, content);

@@ -167,7 +167,7 @@ b_self = fit still to self.train with map, seed = 1
   CHECK(found.notes[0] == "the fits of `still` differ in start, prediction rule or inputs: a_input; b_self");
   auto const page = run.folder.path() / "page.html";
   report_results(run.folder.path() / "results", page, false);
-  CHECK(read_file(page).find("are of different starts, rules of prediction or inputs: a_input; b_self") != std::string::npos);
+  CHECK(read_file(page).find("differ in start, prediction rule or inputs: a_input; b_self") != std::string::npos);
 }
 
 TEST_CASE("fits to different samples are refused, also where only the models' own lags make the difference") {

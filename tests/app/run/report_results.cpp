@@ -282,8 +282,8 @@ TEST_CASE("what is missing or damaged is named, and the page of before stays") {
   write_file(task / "draws_2.csv", with(draws, ",k,a\n", ",k,b\n"));
   CHECK(refused(task) == changed);
   remove_file(task / "draws_2.csv");
-  CHECK(refused(task).starts_with("`results/posterior/draws_2.csv` is not there, a file of this result\n"));
-  CHECK(refused(run.results).starts_with("`results/posterior/draws_2.csv` is not there, a file of this result\n"));
+  CHECK(refused(task).starts_with("`results/posterior/draws_2.csv`, a file of this result, is missing\n"));
+  CHECK(refused(run.results).starts_with("`results/posterior/draws_2.csv`, a file of this result, is missing\n"));
   write_file(task / "draws_2.csv", draws);
 
   std::string const summary = read_file(task / "summary.json");
