@@ -82,6 +82,6 @@ for number in range(7):
         ratio = line / alone
         if kind == "straight":
             ratios.append(ratio)
-        name = f"{kind}_{number}" if number < 2 else f"made, {kind}, seed {number if kind == 'straight' else 100 + number}"
+        name = f"{kind}_{number}" if number < 2 else f"simulated, {kind}, seed {number if kind == 'straight' else 100 + number}"
         print(name, f"{alone:.1f}", f"{line:.2f}", f"{ratio:.3f}", *(f"{each:.3f}" for each in coverage), sep=" | ", flush=True)
 print(f"median ratio of the straight ones: {statistics.median(ratios):.3f}")
