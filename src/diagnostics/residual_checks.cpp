@@ -289,7 +289,8 @@ void name_held(Report const& report, Findings& findings) {
   for (Finding& each : findings)
     if (each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean)
       each.help +=
-          fmt::format("; {} {} as wide as the prior: check this prior", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
+          fmt::format("; the {} of {} {} nearly as wide as the prior: check this prior",
+                      held.size() == 1 ? "posterior" : "posteriors", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
 }
 
 namespace {

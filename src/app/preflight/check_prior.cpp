@@ -106,7 +106,7 @@ void check_failures(Preflight const& preflight) {
   if (lost > many_failures)
     preflight.add(
         FindingCode::integration_step, solver.as_model ? Severity::note : Severity::warning, {},
-        fmt::format("with {} {:.0f} % of the prior draws {}", solver.text(), 100 * lost,
+        fmt::format("with {}, {:.0f} % of the prior draws {}", solver.text(), 100 * lost,
                     solver.fixed_step() ? "overflow, but not with adaptive steps" : "need more steps between two samples"),
         fmt::format("{}: {}",
                     preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations",
