@@ -24,7 +24,7 @@ constexpr SettingRow fixed_settings[] = {
     {"substeps", SettingKind::integer, "1", 1, 10000, "",
      "number of equal steps per sampling interval; if not given, a fit chooses it"},
     {"as_model", SettingKind::flag, "no", 0, 0, "",
-     "yes: this step is part of the model, so a fit keeps it and the estimates are valid only with it"},
+     "whether the step is part of the model: a fit then keeps it, and the estimates are valid only with it"},
 };
 
 constexpr SettingRow adaptive_settings[] = {
