@@ -145,7 +145,7 @@ TEST_CASE("ml reports another optimum of nearly the same likelihood, and none wh
   SearchResult const twice = search(rooted(true), ObjectiveKind::likelihood, two.context);
   REQUIRE(has(twice.findings, FindingCode::second_mode));
   CAPTURE(twice.findings.front().message);
-  CHECK(twice.findings.front().message.find("0.5 below in log likelihood: x = -0.9") != std::string::npos);
+  CHECK(twice.findings.front().message.find("(log likelihood lower by 0.5): x = -0.9") != std::string::npos);
   CHECK_FALSE(has(search(rooted(false), ObjectiveKind::likelihood, one.context).findings, FindingCode::second_mode));
 }
 

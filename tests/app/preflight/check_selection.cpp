@@ -94,7 +94,7 @@ TEST_CASE("the integrator of a selection is judged by what it does to distances"
   PreflightPage const heun = preflight(checked(models / "duffing/one.sysid", fast), "which", "duffing");
   REQUIRE_FALSE(heun.findings.empty());
   CHECK(heun.findings.back().code == FindingCode::integration_step);
-  CHECK(heun.findings.back().message.find("with heun(substeps = 1) the solver changes the distances") == 0);
+  CHECK(heun.findings.back().message.find("the distances depend on the accuracy of heun(substeps = 1)") == 0);
   // Noise that is stated says where distances end: an sd of 1e-8 m is far below what half a step changes.
   std::string const quiet =
       with(duffing_selection("", task + "\n"), "beta [1/m^2] ~ log_uniform(1e8, 1e13)", "beta [1/m^2] = 1e16");
