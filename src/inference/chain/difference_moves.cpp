@@ -10,7 +10,7 @@
 namespace sysid::metropolis {
 namespace {
 
-constexpr double target_acceptance = 0.234, whole_share = 0.1, jitter = 1e-3;
+constexpr double whole_share = 0.1, jitter = 1e-3;
 /// Iterations from one entry into the archive to the next: neighbours in a chain are nearly the same state.
 constexpr std::uint64_t entry_interval = 5;
 
@@ -58,8 +58,8 @@ void DifferenceMoves::learn(State const& state, Info const& info, int first, int
     ++moves;
   }
   if (moves > 0) {
-    double const gain = 1 / (target_acceptance * (1 - target_acceptance)) * elementary::pow(static_cast<double>(iteration_), -0.6);
-    log_scale_ += std::min(1.0, gain) * (acceptance / moves - target_acceptance);
+    double const gain = 1 / (best_acceptance * (1 - best_acceptance)) * elementary::pow(static_cast<double>(iteration_), -0.6);
+    log_scale_ += std::min(1.0, gain) * (acceptance / moves - best_acceptance);
     scale_ = elementary::exp(log_scale_);
   }
   if (iteration_ % entry_interval != 0) return;

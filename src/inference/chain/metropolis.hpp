@@ -24,6 +24,9 @@ struct Proposal {
   double small_scale = 0.2;
 };
 
+/// What the scales of moves that start from where a chain stands are tuned to.            Roberts, Gelman and Gilks 1997
+inline constexpr double best_acceptance = 0.234;
+
 /// (8.17): N(x, variance I).
 Proposal spherical(int dimension, double variance);
 
