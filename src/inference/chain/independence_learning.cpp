@@ -17,13 +17,14 @@ constexpr std::uint64_t trial_interval = 8;
 /// Laplace's shares may be far off: each mode is visited.
 constexpr double least_weight = 0.02;
 
-/// A move of the random walk is worth 0.33 / P independent draws at best (Gelman, Roberts and Gilks 1996), an independence move as
-/// much as its chance of being accepted: so they pay early, and a walk is kept for the places that they do not leave.
-int moves_for(double acceptance) {
+/// A move of the random walk is worth 0.33 / P independent draws at best (Gelman, Roberts and Gilks 1996), an independence move at
+/// most its chance of being accepted; but where that is small, chains stay for long in places that the mixture hardly reaches, and
+/// the walk must lead out of them. Between separate modes nothing else leads.
+int moves_for(double acceptance, bool several_modes) {
   if (acceptance >= 0.5) return 15;
-  if (acceptance >= 0.2) return 7;
-  if (acceptance >= 0.05) return 3;
-  return acceptance >= 0.02 ? 1 : 0;
+  if (acceptance >= 0.25) return 7;
+  if (acceptance >= 0.1) return 3;
+  return several_modes && acceptance >= 0.01 ? 1 : 0;
 }
 
 }  // namespace
@@ -41,11 +42,11 @@ IndependenceLearning::IndependenceLearning(std::vector<Mode> const& modes, std::
 int IndependenceLearning::moves_in_burn_in() const {
   if (!active()) return 0;
   if (windows_ == 0) return 3;
-  int const worth = moves_for(acceptance_);
+  int const worth = moves_for(acceptance_, weights_.size() > 1);
   return worth > 0 ? worth : cycles_ % trial_interval == 0 ? 1 : 0;
 }
 
-int IndependenceLearning::moves() const { return active() && windows_ > 0 ? moves_for(acceptance_) : 0; }
+int IndependenceLearning::moves() const { return active() && windows_ > 0 ? moves_for(acceptance_, weights_.size() > 1) : 0; }
 
 std::vector<char> IndependenceLearning::away(State const& state) const {
   std::vector<char> is_away(component_of_chain_.size(), 0);
