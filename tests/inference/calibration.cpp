@@ -17,7 +17,7 @@ namespace {
 
 int replications() {
   char const* asked = std::getenv("SYSID_REPLICATIONS");
-  return asked != nullptr ? std::atoi(asked) : 20;
+  return asked != nullptr ? std::atoi(asked) : 10;
 }
 
 /// A problem: how to draw parameters and data, and both log densities, all constants of the likelihood kept.
@@ -245,5 +245,5 @@ TEST_CASE("ranks of true parameters tell of a sampler that is wrong") {
   Settings chains(mh::settings());
   chains.set("samples", std::int64_t{3000});
   chains.set("burn_in", std::int64_t{500});
-  CHECK(worst_chi_square(sharper, chains, &mh::run, 60) > 23.5);
+  CHECK(worst_chi_square(sharper, chains, &mh::run, 30) > 23.5);
 }

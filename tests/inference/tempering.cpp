@@ -64,7 +64,7 @@ TestTarget four_modes() {
 
 TEST_CASE("separate modes get their shares from draws of the prior alone") {
   FitResult const result = temper(four_modes(), tempered(12000, 4000, 16, "prior"));
-  CHECK_FALSE(has(result, FindingCode::diagnostics_on_thinned));
+  CHECK_FALSE(has(result, FindingCode::replicas_do_not_mix));
   check_summary(result, 0, -1, std::sqrt(24.01));  // 0.6 at -5, 0.4 at 5
   check_summary(result, 1, -2, std::sqrt(21.01));  // 0.7 at -5, 0.3 at 5
   CHECK(verdict_of(result.findings).pass);
@@ -137,9 +137,9 @@ TEST_CASE("powers move to where neighbours are exchanged equally often") {
 
 TEST_CASE("too few temperatures are named with a number that is enough") {
   FitResult const poor = temper(four_modes(), tempered(3000, 1000, 3));
-  REQUIRE(has(poor, FindingCode::diagnostics_on_thinned));
+  REQUIRE(has(poor, FindingCode::replicas_do_not_mix));
   FitResult const rich = temper(four_modes(), tempered(3000, 1000, 16));
-  CHECK_FALSE(has(rich, FindingCode::diagnostics_on_thinned));
+  CHECK_FALSE(has(rich, FindingCode::replicas_do_not_mix));
 }
 
 TEST_CASE("differences of an archive lead along it, and from one of its parts to another") {

@@ -201,7 +201,7 @@ void exchange(Plan const& plan, std::uint64_t seed, State& state, metropolis::In
       auto const a = static_cast<std::size_t>(below), b = static_cast<std::size_t>(above);
       double const probability = state.ladder.probability(k, replicas.log_likelihood[a], replicas.log_likelihood[b]);
       state.ladder.count(k, probability);
-      Stream stream({seed, static_cast<Purpose>(15), static_cast<std::uint64_t>(below), state.next});
+      Stream stream({seed, Purpose::exchange, static_cast<std::uint64_t>(below), state.next});
       if (stream.uniform() >= probability) continue;
       for (int p = 0; p < replicas.theta.rows(); ++p) std::swap(replicas.theta(p, below), replicas.theta(p, above));
       std::swap(replicas.log_prior[a], replicas.log_prior[b]);
@@ -245,7 +245,7 @@ Findings check_exchange(Plan const& plan, Ladder const& ladder) {
   if (least >= least_exchange) return {};
   // Twice the barrier: neighbours are then exchanged about half of the time.
   int const enough = std::max(plan.rungs + 1, static_cast<int>(std::ceil(2 * ladder.barrier())) + 1);
-  return {{FindingCode::diagnostics_on_thinned,
+  return {{FindingCode::replicas_do_not_mix,
            Severity::warning,
            {},
            fmt::format("states hardly pass between the prior and the posterior: {:.2g} of the exchanges between two neighbouring "
