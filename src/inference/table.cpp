@@ -3,6 +3,7 @@
 
 #include "core/setting/table.hpp"
 #include "inference/chain/mh.hpp"
+#include "inference/chain/tempering.hpp"
 #include "inference/optimum.hpp"
 
 namespace sysid {
@@ -10,12 +11,19 @@ namespace {
 
 BackendRow const backend_rows[] = {
     {"mh",
-     "Metropolis-Hastings chains, adaptive or spherical Gaussian proposal",
+     "Metropolis-Hastings chains: independence moves around the modes and random walks",
      {.proper_prior = true},
      ObjectiveKind::posterior,
      mh::settings(),
      &mh::refuse,
      &mh::run},
+    {"tempering",
+     "replica exchange between prior and posterior, for several modes and curved or flat posteriors",
+     {.proper_prior = true},
+     ObjectiveKind::posterior,
+     tempering::settings(),
+     &tempering::refuse,
+     &tempering::run},
     {"map",
      "maximum a posteriori (MAP) estimate, with Laplace standard deviations",
      {.proper_prior = true},

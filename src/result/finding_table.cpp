@@ -18,6 +18,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::chains_not_quite_agreed, "chains_not_quite_agreed", error},
     {FindingCode::ess_bulk_low, "ess_bulk_low", error},
     {FindingCode::ess_tail_low, "ess_tail_low", error},
+    {FindingCode::replicas_do_not_mix, "replicas_do_not_mix", warning},
     {FindingCode::no_diagnostics, "no_diagnostics", error},
     {FindingCode::integration_step, "integration_step", any},
     {FindingCode::step_not_settled, "step_not_settled", error_or_warning},

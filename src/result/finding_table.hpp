@@ -17,6 +17,7 @@ enum class FindingCode {
   chains_not_quite_agreed,
   ess_bulk_low,
   ess_tail_low,
+  replicas_do_not_mix,
   no_diagnostics,
   integration_step,
   step_not_settled,

@@ -174,7 +174,7 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
     Info const info =
         step(target, std::vector<Proposal const*>(4, &adaptation.proposal()), {1, Purpose::proposal, 0, i}, state, ledger);
     for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info[w].small ? 0 : info[w].acceptance_probability / (0.9 * 2000 * 4);
-    adaptation.learn(state, info);
+    adaptation.learn(state, info, std::vector<char>(4));
   }
   auto const& factor = adaptation.proposal().factor;
   CHECK(factor[0] == doctest::Approx(10).epsilon(0.15));
@@ -182,7 +182,49 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   CHECK(late == doctest::Approx(0.234).epsilon(0.1));
 
   double const scale = adaptation.proposal().scale;
-  Info const failed(4, Move{0, false, true, false});
-  for (int i = 0; i < 10; ++i) adaptation.learn(state, failed);
+  Info const failed(4, Move{.failed = true});
+  for (int i = 0; i < 10; ++i) adaptation.learn(state, failed, std::vector<char>(4));
   CHECK(adaptation.proposal().scale == scale);
+  // Independence moves tell nothing of the random walk's scale, and chains at another mode nothing of the width of this one.
+  for (int i = 0; i < 10; ++i)
+    adaptation.learn(state, Info(4, Move{.acceptance_probability = 1, .independent = true}), std::vector<char>(4));
+  CHECK(adaptation.proposal().scale == scale);
+  Eigen::MatrixXd const covariance = adaptation.covariance();
+  for (int w = 0; w < 4; ++w) state.theta(0, w) = 1e6;
+  adaptation.learn(state, failed, std::vector<char>(4, 1));
+  CHECK(adaptation.covariance() == covariance);
+}
+
+TEST_CASE("a cycle takes its moves in turn, each from where the one before ended") {
+  // Of a density that the mixture equals almost, all independence moves but a few are accepted, and the last is where the chain is.
+  TestTarget const target({"a", "b"}, {{Prior::normal, 0, 1e3}, {Prior::normal, 0, 1e3}}, 2, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) {
+                            rows = {w[0] - 1, w[1] * 10};
+                          });
+  Independence const mixture({{1, Eigen::Vector2d(1, 0), Eigen::Vector2d(1, 0.01).asDiagonal()}});
+  Proposal const walk = spherical(2, 1e-4);
+  std::vector<Proposal const*> const proposals(3, &walk);
+  Ledger ledger;
+  State state = init(target, LaneArray(2, 3), ledger);
+  std::vector<int> order;
+  int accepted = 0, independent = 0;
+  double mean = 0, square = 0;
+  std::uint64_t at = 0;
+  constexpr std::uint64_t end = 9999;  // no multiple of the cycle: the last one is cut
+  while (at < end)
+    at += static_cast<std::uint64_t>(
+        cycle(target, proposals, mixture, 3, {1, Purpose::proposal, 0, at}, end, state, ledger, [&](int chain, Move const& move) {
+          order.push_back(chain);
+          independent += move.independent;
+          accepted += move.independent && move.accepted;
+          mean += state.theta(0, chain) / (3.0 * end);
+          square += 100 * state.theta(1, chain) * state.theta(1, chain) / (3.0 * end);
+        }));
+  CHECK(at == end);
+  REQUIRE(order.size() == 3 * end);
+  for (std::size_t i = 0; i < order.size(); ++i) REQUIRE(order[i] == static_cast<int>(i % 3));
+  CHECK(independent == 3 * (end - end / 4 - 1));
+  CHECK(accepted > 0.75 * independent);
+  CHECK(std::fabs(mean - 1) < 0.04);
+  CHECK(square == doctest::Approx(1).epsilon(0.05));
 }

@@ -157,16 +157,24 @@ TEST_CASE("regions where the model cannot be solved are left out, counted, and d
   CHECK(bench.ledger.failed() > 1000);
 }
 
-TEST_CASE("both modes of a bimodal posterior get chains, and the user is told of the second") {
-  // 0.7 N(-5, 0.5^2) + 0.3 N(5, 0.5^2): nothing crosses the gap, so the chains must start on both sides and must not agree.
-  auto const density = [](double x) {
+namespace {
+
+/// share N(-5, 0.5^2) + (1 - share) N(5, 0.5^2): twenty sds apart.
+TestTarget two_modes(double share) {
+  auto const density = [=](double x) {
     auto const part = [&](double centre) { return std::exp(-2 * (x - centre) * (x - centre)); };
-    return std::log(0.7 * part(-5) + 0.3 * part(5) + 1e-300);
+    return std::log(share * part(-5) + (1 - share) * part(5) + 1e-300);
   };
-  TestTarget const target({"x"}, {{Prior::normal, 0, 20}}, 1, 700, [=](std::vector<double> const& w, std::vector<double>& rows) {
-    rows[0] = as_residual(density(w[0]), 700);
-  });
-  FitResult const result = fit(target, chosen(4000, 1000));
+  return TestTarget({"x"}, {{Prior::normal, 0, 20}}, 1, 700,
+                    [=](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = as_residual(density(w[0]), 700); });
+}
+
+}  // namespace
+
+TEST_CASE("a random walk does not cross from mode to mode, and says so") {
+  Settings settings = chosen(4000, 1000);
+  settings.set("proposal", std::string("walk"));
+  FitResult const result = fit(two_modes(0.7), settings);
   REQUIRE(result.modes.size() >= 2);
   CHECK(result.modes[0].declared[0] == doctest::Approx(-5).epsilon(0.01));
   CHECK(result.modes[1].declared[0] == doctest::Approx(5).epsilon(0.01));
@@ -178,6 +186,40 @@ TEST_CASE("both modes of a bimodal posterior get chains, and the user is told of
   int left = 0;
   for (Chain const& chain : result.draws.chains) left += chain.values.back()[0] < 0;
   CHECK(left == 3);
+}
+
+TEST_CASE("independence moves cross from mode to mode, and the draws have the modes' shares") {
+  for (double const share : {0.5, 0.7, 0.97}) {
+    CAPTURE(share);
+    FitResult const result = fit(two_modes(share), chosen(6000, 1000));
+    CHECK_FALSE(found(result, "chains_disagree"));
+    CHECK_FALSE(found(result, "chains_not_converged"));
+    Summary const summary = summarise(result)[0];
+    CHECK(summary.ess_bulk > 5000);
+    // Mean 5 - 10 share, with the prior's pull of (0.5 / 20)^2 of 5 at each.
+    CHECK(std::fabs(summary.mean - (5 - 10 * share) * (1 - 0.025 * 0.025)) < 4 * summary.mcse_mean);
+    for (Chain const& chain : result.draws.chains) {
+      double left = 0;
+      for (auto const& draw : chain.values) left += draw[0] < 0;
+      CHECK(left / static_cast<double>(chain.values.size()) == doctest::Approx(share).epsilon(0.08));
+    }
+  }
+}
+
+TEST_CASE("a posterior that no normal distribution resembles falls back to the random walk") {
+  // Rosenbrock's valley: x ~ N(0, 1), y | x ~ N(4 x^2, 0.5^2).
+  TestTarget const target({"x", "y"}, {{Prior::normal, 0, 100}, {Prior::normal, 0, 1000}}, 2, 0,
+                          [](std::vector<double> const& w, std::vector<double>& rows) {
+                            rows[0] = w[0];
+                            rows[1] = (w[1] - 4 * w[0] * w[0]) / 0.5;
+                          });
+  FitResult const both = fit(target, chosen(40000, 10000));
+  Settings walking = chosen(40000, 10000);
+  walking.set("proposal", std::string("walk"));
+  FitResult const walk = fit(target, walking);
+  CHECK(summarise(both)[0].ess_bulk > 0.5 * summarise(walk)[0].ess_bulk);
+  Summary const x = summarise(both)[0];
+  CHECK(std::fabs(x.mean) < 4 * x.mcse_mean);
 }
 
 TEST_CASE("the tutorial's spherical proposal of absurd size is caught standing still") {
@@ -224,56 +266,60 @@ TEST_CASE("one seed gives the same bytes twice, another seed others") {
 
 TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never stopped") {
   Line const known = line();
-  Settings const settings = chosen(600, 200, 5, 3);
-  Bench whole(9);
-  // One question is asked before every batch: those of the search, 200 of burn-in, and fewer than 400 of sampling, which runs
-  // ahead.
-  int questions = 0;
-  whole.context.interrupted = [&] { return ++questions < 0; };
-  FitResult const unbroken = mh::run(known.target, settings, whole.context);
-  Settings burning = settings;
-  burning.set("samples", std::int64_t{201});
-  int searching = 0;
-  Bench short_run(9);
-  short_run.context.interrupted = [&] { return ++searching < 0; };
-  mh::run(known.target, burning, short_run.context);
-  searching -= 201;
-  REQUIRE(searching > 3);
-  REQUIRE(questions > searching + 260);
-  REQUIRE(questions < searching + 600);
-  // In the search, at the first iteration, in burn-in, at its last and first after, in sampling, before the last batch.
-  for (int const limit : {3, searching, searching + 77, searching + 199, searching + 200, searching + 231, questions - 1}) {
-    CAPTURE(limit);
-    std::vector<std::uint8_t> saved;
-    int asked = 0;
-    Bench first(9);
-    first.context.interrupted = [&] { return ++asked > limit; };
-    first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
-    FitResult const part = mh::run(known.target, settings, first.context);
-    REQUIRE(part.interrupted);
-    CHECK(part.draws.total() < unbroken.draws.total());
-    Bench second(9);
-    second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
-    FitResult const resumed = mh::run(known.target, settings, second.context);
-    CHECK_FALSE(resumed.interrupted);
-    CHECK(same_draws(unbroken, resumed));
-    CHECK(unbroken.acceptance_rate == resumed.acceptance_rate);
-    CHECK(unbroken.distinct_states == resumed.distinct_states);
-    CHECK(unbroken.findings == resumed.findings);
-    CHECK(whole.ledger.solves() == second.ledger.solves());
-    CHECK(unbroken.proposals[0].factor == resumed.proposals[0].factor);
+  for (char const* proposal : {"walk", "adaptive"}) {
+    CAPTURE(proposal);
+    Settings settings = chosen(1200, 400, 5, 3);
+    settings.set("proposal", std::string(proposal));
+    Bench whole(9);
+    // One question is asked before every batch: those of the search, of burn-in, and of sampling, which has fewer than iterations.
+    int questions = 0;
+    whole.context.interrupted = [&] { return ++questions < 0; };
+    FitResult const unbroken = mh::run(known.target, settings, whole.context);
+    int searching = 0;
+    Bench search_alone(9);
+    search_alone.context.interrupted = [&] { return ++searching < 0; };
+    Settings shortest = settings;
+    shortest.set("samples", std::int64_t{5});
+    shortest.set("burn_in", std::int64_t{0});
+    mh::run(known.target, shortest, search_alone.context);
+    REQUIRE(searching > 3);
+    REQUIRE(questions > searching + 60);
+    int const batches = questions - searching;
+    // In the search, at the first iteration, in burn-in, around its end, in sampling, before the last batch.
+    for (int const limit : {3, searching, searching + batches / 8, searching + batches / 3, searching + batches * 2 / 5,
+                            searching + batches / 2, searching + batches * 3 / 4, questions - 1}) {
+      CAPTURE(limit);
+      std::vector<std::uint8_t> saved;
+      int asked = 0;
+      Bench first(9);
+      first.context.interrupted = [&] { return ++asked > limit; };
+      first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
+      FitResult const part = mh::run(known.target, settings, first.context);
+      REQUIRE(part.interrupted);
+      CHECK(part.draws.total() < unbroken.draws.total());
+      Bench second(9);
+      second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
+      FitResult const resumed = mh::run(known.target, settings, second.context);
+      CHECK_FALSE(resumed.interrupted);
+      CHECK(same_draws(unbroken, resumed));
+      CHECK(unbroken.acceptance_rate == resumed.acceptance_rate);
+      CHECK(unbroken.distinct_states == resumed.distinct_states);
+      CHECK(unbroken.findings == resumed.findings);
+      CHECK(whole.ledger.solves() == second.ledger.solves());
+      CHECK(unbroken.proposals[0].factor == resumed.proposals[0].factor);
+    }
   }
 }
 
 TEST_CASE("every checkpoint on the way leads to the same end") {
   Line const known = line();
-  Settings const settings = chosen(60, 20, 1, 3);
+  Settings const settings = chosen(500, 250, 1, 3);
   Bench bench(9);
   std::vector<nlohmann::json> saved;
   bench.context.checkpoint_interval = 0;
   bench.context.checkpoint = [&](nlohmann::json const& state) { saved.push_back(state); };
   FitResult const unbroken = mh::run(known.target, settings, bench.context);
-  REQUIRE(saved.size() > 25);
+  REQUIRE(saved.size() > 50);
   for (nlohmann::json const& state : saved) {
     Bench again(9);
     again.context.resume = std::make_shared<nlohmann::json const>(state);
@@ -285,8 +331,8 @@ TEST_CASE("a checkpoint of another run is refused with its reason") {
   Line const known = line();
   nlohmann::json saved;
   Bench first(9);
-  int asked = 0;
-  first.context.interrupted = [&] { return ++asked > 150; };
+  first.context.interrupted = [&] { return saved.contains("next"); };
+  first.context.checkpoint_interval = 0;
   first.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
   mh::run(known.target, chosen(600, 200), first.context);
   REQUIRE(saved.contains("next"));

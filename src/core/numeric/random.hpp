@@ -22,6 +22,7 @@ enum class Purpose : std::uint32_t {
   particle = 12,     // proposals of populations of particles
   supports = 13,     // moves between supports of a dictionary
   coefficient = 14,  // coefficients that a likelihood integrated out
+  exchange = 15,     // exchanges between replicas of a chain
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

@@ -7,11 +7,11 @@
 #include "core/numeric/elementary.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "search/objective.hpp"
 
 namespace sysid::metropolis {
 namespace {
 
-constexpr double target_acceptance = 0.234;
 constexpr double small_share = 0.1;
 
 Eigen::MatrixXd to_matrix(std::vector<double> const& v, Eigen::Index rows, Eigen::Index columns) {
@@ -39,44 +39,55 @@ void Adaptation::refactor() {
     for (Eigen::Index j = 0; j <= i; ++j) proposal_.factor[static_cast<std::size_t>(i * n + j)] = (*factor)(i, j);
 }
 
-void Adaptation::learn(State const& state, Info const& info) {
-  Eigen::Index const dimension = covariance_.rows();
-  auto const group = static_cast<Eigen::Index>(chains_.size());
-  auto const theta = [&](Eigen::Index c) {
-    Eigen::VectorXd x(dimension);
-    for (Eigen::Index p = 0; p < dimension; ++p) x(p) = state.theta(static_cast<int>(p), chains_[static_cast<std::size_t>(c)]);
-    return x;
-  };
+void Adaptation::learn(State const& state, Info const& info, std::span<char const> away) {
   if (iteration_ == 0) {
-    mean_.resize(dimension, group);
-    for (Eigen::Index c = 0; c < group; ++c) mean_.col(c) = theta(c);
+    mean_.resize(covariance_.rows(), static_cast<Eigen::Index>(chains_.size()));
+    for (std::size_t c = 0; c < chains_.size(); ++c) mean_.col(static_cast<Eigen::Index>(c)) = column(state.theta, chains_[c]);
   }
   ++iteration_;
-  double const n = static_cast<double>(iteration_);
+  learn_scale(info);
+  learn_shape(state, away);
+  if (iteration_ % 10 == 0) refactor();
+}
 
+void Adaptation::learn_scale(Info const& info) {
   double acceptance = 0;
-  int moves = 0;
+  int moves = 0, walks = 0;
   for (int const chain : chains_) {
     Move const& move = info[static_cast<std::size_t>(chain)];
-    if (move.failed || move.small) continue;  // a failed solve says nothing of the posterior's width
+    walks += move.independent ? 0 : 1;
+    if (move.independent || move.failed || move.small) continue;  // a failed solve says nothing of the posterior's width
     acceptance += move.acceptance_probability;
     ++moves;
   }
-  if (moves > 0) {
-    // 1 / (a (1 - a)) is the gain that is optimal in one dimension (Garthwaite, Fan and Sisson 2016); n^-0.6 lets it settle.
-    double const gain = 1 / (target_acceptance * (1 - target_acceptance)) * elementary::pow(n, -0.6);
-    log_scale_ += std::min(1.0, gain) * (acceptance / moves - target_acceptance);
-  }
+  if (walks > 0) ++walks_;
+  if (moves == 0) return;
+  // 1 / (a (1 - a)) is the gain that is optimal in one dimension (Garthwaite, Fan and Sisson 2016); n^-0.6 lets it settle.
+  double const gain = 1 / (best_acceptance * (1 - best_acceptance)) * elementary::pow(static_cast<double>(walks_), -0.6);
+  log_scale_ += std::min(1.0, gain) * (acceptance / moves - best_acceptance);
+}
 
-  double const weight = 2 / (n + 10 * static_cast<double>(dimension));
+void Adaptation::learn_shape(State const& state, std::span<char const> away) {
+  Eigen::Index const dimension = covariance_.rows();
+  double const weight = 2 / (static_cast<double>(iteration_) + 10 * static_cast<double>(dimension));
   Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(dimension, dimension);
-  for (Eigen::Index c = 0; c < group; ++c) {
-    Eigen::VectorXd const step = theta(c) - mean_.col(c);
+  int here = 0;
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    if (away[static_cast<std::size_t>(chains_[c])] != 0) continue;
+    auto mean = mean_.col(static_cast<Eigen::Index>(c));
+    Eigen::VectorXd const step = column(state.theta, chains_[c]) - mean;
     spread += step * step.transpose();
-    mean_.col(c) += weight * step;
+    mean += weight * step;
+    ++here;
   }
-  covariance_ += weight * (spread / static_cast<double>(group) - covariance_);
-  if (iteration_ % 10 == 0) refactor();
+  if (here > 0) covariance_ += weight * (spread / here - covariance_);
+}
+
+Eigen::VectorXd Adaptation::mean() const { return mean_.rowwise().mean(); }
+
+Eigen::MatrixXd Adaptation::covariance() const {
+  Eigen::MatrixXd const apart = mean_.colwise() - mean();
+  return covariance_ + apart * apart.transpose() / static_cast<double>(chains_.size());
 }
 
 nlohmann::json Adaptation::store() const {
@@ -89,6 +100,7 @@ nlohmann::json Adaptation::store() const {
           {"covariance", block(covariance_)},
           {"mean", block(mean_)},
           {"iteration", iteration_},
+          {"walks", walks_},
           {"factor", checkpoint::encode(std::span<double const>(proposal_.factor))},
           {"scales", checkpoint::encode(std::vector<double>{log_scale_, proposal_.scale})}};
 }
@@ -100,6 +112,7 @@ Adaptation Adaptation::restore(nlohmann::json const& stored) {
   a.first_ = to_matrix(checkpoint::decode(stored.at("first")), dimension, dimension);
   a.covariance_ = to_matrix(checkpoint::decode(stored.at("covariance")), dimension, dimension);
   a.iteration_ = stored.at("iteration").get<std::uint64_t>();
+  a.walks_ = stored.at("walks").get<std::uint64_t>();
   auto const group = static_cast<Eigen::Index>(a.chains_.size());
   if (a.iteration_ > 0) a.mean_ = to_matrix(checkpoint::decode(stored.at("mean")), dimension, group);
   std::vector<double> const scales = checkpoint::decode(stored.at("scales"), 2);

@@ -18,16 +18,23 @@ class Adaptation {
   /// chains: lanes of the group. covariance: [P x P], the first guess (Laplace, or the prior's).
   Adaptation(std::vector<int> chains, Eigen::MatrixXd covariance);
 
-  /// After each iteration of burn-in.
-  void learn(State const& state, Info const& info);
+  /// After each iteration of burn-in. `away` [W]: chains that stand nearer to another mode than to the one they started in; they
+  /// tell nothing of the width here. The scale learns from the random walk's moves alone.
+  void learn(State const& state, Info const& info, std::span<char const> away);
   /// The proposal to use now; its factor follows the covariance every tenth iteration.
   Proposal const& proposal() const { return proposal_; }
   std::vector<int> const& chains() const { return chains_; }
+  /// The mean over all chains, and the covariance about it: what is between their means counts as width here. Before the first
+  /// iteration there is no mean (empty).
+  Eigen::VectorXd mean() const;
+  Eigen::MatrixXd covariance() const;
 
   nlohmann::json store() const;
   static Adaptation restore(nlohmann::json const& stored);
 
  private:
+  void learn_scale(Info const& info);
+  void learn_shape(State const& state, std::span<char const> away);
   void refactor();
 
   std::vector<int> chains_;
@@ -35,7 +42,7 @@ class Adaptation {
   Eigen::MatrixXd covariance_;
   Eigen::MatrixXd mean_;  // [P x chains of the group]
   double log_scale_ = 0;
-  std::uint64_t iteration_ = 0;
+  std::uint64_t iteration_ = 0, walks_ = 0;  // of these, with a move of the random walk
   Proposal proposal_;
 };
 

@@ -1,4 +1,4 @@
-// Random-walk Metropolis over lanes.
+// Metropolis-Hastings over lanes.
 #include "inference/chain/metropolis.hpp"
 
 #include <algorithm>
@@ -31,14 +31,16 @@ bool propose(Proposal const& proposal, StreamKey key, ConstLanes from, int chain
   return small;
 }
 
-/// Takes or refuses the proposal in `lane` for chain w.
-Move decide(StreamKey key, State& state, std::size_t w, ConstLanes proposed, int lane, double log_prior, double log_likelihood) {
+}  // namespace
+
+Move decide(StreamKey key, State& state, std::size_t w, ConstLanes proposed, int lane, double log_prior, double log_likelihood,
+            Odds odds) {
   Move move;
-  double const now = state.log_prior[w] + state.log_likelihood[w];
-  double const next = log_prior + log_likelihood;
+  double const now = state.log_prior[w] + odds.power * state.log_likelihood[w];
+  double const next = log_prior + odds.power * log_likelihood;
   move.failed = !std::isfinite(next);
   if (move.failed) return move;
-  double const log_ratio = std::isfinite(now) ? next - now : 0.0;
+  double const log_ratio = std::isfinite(now) ? next - now + odds.log_reverse : 0.0;
   move.acceptance_probability = log_ratio >= 0 ? 1.0 : elementary::exp(log_ratio);
   Stream stream(key);
   move.accepted = log_ratio >= 0 || elementary::log(stream.uniform()) < log_ratio;
@@ -48,8 +50,6 @@ Move decide(StreamKey key, State& state, std::size_t w, ConstLanes proposed, int
   state.log_likelihood[w] = log_likelihood;
   return move;
 }
-
-}  // namespace
 
 Proposal spherical(int dimension, double variance) {
   auto const n = static_cast<std::size_t>(dimension);
@@ -73,6 +73,44 @@ Info step(Target const& target, std::span<Proposal const* const> proposals, Stre
   advance(target, proposals, key, 1, key.step + 1, next, state, ledger,
           [&](int chain, Move const& move) { info[static_cast<std::size_t>(chain)] = move; });
   return info;
+}
+
+int cycle(Target const& target, std::span<Proposal const* const> proposals, Independence const& independence, int moves,
+          StreamKey key, std::uint64_t end, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit) {
+  auto const chains = static_cast<std::size_t>(state.theta.width());
+  auto const iterations = static_cast<std::size_t>(std::min<std::uint64_t>(static_cast<std::uint64_t>(moves) + 1, end - key.step));
+  LaneArray proposed(state.theta.rows(), static_cast<int>(chains * iterations));
+  auto const key_of = [&](Purpose purpose, std::size_t w, std::size_t later) {
+    return StreamKey{key.seed, purpose, key.index + w, key.step + later};
+  };
+  std::vector<char> small(chains);
+  for (std::size_t w = 0; w < chains; ++w)
+    small[w] =
+        propose(*proposals[w], key_of(Purpose::proposal, w, 0), state.theta, static_cast<int>(w), proposed, static_cast<int>(w));
+  for (std::size_t i = 1; i < iterations; ++i)
+    for (std::size_t w = 0; w < chains; ++w)
+      independence.draw(key_of(Purpose::proposal, w, i), proposed, static_cast<int>(i * chains + w));
+
+  std::vector<double> log_prior(chains * iterations), log_likelihood(log_prior), here(chains);
+  target.log_prior(proposed, log_prior);
+  target.log_likelihood(proposed, log_likelihood, ledger);
+  for (std::size_t w = 0; w < chains; ++w) {
+    Move move = decide(key_of(Purpose::accept, w, 0), state, w, proposed, static_cast<int>(w), log_prior[w], log_likelihood[w]);
+    move.small = small[w] != 0;
+    visit(static_cast<int>(w), move);
+  }
+  for (std::size_t w = 0; iterations > 1 && w < chains; ++w) here[w] = independence.log_density(state.theta, static_cast<int>(w));
+  for (std::size_t i = 1; i < iterations; ++i)
+    for (std::size_t w = 0; w < chains; ++w) {
+      std::size_t const lane = i * chains + w;
+      double const there = independence.log_density(proposed, static_cast<int>(lane));
+      Move move = decide(key_of(Purpose::accept, w, i), state, w, proposed, static_cast<int>(lane), log_prior[lane],
+                         log_likelihood[lane], {.log_reverse = here[w] - there});
+      move.independent = true;
+      if (move.accepted) here[w] = there;
+      visit(static_cast<int>(w), move);
+    }
+  return static_cast<int>(iterations);
 }
 
 void advance(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, int ahead, std::uint64_t end,

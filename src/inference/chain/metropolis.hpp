@@ -1,4 +1,4 @@
-// Random-walk Metropolis with a Gaussian proposal: W chains in lanes, one batch of likelihoods per iteration.
+// Metropolis-Hastings moves of W chains in lanes: random walks with a Gaussian proposal, and independence moves.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -8,6 +8,7 @@
 #include "core/numeric/lanes.hpp"
 #include "core/numeric/random.hpp"
 #include "core/system/ledger.hpp"
+#include "inference/chain/independence.hpp"
 #include "likelihood/target.hpp"
 
 namespace sysid::metropolis {
@@ -23,6 +24,9 @@ struct Proposal {
   double small_scale = 0.2;
 };
 
+/// What the scales of moves that start from where a chain stands are tuned to.            Roberts, Gelman and Gilks 1997
+inline constexpr double best_acceptance = 0.234;
+
 /// (8.17): N(x, variance I).
 Proposal spherical(int dimension, double variance);
 
@@ -37,10 +41,21 @@ struct State {
 struct Move {
   double acceptance_probability = 0;  // 0 where the proposal failed
   bool accepted = false;
-  bool failed = false;  // the proposal's density was not finite; such a move must not steer adaptation
-  bool small = false;   // it was a small one
+  bool failed = false;       // the proposal's density was not finite; such a move must not steer adaptation
+  bool small = false;        // it was a small one
+  bool independent = false;  // it did not start from where the chain stood
 };
 using Info = std::vector<Move>;  // [W]
+
+/// What a move is accepted by, besides the densities.
+struct Odds {
+  double log_reverse = 0;  // log of the density of proposing the way back, over that of the way there
+  double power = 1;        // of the likelihood
+};
+
+/// Takes or refuses column `lane` of `proposed`, of these log densities, for chain w; `key` names the uniform number.
+Move decide(StreamKey key, State& state, std::size_t w, ConstLanes proposed, int lane, double log_prior, double log_likelihood,
+            Odds odds = {});
 
 /// Evaluates theta [P x W].
 State init(Target const& target, LaneArray theta, Ledger& ledger);
@@ -52,6 +67,16 @@ State init(Target const& target, LaneArray theta, Ledger& ledger);
 ///
 /// A state whose own density is not finite accepts any proposal whose density is.
 Info step(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, State& state, Ledger& ledger);
+
+/// A cycle of every chain from one batch: one move of its random walk, then `moves` independence moves, fewer where iteration `end`
+/// is reached. Candidates of independence moves do not depend on where a chain stands, so that none is evaluated in vain:
+///
+///   accept x' with probability min(1, p(x') q(x) / (p(x) q(x')))                                     Hastings 1970; Tierney 1994
+///
+/// All chains are at iteration key.step, and take each iteration together: `visit(chain, move)` is called for all of them, in
+/// order, before the next. Each kind of move leaves the posterior as it is, so a cycle of them does. Returns the iterations taken.
+int cycle(Target const& target, std::span<Proposal const* const> proposals, Independence const& independence, int moves,
+          StreamKey key, std::uint64_t end, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit);
 
 /// Several iterations of each chain from one batch, for proposals that do not change: chain w tries its moves of iterations
 /// next[w], next[w] + 1, ... (`ahead` of them, none at `end` or later) all from where it stands, and takes them in turn up to the

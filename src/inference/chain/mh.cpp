@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -13,7 +12,9 @@
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/adaptation.hpp"
 #include "inference/chain/chain_record.hpp"
+#include "inference/chain/independence_learning.hpp"
 #include "inference/chain/metropolis.hpp"
+#include "inference/chain/watch.hpp"
 #include "search/laplace.hpp"
 #include "search/search.hpp"
 
@@ -25,8 +26,9 @@ constexpr SettingRow rows[] = {
     {"burn_in", SettingKind::integer, "5000", 0, 1e9, "", "first iterations, discarded; the proposal adapts during them"},
     {"thin", SettingKind::integer, "10", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "4", 1, 65536, "", "number of independent chains"},
-    {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive spherical",
-     "adapt the covariance of the proposal during burn-in, or keep `variance` times the identity"},
+    {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive walk spherical",
+     "learn during burn-in where to propose, from the chain's place and independently of it; a random walk alone; or one with "
+     "`variance` times the identity"},
     {"variance", SettingKind::real, "0.1", 1e-300, infinity, "",
      "variance of the spherical proposal, in unconstrained coordinates"},
     {"start", SettingKind::word, "global", 0, 0, "global prior",
@@ -47,6 +49,7 @@ struct State {
   std::vector<std::uint64_t> next;  // [W] iterations each chain has finished: all the same in burn-in
   metropolis::State chains;
   std::vector<metropolis::Adaptation> groups;  // empty for a spherical proposal
+  metropolis::IndependenceLearning independence;
   std::vector<Mode> modes;
   Findings findings;  // of the search
   ChainRecord record;
@@ -55,7 +58,7 @@ struct State {
 struct Plan {
   std::uint64_t samples, burn_in, thin;
   int chains;
-  bool adaptive, global;
+  bool adaptive, independent, global;
   double variance;
   std::uint64_t stride;  // between recorded iterations
 };
@@ -65,6 +68,7 @@ Plan plan_of(Target const& target, Settings const& s) {
             static_cast<std::uint64_t>(s.integer("burn_in")),
             static_cast<std::uint64_t>(s.integer("thin")),
             static_cast<int>(s.integer("chains")),
+            s.word("proposal") != "spherical",
             s.word("proposal") == "adaptive",
             s.word("start") == "global",
             s.real("variance"),
@@ -85,6 +89,7 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
           {"log_prior", block(state.chains.log_prior)},
           {"log_likelihood", block(state.chains.log_likelihood)},
           {"groups", groups},
+          {"independence", state.independence.store()},
           {"modes", modes},
           {"findings", checkpoint::encode(state.findings)},
           {"record", state.record.store()},
@@ -100,6 +105,7 @@ State restore(nlohmann::json const& stored, Target const& target, Plan const& pl
   if (state.next.size() != chains || state.chains.log_prior.size() != chains || state.chains.log_likelihood.size() != chains)
     throw checkpoint::Mismatch("its chains differ in number or dimension");
   for (auto const& group : stored.at("groups")) state.groups.push_back(metropolis::Adaptation::restore(group));
+  state.independence = metropolis::IndependenceLearning::restore(stored.at("independence"), target.dimension());
   for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
   state.findings = checkpoint::decode_findings(stored.at("findings"));
   state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
@@ -143,6 +149,7 @@ std::optional<State> begin(Target const& target, Plan const& plan, RunContext& c
     std::vector<int> const mode_of_chain = spread_over_modes(found.modes, plan.chains);
     starts = overdispersed_starts(target, found.modes, mode_of_chain, context);
     if (plan.adaptive) state.groups = make_groups(found.modes, mode_of_chain);
+    if (plan.independent) state.independence = {found.modes, mode_of_chain};
     state.modes = std::move(found.modes);
     state.findings = std::move(found.findings);
   } else {
@@ -160,30 +167,26 @@ std::optional<State> begin(Target const& target, Plan const& plan, RunContext& c
   return state;
 }
 
-/// Tells how far the run is and stores it, each no more often than is useful, whatever an iteration takes.
-class Watch {
- public:
-  Watch(RunContext& context, std::function<nlohmann::json()> store) : context_(context), store_(std::move(store)) {}
-
-  void look(State const& state) {
-    Clock::time_point const now = Clock::now();
-    if (now - shown_ > std::chrono::milliseconds(50)) {
-      std::uint64_t const done = *std::min_element(state.next.begin(), state.next.end());
-      context_.progress.advance(done, fmt::format("acceptance {:.2f}", state.record.mean_acceptance()));
-      shown_ = now;
+/// One batch of burn-in: an iteration of every chain, or a cycle of them with independence moves.
+void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Proposal const* const> proposals, StreamKey key,
+             Ledger& ledger, State& state) {
+  metropolis::Info info(static_cast<std::size_t>(plan.chains));
+  auto const learn = [&](int chain, metropolis::Move const& move) {
+    info[static_cast<std::size_t>(chain)] = move;
+    if (chain + 1 < plan.chains) return;
+    for (std::uint64_t& n : state.next) ++n;
+    std::vector<char> away(info.size(), 0);
+    if (state.independence.active()) {
+      away = state.independence.away(state.chains);
+      state.independence.learn(state.chains, info);
     }
-    if (context_.checkpoint && std::chrono::duration<double>(now - saved_).count() >= context_.checkpoint_interval) {
-      context_.checkpoint(store_());
-      saved_ = Clock::now();
-    }
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  RunContext& context_;
-  std::function<nlohmann::json()> store_;
-  Clock::time_point shown_ = Clock::now(), saved_ = shown_;
-};
+    for (auto& group : state.groups) group.learn(state.chains, info, away);
+    state.record.count_burn_in(info);
+  };
+  metropolis::cycle(target, proposals, state.independence.mixture(), state.independence.moves_in_burn_in(),
+                    key.with_step(state.next.front()), plan.burn_in, state.chains, ledger, learn);
+  if (state.independence.active()) state.independence.end_cycle(state.groups);
+}
 
 /// Iterates to the end, or until asked to stop; returns whether it was.
 bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
@@ -193,6 +196,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     for (int const chain : group.chains()) proposals[static_cast<std::size_t>(chain)] = &group.proposal();
   StreamKey const key{context.seed, Purpose::proposal, 0, 0};
   Watch watch(context, [&] { return store(state, context.ledger, identity); });
+  auto const look = [&] { watch.look(*std::min_element(state.next.begin(), state.next.end()), state.record.mean_acceptance()); };
   auto const record = [&](int chain, metropolis::Move const& move) {
     std::uint64_t const after = state.next[static_cast<std::size_t>(chain)] - plan.burn_in;
     state.record.add(chain, state.chains, move, after % plan.stride == 0);
@@ -204,21 +208,26 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
   context.progress.begin("sampling", plan.samples);
   bool stopped = false;
   while (!all_lags(plan.burn_in) && !(stopped = context.stop_requested())) {
-    metropolis::Info const info =
-        metropolis::step(target, proposals, key.with_step(state.next.front()), state.chains, context.ledger);
-    for (std::uint64_t& n : state.next) ++n;
-    for (auto& group : state.groups) group.learn(state.chains, info);
-    state.record.count_burn_in(info);
-    watch.look(state);
+    burn_in(target, plan, proposals, key, context.ledger, state);
+    look();
   }
-  // The proposals are frozen: idle lanes may run ahead. How far must not depend on the machine, or the counts of solves would.
-  int const ahead = std::clamp(lanes_worth_filling / plan.chains, 1, most_ahead);
+  // The proposals are frozen. Without independence moves idle lanes may run ahead. How far must not depend on the machine, or the
+  // counts of solves would.
+  int const ahead = std::clamp(lanes_worth_filling / plan.chains, 1, most_ahead), moves = state.independence.moves();
+  auto const counted = [&](int chain, metropolis::Move const& move) {
+    ++state.next[static_cast<std::size_t>(chain)];
+    record(chain, move);
+  };
   while (!stopped && !all_lags(plan.samples) && !(stopped = context.stop_requested())) {
-    metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
-    watch.look(state);
+    if (moves > 0)
+      metropolis::cycle(target, proposals, state.independence.mixture(), moves, key.with_step(state.next.front()), plan.samples,
+                        state.chains, context.ledger, counted);
+    else
+      metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
+    look();
   }
   context.progress.end(!stopped);
-  if (stopped && context.checkpoint) context.checkpoint(store(state, context.ledger, identity));
+  if (stopped) watch.store_now();
   return stopped;
 }
 

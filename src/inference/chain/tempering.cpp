@@ -1,0 +1,316 @@
+// The run of tempered replicas.
+#include "inference/chain/tempering.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/numeric/not_finite.hpp"
+#include "diagnostics/chain_checks.hpp"
+#include "inference/backend/checkpoint.hpp"
+#include "inference/chain/chain_record.hpp"
+#include "inference/chain/difference_moves.hpp"
+#include "inference/chain/ladder.hpp"
+#include "inference/chain/metropolis.hpp"
+#include "inference/chain/watch.hpp"
+#include "linear_algebra/decompositions.hpp"
+#include "search/laplace.hpp"
+#include "search/search.hpp"
+
+namespace sysid::tempering {
+namespace {
+
+constexpr SettingRow rows[] = {
+    {"samples", SettingKind::integer, "12000", 1, 1e9, "", "iterations of each ensemble, burn-in included"},
+    {"burn_in", SettingKind::integer, "4000", 0, 1e9, "", "first iterations, discarded; powers and moves adapt during them"},
+    {"thin", SettingKind::integer, "4", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
+    {"chains", SettingKind::integer, "4", 1, 4096, "", "number of independent ensembles"},
+    {"temperatures", SettingKind::integer, "16", 2, 512, "", "replicas of each ensemble, from the posterior to the prior"},
+    {"start", SettingKind::word, "global", 0, 0, "global prior",
+     "start around the modes of a global search, or at draws from the prior"},
+};
+
+constexpr std::int64_t most_kept = 10'000'000;
+/// Iterations until the powers are first moved; then after twice as many, and so on.
+constexpr std::uint64_t first_round = 100;
+/// Below it states hardly pass, and an ensemble is a few chains in a row.
+constexpr double least_exchange = 0.1;
+
+struct Plan {
+  std::uint64_t samples, burn_in, thin;
+  int chains, rungs;
+  bool global;
+  int columns() const { return chains * rungs; }
+};
+
+Plan plan_of(Settings const& s) {
+  return {static_cast<std::uint64_t>(s.integer("samples")), static_cast<std::uint64_t>(s.integer("burn_in")),
+          static_cast<std::uint64_t>(s.integer("thin")),    static_cast<int>(s.integer("chains")),
+          static_cast<int>(s.integer("temperatures")),      s.word("start") == "global"};
+}
+
+/// All that a run is between two iterations. Column k chains + c is the replica of ensemble c at rung k: the first are what is
+/// kept.
+struct State {
+  std::uint64_t next = 0, round_end = first_round;
+  metropolis::State replicas;
+  Ladder ladder;
+  std::vector<metropolis::DifferenceMoves> moves;  // [K - 1], none for the prior
+  std::vector<Mode> modes;
+  Findings findings;  // of the search
+  ChainRecord record;
+};
+
+nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json const& identity) {
+  auto const block = [](std::vector<double> const& v) { return checkpoint::encode(std::span<double const>(v)); };
+  nlohmann::json moves = nlohmann::json::array(), modes = nlohmann::json::array();
+  for (auto const& each : state.moves) moves.push_back(each.store());
+  for (Mode const& mode : state.modes) modes.push_back(checkpoint::encode(mode));
+  return {{"identity", identity},
+          {"next", state.next},
+          {"round_end", state.round_end},
+          {"theta", checkpoint::encode(state.replicas.theta)},
+          {"log_prior", block(state.replicas.log_prior)},
+          {"log_likelihood", block(state.replicas.log_likelihood)},
+          {"ladder", state.ladder.store()},
+          {"moves", moves},
+          {"modes", modes},
+          {"findings", checkpoint::encode(state.findings)},
+          {"record", state.record.store()},
+          {"ledger", checkpoint::encode(ledger)}};
+}
+
+State restore(nlohmann::json const& stored, Target const& target, Plan const& plan, Ledger& ledger) {
+  State state;
+  state.next = stored.at("next").get<std::uint64_t>();
+  state.round_end = stored.at("round_end").get<std::uint64_t>();
+  auto const columns = static_cast<std::size_t>(plan.columns());
+  state.replicas = {checkpoint::decode(stored.at("theta"), target.dimension(), plan.columns()),
+                    checkpoint::decode(stored.at("log_prior"), columns), checkpoint::decode(stored.at("log_likelihood"), columns)};
+  state.ladder = Ladder::restore(stored.at("ladder"), plan.rungs);
+  for (auto const& each : stored.at("moves")) state.moves.push_back(metropolis::DifferenceMoves::restore(each, target.dimension()));
+  if (state.moves.size() + 1 != static_cast<std::size_t>(plan.rungs)) throw checkpoint::Mismatch("its replicas differ in number");
+  for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
+  state.findings = checkpoint::decode_findings(stored.at("findings"));
+  state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
+  ledger = checkpoint::decode_ledger(stored.at("ledger"));
+  return state;
+}
+
+/// What the archive of a rung holds at first: draws from the normal distributions at the modes, as wide as the power leaves them,
+///
+///   covariance = (b S^-1 + (1 - b) diag(prior width^2)^-1)^-1,   S that of the mode
+///
+/// or from the prior where no search was made. They shape proposals alone.
+LaneArray first_archive(Target const& target, std::vector<Mode> const& modes, Eigen::VectorXd const& widths, double power,
+                        StreamKey key) {
+  int const members = std::max(100, 10 * target.dimension());
+  LaneArray archive(target.dimension(), members);
+  if (modes.empty()) {
+    target.sample_prior(key, archive);
+    return archive;
+  }
+  std::vector<Eigen::MatrixXd> factors;
+  for (Mode const& mode : modes) {
+    Eigen::MatrixXd precision = power * inverse(covariance_of(mode));
+    precision.diagonal() += (1 - power) * widths.cwiseAbs2().cwiseInverse();
+    factors.push_back(cholesky_or_diagonal(inverse(precision)));
+  }
+  for (int w = 0; w < members; ++w) {
+    Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
+    double which = stream.uniform();
+    std::size_t m = 0;
+    while (m + 1 < modes.size() && which >= modes[m].share) which -= modes[m++].share;
+    Eigen::VectorXd z(target.dimension());
+    for (double& v : z) v = stream.normal();
+    Eigen::VectorXd const x = theta_of(modes[m]) + factors[m] * z;
+    for (int p = 0; p < target.dimension(); ++p) archive(p, w) = x(p);
+  }
+  return archive;
+}
+
+/// The state before the first iteration, or why there is none.
+std::optional<State> begin(Target const& target, Plan const& plan, RunContext& context, FitResult& result) {
+  State state;
+  LaneArray starts;
+  if (plan.global) {
+    SearchResult found = context.modes.empty() ? search(target, ObjectiveKind::posterior, context)
+                                               : SearchResult{context.modes, context.mode_findings, {}, false};
+    result.interrupted = found.interrupted;
+    result.failure = found.failure;
+    if (found.interrupted || found.failure) return std::nullopt;
+    starts = overdispersed_starts(target, found.modes, spread_over_modes(found.modes, plan.columns()), context);
+    state.modes = std::move(found.modes);
+    state.findings = std::move(found.findings);
+  } else {
+    std::optional<LaneArray> drawn = prior_starts(target, plan.columns(), context);
+    if (!drawn) {
+      result.failure = no_finite_start(context.ledger, 1000);
+      return std::nullopt;
+    }
+    starts = std::move(*drawn);
+  }
+  state.ladder = Ladder(plan.rungs);
+  constexpr std::uint64_t scale_step = 7'000'000;  // of streams that start this run, beyond those of the search
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, context.seed, scale_step);
+  for (int k = 0; k + 1 < plan.rungs; ++k)
+    state.moves.emplace_back(first_archive(target, state.modes, objective.scale, state.ladder.power(k),
+                                           {context.seed, Purpose::start, 0, scale_step + 1 + static_cast<std::uint64_t>(k)}));
+  state.replicas = metropolis::init(target, std::move(starts), context.ledger);
+  state.record = ChainRecord(target.dimension(), plan.chains);
+  return state;
+}
+
+/// One move of every replica.
+metropolis::Info move(Target const& target, Plan const& plan, std::uint64_t seed, State& state, Ledger& ledger) {
+  auto const columns = static_cast<std::size_t>(plan.columns());
+  LaneArray proposed(target.dimension(), plan.columns()), drawn(target.dimension(), plan.chains);
+  std::vector<char> whole(columns, 0);
+  int const hottest = plan.columns() - plan.chains;
+  auto const key = [&](Purpose purpose, int w) { return StreamKey{seed, purpose, static_cast<std::uint64_t>(w), state.next}; };
+  for (int w = 0; w < hottest; ++w)
+    whole[static_cast<std::size_t>(w)] = state.moves[static_cast<std::size_t>(w / plan.chains)].propose(
+        key(Purpose::proposal, w), state.replicas.theta, w, proposed, w);
+  target.sample_prior(key(Purpose::proposal, hottest), drawn);
+  for (int c = 0; c < plan.chains; ++c)
+    for (int p = 0; p < target.dimension(); ++p) proposed(p, hottest + c) = drawn(p, c);
+
+  std::vector<double> log_prior(columns), log_likelihood(columns);
+  target.log_prior(proposed, log_prior);
+  target.log_likelihood(proposed, log_likelihood, ledger);
+  metropolis::Info info(columns);
+  for (std::size_t w = 0; w < columns; ++w) {
+    auto const lane = static_cast<int>(w);
+    // A draw from the prior is accepted there wherever the model can be solved.
+    double const log_reverse = lane >= hottest ? state.replicas.log_prior[w] - log_prior[w] : 0;
+    info[w] = metropolis::decide(key(Purpose::accept, lane), state.replicas, w, proposed, lane, log_prior[w], log_likelihood[w],
+                                 {log_reverse, state.ladder.power(lane / plan.chains)});
+    info[w].small = whole[w] != 0;
+  }
+  return info;
+}
+
+/// Exchanges even pairs of neighbours at even iterations, odd ones at odd: states that move up go on upwards.
+void exchange(Plan const& plan, std::uint64_t seed, State& state, metropolis::Info& info) {
+  metropolis::State& replicas = state.replicas;
+  for (int k = static_cast<int>(state.next % 2); k + 1 < plan.rungs; k += 2)
+    for (int c = 0; c < plan.chains; ++c) {
+      int const below = k * plan.chains + c, above = below + plan.chains;
+      auto const a = static_cast<std::size_t>(below), b = static_cast<std::size_t>(above);
+      double const probability = state.ladder.probability(k, replicas.log_likelihood[a], replicas.log_likelihood[b]);
+      state.ladder.count(k, probability);
+      Stream stream({seed, Purpose::exchange, static_cast<std::uint64_t>(below), state.next});
+      if (stream.uniform() >= probability) continue;
+      for (int p = 0; p < replicas.theta.rows(); ++p) std::swap(replicas.theta(p, below), replicas.theta(p, above));
+      std::swap(replicas.log_prior[a], replicas.log_prior[b]);
+      std::swap(replicas.log_likelihood[a], replicas.log_likelihood[b]);
+      info[a].accepted = true;
+    }
+}
+
+void learn(Plan const& plan, metropolis::Info const& info, State& state) {
+  for (std::size_t k = 0; k < state.moves.size(); ++k)
+    state.moves[k].learn(state.replicas, info, static_cast<int>(k) * plan.chains, plan.chains);
+  state.record.count_burn_in({info.begin(), info.begin() + plan.chains});
+  if (state.next + 1 == plan.burn_in) state.ladder.forget_counts();
+  // The last third of burn-in leaves the powers alone, so that the moves fit those that stay.
+  if (state.next + 1 < state.round_end || 3 * state.next > 2 * plan.burn_in) return;
+  state.ladder.equalise();
+  state.round_end *= 2;
+}
+
+/// Iterates to the end, or until asked to stop; returns whether it was.
+bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
+  Watch watch(context, [&] { return store(state, context.ledger, identity); });
+  context.progress.begin("sampling", plan.samples);
+  bool stopped = false;
+  while (state.next < plan.samples && !(stopped = context.stop_requested())) {
+    metropolis::Info info = move(target, plan, context.seed, state, context.ledger);
+    exchange(plan, context.seed, state, info);
+    if (state.next < plan.burn_in) learn(plan, info, state);
+    for (int c = 0; state.next >= plan.burn_in && c < plan.chains; ++c)
+      state.record.add(c, state.replicas, info[static_cast<std::size_t>(c)], true);
+    ++state.next;
+    watch.look(state.next, state.record.mean_acceptance());
+  }
+  context.progress.end(!stopped);
+  if (stopped) watch.store_now();
+  return stopped;
+}
+
+Findings check_exchange(Plan const& plan, Ladder const& ladder) {
+  double const least = ladder.least_acceptance();
+  if (least >= least_exchange) return {};
+  // Twice the barrier: neighbours are then exchanged about half of the time.
+  int const enough = std::max(plan.rungs + 1, static_cast<int>(std::ceil(2 * ladder.barrier())) + 1);
+  return {{FindingCode::replicas_do_not_mix,
+           Severity::warning,
+           {},
+           fmt::format("states hardly pass between the prior and the posterior: {:.2g} of the exchanges between two neighbouring "
+                       "temperatures are accepted",
+                       least),
+           fmt::format("use temperatures = {}", std::min(enough, 512))}};
+}
+
+}  // namespace
+
+std::span<SettingRow const> settings() { return rows; }
+
+std::string refuse(Settings const& settings) {
+  std::int64_t const samples = settings.integer("samples"), burn_in = settings.integer("burn_in"), thin = settings.integer("thin");
+  if (burn_in >= samples)
+    return fmt::format("burn_in ({}) must be smaller than samples ({}), which counts all iterations", burn_in, samples);
+  if (thin > samples - burn_in)
+    return fmt::format("thin ({}) is more than the {} iterations left after burn-in, so no draw would be kept", thin,
+                       samples - burn_in);
+  if (std::int64_t const kept = (samples - burn_in) * settings.integer("chains"); kept > most_kept)
+    return fmt::format("{} iterations would be kept in memory, more than {}: use fewer samples", kept, most_kept);
+  return {};
+}
+
+FitResult run(Target const& target, Settings const& settings, RunContext& context) {
+  FitResult result;
+  result.settings = settings;
+  Plan const plan = plan_of(settings);
+  nlohmann::json const identity = checkpoint::identity("tempering", settings, context.seed, target);
+  std::optional<State> state;
+  if (context.resume) {
+    result.failure = checkpoint::refuse(*context.resume, identity);
+    if (result.failure) return result;
+    // A run stopped during its search has nothing but its identity to resume from.
+    if (context.resume->contains("next")) {
+      try {
+        state = restore(*context.resume, target, plan, context.ledger);
+      } catch (checkpoint::Mismatch const& mismatch) {
+        result.failure = checkpoint::unusable(mismatch.what());
+      } catch (nlohmann::json::exception const&) {
+        result.failure = checkpoint::unusable("it is damaged");
+      }
+      if (result.failure) return result;
+    }
+  }
+  if (!state) state = begin(target, plan, context, result);
+  if (!state) {
+    if (result.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
+    return result;
+  }
+
+  result.interrupted = sample(target, plan, context, identity, *state);
+  state->record.write(target, plan.thin, true, result);
+  result.acceptance_rate = state->record.acceptance_rate();
+  result.distinct_states = state->record.distinct_states();
+  result.modes = state->modes;
+  result.findings = state->findings;
+  result.search_told = plan.global;
+  if (result.draws.total() > 0) {
+    result.summaries = summarise(result);
+    for (Finding& finding : check_exchange(plan, state->ladder)) result.findings.push_back(std::move(finding));
+    for (Finding& finding : check_chains({result.summaries, result.acceptance_rate, result.distinct_states, true}))
+      result.findings.push_back(std::move(finding));
+  }
+  return result;
+}
+
+}  // namespace sysid::tempering
