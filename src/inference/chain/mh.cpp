@@ -218,7 +218,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     watch.look(state);
   }
   context.progress.end(!stopped);
-  if (stopped && context.checkpoint) context.checkpoint(store(state, context.ledger, identity));
+  if ((stopped || context.checkpoint_end) && context.checkpoint) context.checkpoint(store(state, context.ledger, identity));
   return stopped;
 }
 
