@@ -13,7 +13,7 @@
 
 using namespace sysid;
 using namespace sysid::testing;
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -48,7 +48,7 @@ ExportedRun short_fit() {
   return ExportedRun(model, with(read_file(model), "samples = 6000, burn_in = 2000", "samples = 400, burn_in = 100"));
 }
 
-void seal(fs::path const& folder, json summary) {
+void seal(fs::path const& folder, Json summary) {
   summary["versions"]["summary_sha256"] = unsealed();
   write_file(folder / "summary.json", sealed_summary(summary.dump(2) + "\n"));
 }
@@ -60,7 +60,7 @@ std::set<std::string> names_in(fs::path const& folder) {
 }
 
 /// What a member can be replaced by.
-std::vector<json> replacements() {
+std::vector<Json> replacements() {
   return {nullptr,
           true,
           3,
@@ -69,9 +69,9 @@ std::vector<json> replacements() {
           "word",
           "../../up",
           std::string("a\0b", 3),
-          json::array(),
-          json::array({1}),
-          json::object(),
+          Json::array(),
+          Json::array({1}),
+          Json::object(),
           {{"a", 1}},
           std::string(1000, 'x')};
 }
@@ -107,13 +107,13 @@ TEST_CASE("numbers that were changed, files that are not there and other version
   both("summary.json` ");
   write_file(summary, "");
   both("summary.json` ");
-  json other = json::parse(text);
+  Json other = Json::parse(text);
   other["versions"]["form"] = 1;
   seal(fit, other);
   both("was written by another version of sysid");
   // A file that was changed with its digest is a table, or is none.
   write_file(chain, draws.substr(0, draws.size() / 2));
-  other = json::parse(text);
+  other = Json::parse(text);
   other["versions"]["files"]["draws_1.csv"] = sha256(read_file(chain));
   seal(fit, other);
   CHECK(exported(fit).find("draws_1.csv` is damaged") != std::string::npos);
@@ -125,23 +125,24 @@ TEST_CASE("whatever a sealed summary holds, export, compare and report read it o
   for (char const* task : {"posterior", "forecast"}) {
     fs::path const folder = run.results() / task;
     std::string const text = read_file(folder / "summary.json");
-    json const original = json::parse(text);
+    Json const original = Json::parse(text);
     exported(folder);
     auto const names = names_in(run.results());
-    std::vector<json> const values = replacements();
+    std::vector<Json> const values = replacements();
     std::size_t next = 0, refused = 0;
     std::vector<std::string> pointers;
-    for (auto const& [pointer, value] : original.flatten().items())
+    Json const flat = original.flatten();
+    for (auto const& [pointer, value] : flat.items())
       for (std::string part = pointer; !part.empty(); part.resize(part.rfind('/')))
         if (std::find(pointers.begin(), pointers.end(), part) == pointers.end()) pointers.push_back(part);
     REQUIRE(pointers.size() > 40);
     for (std::string const& pointer : pointers) {
       for (int k = 0; k < 5; ++k) {
-        json forged = original;
-        forged[json::json_pointer(pointer)] = values[next++ % values.size()];
+        Json forged = original;
+        forged[Json::json_pointer(pointer)] = values[next++ % values.size()];
         if (!forged.is_object() || !forged.contains("versions") || !forged["versions"].is_object()) continue;
         CAPTURE(pointer);
-        CAPTURE(forged[json::json_pointer(pointer)].dump());
+        CAPTURE(forged[Json::json_pointer(pointer)].dump());
         seal(folder, forged);
         refused += exported(folder).empty() ? 0 : 1;
         refused += compared(folder).empty() ? 0 : 1;
@@ -161,9 +162,9 @@ TEST_CASE("whatever a sealed summary holds, export, compare and report read it o
 TEST_CASE("names that no file or variable can have are refused") {
   ExportedRun const run = short_fit();
   fs::path const fit = run.results() / "posterior";
-  json const original = json::parse(read_file(fit / "summary.json"));
+  Json const original = Json::parse(read_file(fit / "summary.json"));
   for (std::string const& task : {std::string("../escaped"), std::string("a/b"), std::string(".hidden"), std::string("a\0b", 3)}) {
-    json forged = original;
+    Json forged = original;
     forged["task"] = task;
     seal(fit, forged);
     CHECK(exported(fit).find("summary.json` is damaged") != std::string::npos);
@@ -173,8 +174,8 @@ TEST_CASE("names that no file or variable can have are refused") {
   std::string const first = original.at("parameters").begin().key();
   for (std::string const& name : {std::string(300, 'n'), std::string(" "), std::string("tab\there")}) {
     CAPTURE(name);
-    json forged = original;
-    json parameters = json::object();
+    Json forged = original;
+    Json parameters = Json::object();
     for (auto const& [key, value] : original.at("parameters").items()) parameters[key == first ? name : key] = value;
     forged["parameters"] = parameters;
     for (auto const& [file, digest] : original.at("versions").at("files").items()) {
@@ -201,7 +202,7 @@ TEST_CASE("the model of results is read where they name a model, and no other fi
   fs::path const fit = run.results() / "posterior";
   CHECK(find_results(fit).file.string().ends_with("regression.sysid"));
   for (char const* other : {"/etc/passwd", "/dev/zero", "notes.txt"}) {
-    json timing = json::parse(read_file(fit / "timing.json"));
+    Json timing = Json::parse(read_file(fit / "timing.json"));
     timing["file"] = other;
     write_file(fit / "timing.json", timing.dump());
     CHECK(find_results(fit).file.empty());
