@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/numeric/unit.hpp"
 #include "core/text/utf8.hpp"
 #include "core/text/words.hpp"
 
@@ -52,6 +53,26 @@ bool is_time_stamp(std::string_view text) {
 }
 
 /// `1,234.5`, `1.234,5`, `1'234`: a number whose digits stand in groups of three, as it is to be written; else empty.
+/// What stands in brackets or alone, where it is products and powers of known units; else empty. A model of unknown origin may name
+/// any file as data, so what is no unit is not repeated.
+std::string as_unit(std::string_view text) {
+  constexpr std::size_t longest = 24;
+  for (std::string_view const pair : {"[]", "()"})
+    if (text.size() > 2 && text.front() == pair[0] && text.back() == pair[1]) text = text.substr(1, text.size() - 2);
+  constexpr std::ptrdiff_t exponents = 4;  // digits
+  if (text.empty() || text.size() > longest || std::count_if(text.begin(), text.end(), is_digit) > exponents) return {};
+  constexpr std::string_view between = " */^().0123456789+-";
+  bool any = false;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t const begin = text.find_first_not_of(between, at);
+    if (begin == std::string_view::npos) break;
+    at = std::min(text.find_first_of(between, begin), text.size());
+    if (!unit_atom(text.substr(begin, at - begin))) return {};
+    any = true;
+  }
+  return any ? std::string(text) : std::string();
+}
+
 std::string without_groups(std::string_view text) {
   if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.size() - 2);
   std::string out;
@@ -169,10 +190,13 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
 }
 
 Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention) {
+  std::string const unit = as_unit(text);
   return error("E4010", mention,
                fmt::format("{} holds words, not numbers: it seems to be a row of units below the header",
                            place(cell.file, cell.row, cell.line)),
-               fmt::format("delete this line; units are written in the data block: `{} [{}]`", cell.column, shown(text)));
+               unit.empty()
+                   ? fmt::format("delete this line; units are written in the data block, in brackets behind `{}`", cell.column)
+                   : fmt::format("delete this line; units are written in the data block: `{} [{}]`", cell.column, unit));
 }
 
 Diagnostic unknown_separator(std::string const& file, int line, std::string_view separator, Mention mention) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 
@@ -20,6 +21,52 @@ std::optional<double> contraction(PriorInfo const& prior, Summary const& summary
   auto const [low, high] = interval_90(summary);
   double const ratio = (*prior.q95 - *prior.q5) / (high - low);
   return std::isfinite(ratio) && ratio > 0 ? std::optional(ratio) : std::nullopt;
+}
+
+namespace {
+
+/// Of a log-normal prior whose median stands where the mean of the logarithm was meant, or the other way round: the data lie within
+/// its 90 % interval when it is read so. Else empty.
+std::string other_reading(PriorInfo const& prior, double place) {
+  if (!prior.numbers || prior.numbers->distribution != "log_normal" || !(place > 0)) return {};
+  double const median = prior.numbers->arguments[0] / prior.numbers->scale,
+               width = normal_quantile_95 * prior.numbers->arguments[1];
+  if (std::abs(elementary::log(place) - median) <= width)
+    return fmt::format(
+        "; if {0:.10g} is meant as the mean of the logarithm, write `log_normal(log_mean = {0:.10g}, log_sd = {1:.10g})`", median,
+        prior.numbers->arguments[1]);
+  double const log_mean = elementary::log(median);
+  if (log_mean > 0 && std::abs(elementary::log(place / log_mean)) <= width)
+    return fmt::format("; if {0:.10g} is meant as the median, write `log_normal(median = {0:.10g}, log_sd = {1:.10g})`", log_mean,
+                       prior.numbers->arguments[1]);
+  return {};
+}
+
+}  // namespace
+
+Findings check_priors(Report const& report) {
+  Findings findings;
+  for (PriorInfo const& prior : report.priors)
+    for (Summary const& summary : report.summary) {
+      if (summary.name != prior.name || summary.coefficient || !prior.lowest || !prior.highest) continue;
+      double const place = std::isfinite(summary.median) ? summary.median : summary.mean;
+      bool const below = place < *prior.lowest;
+      if (!below && !(place > *prior.highest)) continue;
+      // A prior that ends there has no tail to be in: that is another finding.
+      constexpr double tail = 0.1;  // of the density where 5 % lie beyond
+      if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95)) continue;
+      std::string const unit = prior.unit.empty() ? "" : " " + prior.unit;
+      findings.push_back({FindingCode::prior_contradicted,
+                          Severity::warning,
+                          {prior.name},
+                          fmt::format("{} is estimated as {}{}, but its prior gives a probability of 0.0005 to values {} {}{}",
+                                      prior.name, significant(place, 4), unit, below ? "below" : "above",
+                                      significant(below ? *prior.lowest : *prior.highest, 4), unit),
+                          "data and prior disagree, and the posterior is a compromise: widen the prior, or find the cause in the "
+                          "data or the model" +
+                              other_reading(prior, place)});
+    }
+  return findings;
 }
 
 std::string times_apart(double ratio) {

@@ -1,11 +1,12 @@
-// What the data say of a prior: how much they narrowed it, and whether it predicts responses of another size than the measured
-// ones.
+// What the data say of a prior: how much they narrowed it, whether they contradict it, and whether it predicts responses of another
+// size than the measured ones.
 #pragma once
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "result/finding.hpp"
 #include "result/report.hpp"
 
 namespace sysid {
@@ -18,6 +19,9 @@ std::optional<double> contraction(PriorInfo const& prior, Summary const& summary
 
 /// The posterior's 90 % interval; of an optimum that of its normal approximation.
 std::pair<double, double> interval_90(Summary const& summary);
+
+/// Parameters whose posterior lies where their prior has next to nothing.
+Findings check_priors(Report const& report);
 
 /// Further apart than this many times: a wrong unit or a wild prior. Medians of the shipped models lie within a factor of 5.2 of
 /// what was measured, so that a unit a thousand times too large or small shows in each of them, by 190 and more.

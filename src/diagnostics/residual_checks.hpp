@@ -1,5 +1,5 @@
 // What a fit leaves unexplained, experiment by experiment and channel by channel: how much of it there is, of which size, and
-// whether it is noise; and which priors it contradicts.
+// whether it is noise.
 #pragma once
 #include <string>
 #include <vector>
@@ -24,9 +24,6 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
 /// Where a fit explains little: adds to the help which parameters have kept the width of their prior, which may hold others where
 /// they cannot fit.
 void name_held(Report const& report, Findings& findings);
-
-/// Parameters whose posterior lies where their prior has next to nothing.
-Findings check_priors(Report const& report);
 
 /// `worse_than_the_mean` of a channel, with what to do.
 Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,

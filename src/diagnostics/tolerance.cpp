@@ -10,6 +10,7 @@
 #include "core/text/words.hpp"
 #include "search/laplace.hpp"
 #include "search/refit.hpp"
+#include "search/search_step.hpp"
 #include "search/work_left.hpp"
 
 namespace sysid {
@@ -89,15 +90,34 @@ LaneArray failing(LaneArray const& theta, std::vector<double> const& density) {
   return result;
 }
 
-void try_stiff(MakeTarget const& make, LaneArray const& lost, SearchSolver& result) {
+/// Log likelihoods of prior draws, kept in blocks: with the finest solver a block takes as long as a search of many more draws.
+class Trials {
+ public:
+  Trials(std::function<bool()> const& stop, Journal* journal) : stop_(stop), journal_(journal) {}
+
+  std::vector<double> log_likelihood(Target const& target, ConstLanes theta) {
+    constexpr int block = 128;
+    return kept_values(journal_, "trial of a solver", theta.width(), block, ignored_, stop_, [&](int first, int count) {
+      std::vector<double> out(static_cast<std::size_t>(count));
+      target.log_likelihood(theta.columns(first, count), out, ignored_);
+      return out;
+    });
+  }
+  bool stopped() const { return stop_ && stop_(); }
+
+ private:
+  std::function<bool()> const& stop_;
+  Journal* journal_;
+  Ledger ignored_;
+};
+
+void try_stiff(MakeTarget const& make, LaneArray const& lost, Trials& trials, SearchSolver& result) {
   constexpr double budget = 4e5;  // steps of all draws together: about a second
   SolverSettings solver{.method = std::string(stiff_solver().name), .relative = of_a_trial};
   double const intervals = std::max(1.0, static_cast<double>(make(result.solver)->residual_count()) * lost.width());
   solver.steps = static_cast<int>(std::clamp(budget / intervals, 20.0, 1000.0));
   auto const target = make(solver);
-  std::vector<double> density(static_cast<std::size_t>(lost.width()));
-  Ledger ignored;
-  target->log_likelihood(lost, density, ignored);
+  std::vector<double> const density = trials.log_likelihood(*target, lost);
   result.tried = lost.width();
   result.followed =
       static_cast<int>(std::count_if(density.begin(), density.end(), [](double value) { return std::isfinite(value); }));
@@ -105,7 +125,8 @@ void try_stiff(MakeTarget const& make, LaneArray const& lost, SearchSolver& resu
 
 }  // namespace
 
-SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed) {
+SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed,
+                           std::function<bool()> const& stop, Journal* journal) {
   SearchSolver result{from, 0};
   if (!from.fixed_step()) return result;
   constexpr int draws = 256;
@@ -113,14 +134,14 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
   double least = 1;
   SolverSettings solver = from;
   LaneArray lost(0, 0);
+  Trials trials(stop, journal);
   for (int factor = 1; factor <= 64; factor *= 4) {
     solver.substeps = from.substeps * factor;
     auto const target = make(solver);
     LaneArray theta(target->dimension(), draws);
     target->sample_prior({seed, Purpose::start, 0, probe_step}, theta);
-    std::vector<double> density(draws);
-    Ledger ignored;
-    target->log_likelihood(theta, density, ignored);
+    std::vector<double> const density = trials.log_likelihood(*target, theta);
+    if (trials.stopped()) return result;
     double const failed =
         static_cast<double>(std::count_if(density.begin(), density.end(), [](double v) { return !std::isfinite(v); })) / draws;
     if (factor == 1) result.failed_as_given = failed;
@@ -132,7 +153,7 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
     if (failed <= tolerable) break;
   }
   result.failed = least;
-  if (least > tolerable) try_stiff(make, lost, result);
+  if (least > tolerable) try_stiff(make, lost, trials, result);
   return result;
 }
 
@@ -245,9 +266,9 @@ RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind object
 }
 
 double move_to_finer(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
-                     Ledger& ledger) {
+                     Ledger& ledger, std::function<bool()> const& stop, Journal* journal) {
   std::vector<double> gains;
-  std::vector<Mode> const finer = refit(fine, objective_kind, modes, seed, ledger, {}, &gains);
+  std::vector<Mode> const finer = refit(fine, objective_kind, modes, seed, ledger, stop, &gains, journal);
   return largest_of_weight(fine, modes, finer, gains).size();
 }
 

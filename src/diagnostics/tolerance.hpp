@@ -36,7 +36,9 @@ struct SearchSolver {
   /// Whether a large part of the prior is lost to explicit steps that an implicit method follows.
   bool stiff() const { return 2 * followed > tried; }
 };
-SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed);
+/// `stop` ends it early, with nothing that can be used.
+SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed,
+                           std::function<bool()> const& stop = {}, Journal* journal = nullptr);
 
 /// The first of `from`, `from.finer()`, ... for which no mode moves or changes its width by more than `tolerable_move` sds at the
 /// next one; the modes there, those that came together counted once, those that only a coarser solver could reach left out. Where
@@ -55,9 +57,10 @@ struct RefinedSolver {
 RefinedSolver find_converged_solver(MakeTarget const& make, ObjectiveKind objective_kind, SolverSettings const& from,
                                     std::vector<Mode> modes, RunContext& context);
 
-/// How far the weightiest of `modes` moves on `fine` [sd], infinite where it is not finite there.
+/// How far the weightiest of `modes` moves on `fine` [sd], infinite where it is not finite there. `stop` ends it early, with a
+/// number that means nothing.
 double move_to_finer(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
-                     Ledger& ledger);
+                     Ledger& ledger, std::function<bool()> const& stop = {}, Journal* journal = nullptr);
 
 /// Those of `modes` that have come together, once, with their weights and hits.
 std::vector<Mode> merged(std::vector<Mode> const& modes);

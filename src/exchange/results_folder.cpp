@@ -14,10 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Where a folder comes from nobody knows: what it names is read, and quoted in messages, only if it is called a model.
 std::string recorded_file(fs::path const& folder) {
   if (!fs::exists(folder / "timing.json")) return {};
-  auto const timing = nlohmann::json::parse(read_file(folder / "timing.json"), nullptr, false);
-  return timing.is_object() && timing.contains("file") && timing["file"].is_string() ? timing["file"].get<std::string>() : "";
+  auto const timing = nlohmann::json::parse(read_regular_file(folder / "timing.json"), nullptr, false);
+  std::string const file =
+      timing.is_object() && timing.contains("file") && timing["file"].is_string() ? timing["file"].get<std::string>() : "";
+  return file.ends_with(".sysid") ? file : "";
 }
 
 /// Without a slash behind it; `.` and `..` by their names.

@@ -3,29 +3,51 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "app/session/stored_draws.hpp"
 #include "exchange/refused.hpp"
 #include "report/file/stored_files.hpp"
 
 namespace sysid {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// Members by the user's names. Whatever is none becomes the damage that its reader reports.
+json const& named_members(json const& of, char const* name) {
+  static json const none = json::object();
+  auto const place = of.find(name);
+  json const& members = place == of.end() ? none : *place;
+  if (!members.is_object()) throw std::out_of_range(name);
+  for (auto const& [key, value] : members.items()) {
+    bool const readable =
+        !key.empty() && std::none_of(key.begin(), key.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+    if (!readable || !value.is_object()) throw std::out_of_range(key);
+  }
+  return members;
+}
+
+/// Of a task: it becomes the name of a file.
+void require_name(std::string const& task) {
+  if (task.find_first_of(std::string_view("/\0", 2)) != task.npos || task.starts_with('.')) throw std::out_of_range(task);
+}
+
+}  // namespace
+
 StoredResult read_stored_result(std::filesystem::path const& folder) {
-  StoredResult stored{folder, nlohmann::ordered_json::parse(read_whole_summary(folder))};
+  StoredResult stored{folder, json::parse(read_whole_summary(folder))};
   interpreted(folder / "summary.json", [&] {
-    (void)stored.task(), (void)stored.what(), (void)stored.is(""), (void)stored.seed();
+    require_name(stored.task());
+    (void)stored.what(), (void)stored.is(""), (void)stored.seed();
     (void)stored.summary.at("versions").value("sysid", std::string());
     (void)stored.summary.value("model", std::string());
-    auto const members = [](nlohmann::ordered_json const& of, char const* name) {
-      return of.value(name, nlohmann::ordered_json::object());
-    };
-    nlohmann::ordered_json const parameters = members(stored.summary, "parameters"), models = members(stored.summary, "models");
-    for (auto const& each : parameters)
-      if (each.is_object()) (void)each.value("unit", std::string());
-    for (auto const& model : models) {
+    for (json const& each : named_members(stored.summary, "parameters")) (void)each.value("unit", std::string());
+    for (json const& model : named_members(stored.summary, "models")) {
       (void)model.value("probability", 0.0);
-      for (char const* const name : {"parameters", "polished"}) {
-        nlohmann::ordered_json const summaries = members(model, name);
-        for (auto const& each : summaries) (void)each.value("unit", std::string());
-      }
+      for (char const* const name : {"parameters", "polished"})
+        for (json const& each : named_members(model, name)) (void)each.value("unit", std::string());
     }
     return true;
   });

@@ -7,8 +7,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
-#include "search/journal.hpp"
-#include "search/stored_values.hpp"
+#include "search/search_step.hpp"
 
 namespace sysid {
 
@@ -81,30 +80,8 @@ Eigen::VectorXd column(ConstLanes theta, int lane) {
 std::vector<double> log_density_in_blocks(Objective const& objective, ConstLanes theta, Ledger& ledger,
                                           std::function<bool()> const& stop, Journal* journal) {
   constexpr int block = 512;
-  auto const width = static_cast<std::size_t>(theta.width());
-  std::vector<double> out;
-  if (nlohmann::json const* const kept = journal == nullptr ? nullptr : journal->begin("densities")) {
-    out = checkpoint::decode(kept->at("values"));
-    if (out.size() > width || (out.size() < width && (journal->finished() || out.size() % block != 0)))
-      throw checkpoint::Mismatch("its densities differ in number");
-    ledger = checkpoint::decode_ledger(kept->at("ledger"));
-    if (journal->finished()) return out;
-  }
-  auto const state = [&]() -> nlohmann::json {
-    return {{"values", checkpoint::encode(std::span<double const>(out))}, {"ledger", checkpoint::encode(ledger)}};
-  };
-  for (int first = static_cast<int>(out.size()); first < theta.width(); first += block) {
-    if (stop && stop()) {
-      out.resize(width, -std::numeric_limits<double>::infinity());
-      return out;
-    }
-    if (journal != nullptr && journal->wants()) journal->reached(state());
-    int const count = std::min(block, theta.width() - first);
-    std::vector<double> const part = objective.log_density(theta.columns(first, count), ledger);
-    out.insert(out.end(), part.begin(), part.end());
-  }
-  if (journal != nullptr && !(stop && stop())) journal->finish(state());
-  return out;
+  return kept_values(journal, "densities", theta.width(), block, ledger, stop,
+                     [&](int first, int count) { return objective.log_density(theta.columns(first, count), ledger); });
 }
 
 }  // namespace sysid

@@ -35,6 +35,8 @@ struct RunContext {
   Findings mode_findings = {};  // of that search
   /// Keeps the steps of a search; null: an interrupted one begins anew.
   Journal* journal = nullptr;
+  /// Whether `checkpoint` is given the state at the end, too: for runs that are parts of one task.
+  bool checkpoint_end = false;
 
   bool stop_requested() const { return interrupted && interrupted(); }
 };

@@ -1,7 +1,9 @@
 // Encodes climbers; every size is checked when they come back.
 #include "search/search_step.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "search/stored_values.hpp"
@@ -80,6 +82,35 @@ void ClimbingStep::reached(LoopPlace const& place, std::function<std::vector<dou
 
 void ClimbingStep::finish() {
   if (journal_ != nullptr) journal_->finish(state());
+}
+
+std::vector<double> kept_values(Journal* journal, std::string_view kind, int width, int block, Ledger& ledger,
+                                std::function<bool()> const& stop,
+                                std::function<std::vector<double>(int first, int count)> const& compute) {
+  auto const whole = static_cast<std::size_t>(width), part = static_cast<std::size_t>(block);
+  std::vector<double> out;
+  if (nlohmann::json const* const kept = journal == nullptr ? nullptr : journal->begin(kind)) {
+    out = checkpoint::decode(kept->at("values"));
+    if (out.size() > whole || (out.size() < whole && (journal->finished() || out.size() % part != 0)))
+      throw checkpoint::Mismatch("its densities differ in number");
+    ledger = checkpoint::decode_ledger(kept->at("ledger"));
+    if (journal->finished()) return out;
+  }
+  auto const state = [&]() -> nlohmann::json {
+    return {{"values", checkpoint::encode(std::span<double const>(out))}, {"ledger", checkpoint::encode(ledger)}};
+  };
+  while (out.size() < whole) {
+    if (stop && stop()) {
+      out.resize(whole, -std::numeric_limits<double>::infinity());
+      return out;
+    }
+    if (journal != nullptr && journal->wants()) journal->reached(state());
+    int const first = static_cast<int>(out.size());
+    std::vector<double> const more = compute(first, std::min(block, width - first));
+    out.insert(out.end(), more.begin(), more.end());
+  }
+  if (journal != nullptr && !(stop && stop())) journal->finish(state());
+  return out;
 }
 
 Mode kept_mode(Journal* journal, Ledger& ledger, std::function<bool()> const& stop, std::function<Mode()> const& compute) {

@@ -46,6 +46,12 @@ class ClimbingStep {
 /// Appends a matrix or vector of known size.
 void append(std::vector<double>& values, Eigen::MatrixXd const& matrix);
 
+/// The numbers of so many columns, which `compute(first, count)` makes in blocks. `stop` is asked before each block; what it leaves
+/// out is -infinity.
+std::vector<double> kept_values(Journal* journal, std::string_view kind, int width, int block, Ledger& ledger,
+                                std::function<bool()> const& stop,
+                                std::function<std::vector<double>(int first, int count)> const& compute);
+
 /// The mode that `compute` makes, or what is kept of it. Of no worth where `stop` says so afterwards.
 Mode kept_mode(Journal* journal, Ledger& ledger, std::function<bool()> const& stop, std::function<Mode()> const& compute);
 

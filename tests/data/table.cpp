@@ -169,6 +169,24 @@ TEST_CASE("a row of units under the header is named, words elsewhere are not tak
   CHECK(error_of("t,y\na,mm\nb,km\n", "y").message.find("units") == std::string::npos);
 }
 
+TEST_CASE("of a row of words under a header only a unit is repeated") {
+  struct {
+    char const *cell, *repeated;
+  } const units[] = {{"N", "`y [N]`"}, {"[N/mm]", "`y [N/mm]`"}, {"(m s^-2)", "`y [m s^-2]`"}, {"kg m^2", "`y [kg m^2]`"}};
+  for (auto const& [cell, repeated] : units) {
+    CAPTURE(cell);
+    CHECK(error_of(std::string("t,y\ns,") + cell + "\n0,1\n1,2\n", "y").help.find(repeated) != std::string::npos);
+  }
+  for (char const* cell :
+       {"hunter2", "[hunter2]", "root:x:0", "s3cret m", "4111111111 m", "N m password", "a-key-of-32-characters-aaaaaaaaa"}) {
+    CAPTURE(cell);
+    Diagnostic const error = error_of(std::string("t,y\ns,") + cell + "\n0,1\n1,2\n", "y");
+    CHECK(error.message.find("a row of units") != std::string::npos);
+    CHECK((error.message + error.help).find(cell) == std::string::npos);
+    CHECK(error.help.find("in brackets behind `y`") != std::string::npos);
+  }
+}
+
 TEST_CASE("a line that states the separator is read, and is a name where it stands below") {
   CHECK(parse("sep=;\na;b\n1;2\n").numbers("b") == Numbers{2});
   CHECK(parse("sep=\t\na\tb\n1\t2\n").numbers("b") == Numbers{2});

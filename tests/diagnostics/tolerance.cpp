@@ -4,8 +4,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "inference/targets.hpp"
+#include "search/journal.hpp"
 #include "search/refit.hpp"
 #include "search/search.hpp"
 
@@ -268,4 +271,52 @@ TEST_CASE("a stiff part of the prior is named where an implicit solver follows w
   CHECK(search_of(true).stiff());
   CHECK(search_of(true).failed == doctest::Approx(0.5).epsilon(0.2));
   CHECK_FALSE(search_of(false).stiff());
+}
+
+TEST_CASE("the trials of solvers for a search go on where they were interrupted") {
+  // Every step fails at two draws in three, an implicit solver follows: all trials are made. From the call on that is named, in its
+  // middle, all is worthless.
+  struct Tried {
+    SearchSolver found;
+    int calls = 0;
+    nlohmann::json kept;
+  };
+  auto const tried = [](int last, nlohmann::json const& stored) {
+    Tried result;
+    Journal journal([&](nlohmann::json const& steps) { result.kept = steps; }, 0, stored.is_null() ? nullptr : &stored);
+    struct Counting : TestTarget {
+      Counting(bool stiff, int last, int& calls)
+          : TestTarget(
+                {"x"}, {{Prior::normal, 0, 10}}, 1, 0,
+                [=](std::vector<double> const& w, std::vector<double>& out) { out[0] = stiff || w[0] < -4 ? w[0] : std::nan(""); }),
+            last_(last),
+            calls_(calls) {}
+      void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override {
+        TestTarget::log_likelihood(theta, out, ledger);
+        if (++calls_ >= last_)
+          for (double& value : out) value = -infinity;
+      }
+      int last_;
+      int& calls_;
+    };
+    result.found = search_solver(
+        [&](SolverSettings const& solver) { return std::make_unique<Counting>(solver.row().stiff, last, result.calls); },
+        SolverSettings{}, 1, [&] { return result.calls >= last; }, &journal);
+    journal.save();
+    return result;
+  };
+  constexpr int never = std::numeric_limits<int>::max();
+  Tried const whole = tried(never, nullptr);
+  REQUIRE(whole.calls > 4);
+  REQUIRE(whole.found.stiff());
+  for (int call = 1; call <= whole.calls; ++call) {
+    CAPTURE(call);
+    Tried const first = tried(call, nullptr), rest = tried(never, first.kept);
+    CHECK(rest.calls + first.calls - 1 == whole.calls);
+    CHECK(rest.found.solver == whole.found.solver);
+    CHECK(rest.found.failed == whole.found.failed);
+    CHECK(rest.found.failed_as_given == whole.found.failed_as_given);
+    CHECK(rest.found.tried == whole.found.tried);
+    CHECK(rest.found.followed == whole.found.followed);
+  }
 }

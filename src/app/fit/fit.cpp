@@ -6,6 +6,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "app/fit/advice.hpp"
 #include "app/fit/fit_checks.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/session/fit_end.hpp"
@@ -21,7 +22,6 @@
 #include "data/start_rule.hpp"
 #include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
-#include "experiment/sticking.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence.hpp"
 #include "inference/table.hpp"
@@ -61,6 +61,8 @@ class Fit {
     if (stored && stored->contains("preparation")) {
       preparation_ = checkpoint_.preparation(*stored);
       if (stored->contains("state")) context.resume = std::make_shared<json const>(stored->at("state"));
+      if (stored->contains("again") && !go_on_choosing(stored->at("again")))
+        return stop_late(session_, task_, checkpoint_, preparation_);
     } else if (!prepare(stored.get())) {
       return stop_early(session_, task_, checkpoint_);
     }
@@ -70,18 +72,22 @@ class Fit {
       if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
       check_draws_of(result);
       if (!to_be_chosen_again(result)) return finish(std::move(result));
-      if (!choose_again(context)) return stop_late(session_, task_, checkpoint_, preparation_);
+      session_.notices << fmt::format("{}: sampling again with a finer solver: {}\n", task_.name,
+                                      tolerance_findings(*accuracy_, preparation_.solver, true).front().message);
+      context.resume = {};
+      if (!choose_again(fine_enough(preparation_.solver, accuracy_->largest()), nullptr))
+        return stop_late(session_, task_, checkpoint_, preparation_);
     }
   }
 
  private:
   // Without checkpoints and known modes.
   RunContext searching(Ledger& ledger) {
-    return {seed_,  session_.progress,
-            ledger, [this] { return session_.interrupted(); },
-            {},     session_.options.checkpoint_interval,
-            {},     {},
-            {},     nullptr};
+    return {.seed = seed_,
+            .progress = session_.progress,
+            .ledger = ledger,
+            .interrupted = [this] { return session_.interrupted(); },
+            .checkpoint_interval = session_.options.checkpoint_interval};
   }
 
   FitResult sample(RunContext& context) {
@@ -89,7 +95,10 @@ class Fit {
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     FitResult result = backend_.run(target, what_.settings, context);
-    if (result.failure) throw UserError(no_result(task_, with_other_solver(std::move(*result.failure), ledger_)));
+    if (result.failure) {
+      advise({model_, data_, preparation_.solver, ledger_}, *result.failure);
+      throw UserError(no_result(task_, *result.failure));
+    }
     return result;
   }
 
@@ -115,47 +124,54 @@ class Fit {
            fine_enough(preparation_.solver, accuracy_->largest()).within_limits();
   }
 
-  // False: interrupted; the first solver then stays.
-  bool choose_again(RunContext& context) {
+  // The solver from `finer` on; steps: what an interrupted run has kept of it, or null. False: interrupted, and kept with what was
+  // sampled for the first solver, which then stays.
+  bool choose_again(SolverSettings const& finer, json const* steps) {
     Preparation again = preparation_;
-    SolverSettings const finer = fine_enough(preparation_.solver, accuracy_->largest());
-    RunContext searching_again = searching(again.ledger);
+    RunContext context = searching(again.ledger);
     MakeTarget const make = [this](SolverSettings const& solver) { return interruptible_target(solver); };
-    session_.notices << fmt::format("{}: sampling again with a finer solver: {}\n", task_.name,
-                                    tolerance_findings(*accuracy_, preparation_.solver, true).front().message);
-    if (!refine_solver(session_, task_, make, backend_.objective_kind, finer, again, searching_again)) return false;
+    auto const content = [&](json const& kept) -> json {
+      return {{"preparation", store(preparation_)},
+              {"again", {{"solver", write_solver(finer)}, {"ledger", checkpoint::encode(ledger_)}, {"journal", kept}}}};
+    };
+    bool const chosen = checkpoint_.keep_steps(steps, content, [&](Journal& journal) {
+      context.journal = &journal;
+      bool const ended = refine_solver(session_, task_, make, backend_.objective_kind, finer, again, context);
+      if (!ended) journal.save();  // the sampling before is not done again
+      return ended;
+    });
+    if (!chosen) return false;
     preparation_ = std::move(again);
     preparation_.ledger.merge(ledger_);
     ledger_ = {};
-    context.resume = {};
+    if (checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
     return true;
   }
 
-  // What a solver has to do with a failure stands in its help: searches and back ends know of none.
-  Finding with_other_solver(Finding failure, Ledger const& ledger) const {
-    if (failure.code != FindingCode::no_finite_start || !model_.integrated()) return failure;
-    if (std::string const advice = solver_advice(preparation_.solver, ledger); !advice.empty()) failure.help += "; " + advice;
-    return failure;
+  // Where a run was interrupted in `choose_again`.
+  bool go_on_choosing(json const& stored) {
+    SolverSettings finer;
+    checkpoint_.reading([&] {
+      finer = read_solver(stored.at("solver"));
+      ledger_ = checkpoint::decode_ledger(stored.at("ledger"));
+      (void)stored.at("journal");
+    });
+    return choose_again(finer, &stored.at("journal"));
   }
 
   // From what an interrupted run has kept, if there is anything. False: interrupted, and kept.
   bool prepare(json const* stored) {
-    try {
-      Journal journal(
-          [this](json const& steps) {
-            checkpoint_.save({{"journal", steps}});
-          },
-          session_.options.checkpoint_interval, stored != nullptr ? &stored->at("journal") : nullptr);
-      bool const prepared = prepare(journal);
-      if (!prepared && !journal.empty()) journal.save();
-      // What took so long that it has been kept on the way is kept at its end.
-      if (prepared && checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
-      return prepared;
-    } catch (checkpoint::Mismatch const& mismatch) {
-      throw checkpoint_.does_not_fit(mismatch.what());
-    } catch (json::exception const&) {
-      throw checkpoint_.does_not_fit("its search is damaged");
-    }
+    json const* steps = nullptr;
+    if (stored != nullptr) checkpoint_.reading([&] { steps = &stored->at("journal"); });
+    bool const prepared = checkpoint_.keep_steps(
+        steps,
+        [](json const& kept) -> json {
+          return {{"journal", kept}};
+        },
+        [this](Journal& journal) { return prepare(journal); });
+    // What took so long that it has been kept on the way is kept at its end.
+    if (prepared && checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
+    return prepared;
   }
 
   // Search and, unless the user fixed it, the step. False: interrupted.
@@ -168,59 +184,39 @@ class Fit {
     print_data_findings(session_, task_, data_, model_);
     print_findings(session_, task_, ahead);
     preparation_.solver = what_.solver;
-    Findings stiff;
+    std::optional<SearchSolver> solver;
     if (what_.refine_solver && model_.integrated()) {
-      auto const solver = choose_search_solver(make, context);
+      solver = choose_search_solver(make, context);
       if (!solver) return false;
-      stiff = stiffness(*solver);
     }
     auto const target = make(preparation_.solver);
     SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.objective_kind, context)
                                     : search(*target, backend_.objective_kind, context);
     if (found.interrupted) return false;
     if (found.failure) {
-      std::vector<Failure> const& places = preparation_.ledger.failures();
-      bool const sticks =
-          std::any_of(places.begin(), places.end(), [](Failure const& each) { return each.kind == FailureClass::step_limit; });
-      Finding failure = with_other_solver(std::move(*found.failure), preparation_.ledger);
-      if (!stiff.empty()) {
-        failure.message += "; " + stiff.front().message;
-        failure.help = stiff.front().help;
-      }
-      if (std::string advice = sticking_advice(model_, data_); sticks && !advice.empty()) failure.help = std::move(advice);
+      advise(situation(solver), *found.failure);
       checkpoint_.drop();
-      throw UserError(no_result(task_, failure));
+      throw UserError(no_result(task_, *found.failure));
     }
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     preparation_.findings.insert(preparation_.findings.end(), ahead.begin(), ahead.end());
-    preparation_.findings.insert(preparation_.findings.end(), stiff.begin(), stiff.end());
+    if (solver)
+      for (Finding& each : stiff_prior(*solver)) preparation_.findings.push_back(std::move(each));
     print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
     if (what_.refine_solver && !refine_solver(session_, task_, make, backend_.objective_kind, what_.solver, preparation_, context))
       return false;
-    // Of finer steps and other solvers there is no end where the motion sticks.
-    for (Finding& each : preparation_.findings)
-      if (each.code == FindingCode::step_not_settled)
-        if (std::string advice = sticking_advice(model_, data_); !advice.empty()) each.help = std::move(advice);
+    for (Finding& each : preparation_.findings) advise(situation(solver), each);
     return true;
   }
 
-  // Of the prior draws that the search cannot see.
-  Findings stiffness(SearchSolver const& search) const {
-    if (!search.stiff()) return {};
-    return {
-        {FindingCode::stiff_prior,
-         Severity::warning,
-         {},
-         fmt::format("{:.0f} % of the prior draws overflow even with {}; {} of these were simulated with {}, {} of them without "
-                     "failure: the model is stiff there, and the search ignores that part of the prior",
-                     100 * search.failed, accuracy(search.solver), search.tried, stiff_solver().name, search.followed),
-         fmt::format("fit with `solver = {}`, or narrow the priors if such fast motion is not intended", stiff_solver().name)}};
+  FitSituation situation(std::optional<SearchSolver> const& search) const {
+    return {model_, data_, preparation_.solver, preparation_.ledger, search ? &*search : nullptr};
   }
 
   // Empty: interrupted.
   std::optional<SearchSolver> choose_search_solver(MakeTarget const& make, RunContext const& context) {
-    SearchSolver const search = search_solver(make, what_.solver, seed_);
+    SearchSolver const search = search_solver(make, what_.solver, seed_, context.interrupted, context.journal);
     if (context.stop_requested()) return std::nullopt;
     if (search.solver != what_.solver)
       session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws overflow\n", task_.name,

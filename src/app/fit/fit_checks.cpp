@@ -9,6 +9,7 @@
 #include "diagnostics/bound_check.hpp"
 #include "diagnostics/input_checks.hpp"
 #include "diagnostics/model_checks.hpp"
+#include "diagnostics/prior_checks.hpp"
 
 namespace sysid {
 namespace {

@@ -24,7 +24,11 @@ ExitCode run_or_stop(Session& session, int index, Task const& task) {
   try {
     return task_runner(kind_of(task)).run(session, index, task);
   } catch (Interrupted const&) {
-    session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
+    // What holds a complete result of before is not begun by going on.
+    if (task_runner(kind_of(task)).complete(session, task))
+      session.notices << fmt::format("{}: interrupted; its earlier results stay\n", task.name);
+    else
+      session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
     return ExitCode::interrupted;
   }
 }

@@ -42,13 +42,15 @@ double unit_term(Candidate const& candidate, Candidate const& first) {
 }
 
 /// Follows the modes to finer solvers; a solver that the task states is only asked.
-void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_t seed, CandidatePosterior& posterior) {
+void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_t seed, Journal& journal,
+                      CandidatePosterior& posterior) {
   if (!candidate.compiled->model.integrated() || posterior.modes.empty() || posterior.modes.front().theta.empty()) return;
   Ledger extra;
   if (!candidate.fit->refine_solver) {
     std::vector<Mode> const weightiest = {posterior.modes.front()};
-    posterior.move = move_to_finer(*likelihood_target(session, candidate, candidate.fit->solver.finer(), session.interruptible()),
-                                   ObjectiveKind::posterior, weightiest, seed, extra);
+    posterior.move = move_to_finer(
+        *likelihood_target(session, candidate, candidate.fit->solver.finer(), session.interruptible()), ObjectiveKind::posterior,
+        weightiest, seed, extra, [&] { return session.interrupted(); }, &journal);
     return;
   }
   MakeTarget const make = [&](SolverSettings const& solver) {
@@ -59,7 +61,8 @@ void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_
                      .progress = silent,
                      .ledger = extra,
                      .interrupted = [&] { return session.interrupted(); },
-                     .checkpoint_interval = 0};
+                     .checkpoint_interval = 0,
+                     .journal = &journal};
   RefinedSolver refined =
       find_converged_solver(make, ObjectiveKind::posterior, candidate.fit->solver, std::move(posterior.modes), context);
   posterior.modes = std::move(refined.modes);
@@ -77,7 +80,8 @@ void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_
 }  // namespace
 
 std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& session, std::vector<Candidate> const& candidates,
-                                                                    SelectionResult const& result, std::uint64_t seed) {
+                                                                    SelectionResult const& result, std::uint64_t seed,
+                                                                    Journal& journal) {
   std::vector<CandidatePosterior> posteriors(candidates.size());
   Ledger extra;
   auto const stopped = [&] {
@@ -96,8 +100,9 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     std::size_t const k = order[i];
     SolverSettings const& solver = candidates[k].fit->solver;
     double const per_mass = unit_term(candidates[k], candidates.front()) + elementary::log(result.models[k].prior);
-    LocalSearches found = modes_near(*likelihood_target(session, candidates[k], solver, session.interruptible()), result.models[k],
-                                     best - per_mass - negligible, seed, extra, [&] { return session.interrupted(); });
+    LocalSearches found = modes_near(
+        *likelihood_target(session, candidates[k], solver, session.interruptible()), result.models[k], best - per_mass - negligible,
+        seed, extra, [&] { return session.interrupted(); }, &journal);
     if (stopped()) return std::nullopt;
     best = std::max(best, log_evidence(found.modes) + per_mass);
     posteriors[k] = {std::move(found.modes), found.given_up, solver, {}, true};
@@ -115,7 +120,7 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
       continue;
     }
     examined[k] = true;
-    refine_solver_of(session, candidates[k], seed, posteriors[k]);
+    refine_solver_of(session, candidates[k], seed, journal, posteriors[k]);
     if (posteriors[k].solver != candidates[k].fit->solver)
       finer += fmt::format("the likelihood of `{}` is computed with {} (too coarse with {}: with {} {})\n",
                            candidates[k].what->name, posteriors[k].solver.text(), candidates[k].fit->solver.text(),

@@ -6,6 +6,7 @@
 #include "app/selection/candidate.hpp"
 #include "inference/backend/selector.hpp"
 #include "result/selection.hpp"
+#include "search/journal.hpp"
 
 namespace sysid {
 
@@ -23,9 +24,10 @@ struct CandidatePosterior {
 
 /// Modes of each candidate's posterior, climbed to from its particles with the task's solver. Of candidates worth a look the solver
 /// is made finer until they have converged, as for a fit; where the task states how fine it is, it is asked how far the next finer
-/// one moves them. Nothing when interrupted.
+/// one moves them. Nothing when interrupted; the journal keeps the searches.
 std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& session, std::vector<Candidate> const& candidates,
-                                                                    SelectionResult const& result, std::uint64_t seed);
+                                                                    SelectionResult const& result, std::uint64_t seed,
+                                                                    Journal& journal);
 
 /// Laplace's evidences and model probabilities, densities in the units of the first candidate; nothing for candidates without
 /// modes.

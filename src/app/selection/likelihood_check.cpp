@@ -40,7 +40,7 @@ std::vector<Mode> only_point(ModelTarget const& target, Ledger& ledger) {
 }  // namespace
 
 LocalSearches modes_near(ModelTarget const& target, SelectedModel const& model, double least_log_mass, std::uint64_t seed,
-                         Ledger& ledger, std::function<bool()> const& stop) {
+                         Ledger& ledger, std::function<bool()> const& stop, Journal* journal) {
   if (target.dimension() == 0) return {only_point(target, ledger), false};
   std::vector<int> order(model.distance.size());
   std::iota(order.begin(), order.end(), 0);
@@ -57,7 +57,7 @@ LocalSearches modes_near(ModelTarget const& target, SelectedModel const& model, 
     for (std::size_t p = 0; p < rows.size(); ++p)
       if (rows[p] >= 0) from(static_cast<int>(p), s) = model.theta(rows[p], particle);
   }
-  return modes_from(target, ObjectiveKind::posterior, from, least_log_mass, seed, ledger, stop);
+  return modes_from(target, ObjectiveKind::posterior, from, least_log_mass, seed, ledger, stop, journal);
 }
 
 double log_evidence(std::vector<Mode> const& modes) {

@@ -16,7 +16,7 @@ namespace sysid {
 /// are one are counted once; the first has the largest mass, shares are among those found. A model that cannot come to
 /// `least_log_mass` is not climbed to the end.
 LocalSearches modes_near(ModelTarget const& target, SelectedModel const& model, double least_log_mass, std::uint64_t seed,
-                         Ledger& ledger, std::function<bool()> const& stop = {});
+                         Ledger& ledger, std::function<bool()> const& stop = {}, Journal* journal = nullptr);
 
 /// log of the sum of the masses: Laplace's evidence; -infinity without modes.
 double log_evidence(std::vector<Mode> const& modes);

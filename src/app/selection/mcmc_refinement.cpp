@@ -7,6 +7,7 @@
 
 #include "diagnostics/convergence.hpp"
 #include "inference/chain/mh.hpp"
+#include "search/stored_values.hpp"
 
 namespace sysid {
 namespace {
@@ -23,7 +24,7 @@ Settings settings_for(std::int64_t samples) {
 
 McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const& candidates,
                                   std::vector<CandidatePosterior> const& posteriors, std::int64_t samples, std::uint64_t seed,
-                                  SelectionReport& selection) {
+                                  KeptChains const& kept, SelectionReport& selection) {
   McmcRefinement refinement;
   selection.refined.resize(candidates.size());
   selection.refined_draws.resize(candidates.size());
@@ -52,8 +53,14 @@ McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const
                        .progress = session.progress,
                        .ledger = extra,
                        .interrupted = [&] { return session.interrupted(); },
-                       .modes = posteriors[k].modes};
+                       .checkpoint = [&](nlohmann::json const& state) { kept.save(k, state); },
+                       .checkpoint_interval = kept.interval,
+                       .resume = kept.stored(k),
+                       .modes = posteriors[k].modes,
+                       .checkpoint_end = true};
     FitResult chains = mh::run(*target, settings_for(samples), context);
+    if (chains.failure && chains.failure->code == FindingCode::checkpoint_mismatch)
+      throw checkpoint::Mismatch(fmt::format("its chains of `{}` are of another run", model.name));
     if (chains.interrupted) {
       refinement.interrupted = true;
       return refinement;

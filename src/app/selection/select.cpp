@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/process/unknown_functions.hpp"
 #include "app/selection/candidate.hpp"
 #include "app/selection/candidate_posterior.hpp"
 #include "app/selection/mcmc_refinement.hpp"
@@ -22,7 +23,6 @@
 #include "app/session/session.hpp"
 #include "app/session/solver_record.hpp"
 #include "app/session/task_checkpoint.hpp"
-#include "app/process/unknown_functions.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
@@ -66,9 +66,9 @@ class Select {
                        .progress = session_.progress,
                        .ledger = ledger_,
                        .interrupted = [this] { return session_.interrupted(); },
-                       .checkpoint = [this](json const& state) { checkpoint_.save(state); },
+                       .checkpoint = [this](json const& state) { keep_populations(state); },
                        .checkpoint_interval = session_.options.checkpoint_interval,
-                       .resume = checkpoint_.stored()};
+                       .resume = kept_populations()};
     if (context.resume)
       session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
     else
@@ -99,6 +99,64 @@ class Select {
       if (!placed.primary) placed.primary = Label{task_.span, {}};
       throw UserError(std::move(placed));
     }
+  }
+
+  // --- what is kept
+  // ------------------------------------------------------------------------------------------------------------
+
+  // Of populations; null where there is nothing to go on from.
+  std::shared_ptr<json const> kept_populations() {
+    auto const stored = checkpoint_.stored();
+    if (!stored) return nullptr;
+    content_ = *stored;
+    std::shared_ptr<json const> state;
+    checkpoint_.reading([&] { state = std::make_shared<json const>(content_.at("state")); });
+    return state;
+  }
+
+  // What was found from other populations is of no use any more.
+  void keep_populations(json const& state) {
+    if (content_.contains("state") && content_["state"] == state) return;
+    content_ = {{"state", state}};
+    checkpoint_.save(content_);
+  }
+
+  // False: interrupted.
+  bool find_posteriors(SelectionReport const& selection, std::vector<CandidatePosterior>& posteriors) {
+    json const steps = content_.value("journal", json());
+    auto const content = [this](json const& kept) -> json {
+      content_["journal"] = kept;
+      return content_;
+    };
+    return checkpoint_.keep_steps(steps.is_null() ? nullptr : &steps, content, [&](Journal& journal) {
+      auto found = candidate_posteriors(session_, candidates_, selection.result, seed_, journal);
+      if (!found) return false;
+      posteriors = std::move(*found);
+      journal.save();
+      return true;
+    });
+  }
+
+  // False: interrupted.
+  bool refine(std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection, Report& report) {
+    KeptChains const kept{[this](std::size_t model) -> std::shared_ptr<json const> {
+                            json const chains = content_.value("chains", json::object());
+                            auto const state = chains.find(std::to_string(model));
+                            return state == chains.end() ? nullptr : std::make_shared<json const>(*state);
+                          },
+                          [this](std::size_t model, json const& state) {
+                            content_["chains"][std::to_string(model)] = state;
+                            checkpoint_.save(content_);
+                          },
+                          session_.options.checkpoint_interval};
+    bool ended = false;
+    checkpoint_.reading([&] {
+      McmcRefinement refinement =
+          refine_with_chains(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, kept, selection);
+      add(refinement.findings, report);
+      ended = !refinement.interrupted;
+    });
+    return ended;
   }
 
   // --- the end
@@ -145,19 +203,14 @@ class Select {
     Report report = begin(leading, selection);
     std::vector<CandidatePosterior> posteriors;
     if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
-      auto found = candidate_posteriors(session_, candidates_, selection.result, seed_);
-      interrupted = !found;
-      if (found) posteriors = std::move(*found);
+      interrupted = !find_posteriors(selection, posteriors);
     }
     bool const checked = !interrupted && what_.settings.flag("cross_check"),
                refined = !interrupted && what_.settings.flag("polish");
     if (checked) check_by_likelihood(leading, posteriors, selection, report);
     if (!interrupted) check_simulations(target, leading, posteriors, selection, report);
     if (refined) {
-      McmcRefinement refinement =
-          refine_with_chains(session_, candidates_, posteriors, what_.settings.integer("polish_samples"), seed_, selection);
-      add(refinement.findings, report);
-      interrupted = refinement.interrupted;
+      interrupted = !refine(posteriors, selection, report);
     }
     note_end(selection, interrupted, refined, report);
     if (!interrupted) add_predictions(selection, report);
@@ -281,6 +334,7 @@ class Select {
   std::chrono::steady_clock::time_point began_;
   std::vector<Candidate> candidates_;
   Ledger ledger_;
+  json content_ = json::object();  // of the checkpoint
 };
 
 }  // namespace

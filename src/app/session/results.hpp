@@ -33,7 +33,7 @@ class ClaimedFolder {
   FolderLock lock_;
 };
 
-/// Removes results and checkpoint of an earlier run, whose place those of this one take.
+/// Removes results and checkpoint of an earlier run, whose place something else takes.
 void remove_earlier(std::filesystem::path const& folder);
 
 std::filesystem::path checkpoint_path(std::filesystem::path const& folder);

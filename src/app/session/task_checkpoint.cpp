@@ -10,6 +10,8 @@
 #include "core/text/diagnostic.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "report/file/sealed_cbor.hpp"
+#include "report/file/task_folder.hpp"
+#include "search/journal.hpp"
 
 namespace sysid {
 namespace {
@@ -17,7 +19,7 @@ namespace {
 using json = nlohmann::json;
 
 // Of the file itself. A file of an older form is refused as damaged: nothing of it can be taken up.
-constexpr int form = 4;
+constexpr int form = 5;
 
 UserError refused(char const* code, std::filesystem::path const& path, char const* what, char const* help) {
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});
@@ -83,14 +85,31 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   return std::make_shared<json const>(stored->at("content"));
 }
 
-Preparation TaskCheckpoint::preparation(json const& content) const {
+void TaskCheckpoint::reading(std::function<void()> const& read) const {
   try {
-    return restore_preparation(content.at("preparation"));
+    read();
+  } catch (checkpoint::Mismatch const& mismatch) {
+    throw does_not_fit(mismatch.what());
   } catch (json::exception const&) {
     throw damaged(path_);
-  } catch (checkpoint::Mismatch const&) {
-    throw damaged(path_);
   }
+}
+
+Preparation TaskCheckpoint::preparation(json const& content) const {
+  Preparation preparation;
+  reading([&] { preparation = restore_preparation(content.at("preparation")); });
+  return preparation;
+}
+
+bool TaskCheckpoint::keep_steps(json const* stored, std::function<json(json const&)> const& content,
+                                std::function<bool(Journal&)> const& work) {
+  bool ended = false;
+  reading([&] {
+    Journal journal([&](json const& steps) { save(content(steps)); }, session_.options.checkpoint_interval, stored);
+    ended = work(journal);
+    if (!ended && (!journal.empty() || holds_result(path_.parent_path()))) journal.save();
+  });
+  return ended;
 }
 
 UserError TaskCheckpoint::does_not_fit(std::string const& why) const {
@@ -102,7 +121,6 @@ void TaskCheckpoint::drop() {
 }
 
 void TaskCheckpoint::save(json const& content) {
-  if (!saved_ && !session_.options.resume) remove_earlier(path_.parent_path());
   saved_ = true;
   write_file(path_, sealed_cbor({{"who", who()}, {"content", content}}, form));
 }

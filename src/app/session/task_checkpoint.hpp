@@ -1,6 +1,7 @@
 // The checkpoint of a task on disk: whose it is, and what its back end stored.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -13,6 +14,8 @@
 #include "experiment/experiments.hpp"
 
 namespace sysid {
+
+class Journal;
 
 class TaskCheckpoint {
  public:
@@ -29,10 +32,15 @@ class TaskCheckpoint {
   std::shared_ptr<nlohmann::json const> stored() const;
   /// Of what `stored` gives; UserError (E6207) when it is none.
   Preparation preparation(nlohmann::json const& content) const;
-  /// The first one of a run that goes on from nothing takes the place of an earlier run's results and checkpoint.
+  /// Takes the place of an earlier run's checkpoint; its results stay until there are new ones.
   void save(nlohmann::json const& content);
-  /// What is stored is whole, but not what this run needs (E6207).
-  UserError does_not_fit(std::string const& why) const;
+  /// Runs `work` with a journal that is kept in what `content` makes of its steps. stored: the steps that are kept already, or
+  /// null. What `work` returns: whether it came to its end, else it was interrupted and the journal is saved, if it has something
+  /// or a run that goes on would find earlier results in place of it. UserError (E6207) where what is stored cannot be read.
+  bool keep_steps(nlohmann::json const* stored, std::function<nlohmann::json(nlohmann::json const& steps)> const& content,
+                  std::function<bool(Journal&)> const& work);
+  /// What `read` makes of stored values; UserError (E6207) where they are none.
+  void reading(std::function<void()> const& read) const;
   /// A run that will never have a result leaves nothing to go on from.
   void drop();
   /// Whether there is one of this run, to go on from.
@@ -40,6 +48,7 @@ class TaskCheckpoint {
 
  private:
   nlohmann::json who() const;
+  UserError does_not_fit(std::string const& why) const;
 
   Session& session_;
   Task const& task_;

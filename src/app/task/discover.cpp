@@ -12,6 +12,7 @@
 #include "app/session/reporting.hpp"
 #include "app/session/resolved.hpp"
 #include "app/session/session.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/verdict.hpp"
 #include "discovery/coefficient_names.hpp"
@@ -53,7 +54,7 @@ class Discover {
     method.seed = seed_;
     method.interrupted = [this] { return session_.interrupted(); };
     regression::Discovery const found = regression::discover(numbers(), experiments_of(data_), method);
-    if (found.interrupted) return stop();
+    if (found.interrupted) throw Interrupted();
     FoundSource const source{.file = session_.file,
                              .folder = session_.folder(),
                              .results = session_.result_folder(task_),
@@ -68,7 +69,7 @@ class Discover {
     std::optional<Validation> validation;
     if (what_.refit && !structures.empty()) {
       validation = validate_structures(source, structures, held_out(), method.interrupted);
-      if (validation->interrupted) return stop();
+      if (validation->interrupted) throw Interrupted();
       structures = validation->order;
     }
     return finish(found, *method.selector, source, structures, validation);
@@ -80,11 +81,6 @@ class Discover {
     regression::Dictionary numbers = dictionary_.numbers;
     for (std::size_t c = 0; c < what_.noise.size(); ++c) numbers.channels[c].noise_sd = what_.noise[c];
     return numbers;
-  }
-
-  ExitCode stop() const {
-    session_.notices << fmt::format("{}: interrupted; the next run starts it again\n", task_.name);
-    return ExitCode::interrupted;
   }
 
   // With the dictionary's columns, as the task's own.

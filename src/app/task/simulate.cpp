@@ -140,10 +140,7 @@ class Simulate {
     Trajectory const trajectory(compiled_, experiment_, what_.solver, 0, session_.options.execution);
     announce(trajectory);
     auto const ended = in_rounds(session_, task_, compiled_, experiment_, what_, parameters_, noise_key_, feedbacks);
-    if (!ended) {
-      session_.notices << fmt::format("{}: interrupted; {} starts it again\n", task_.name, to_resume(session_.options.surface));
-      return ExitCode::interrupted;
-    }
+    if (!ended) throw Interrupted();
     require_numbers(*ended);
     note_findings(*ended);
     auto const path = session_.result_folder(task_) / what_.file;

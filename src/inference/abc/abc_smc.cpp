@@ -252,7 +252,8 @@ class Run {
   }
 
   void finish() {
-    if (result_.interrupted && context_.checkpoint) save();
+    // Where a run that goes on from here ends at once, too.
+    if ((result_.interrupted || last_.number > 0) && context_.checkpoint) save();
     if (last_.number == 0) {
       if (!result_.interrupted)
         result_.failure = no_population(record_, next_.threshold, plan_.particles, result_.stopped_by, context_.ledger);

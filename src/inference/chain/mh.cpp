@@ -227,7 +227,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     look();
   }
   context.progress.end(!stopped);
-  if (stopped) watch.store_now();
+  if (stopped || context.checkpoint_end) watch.store_now();
   return stopped;
 }
 

@@ -94,6 +94,9 @@ void remove_partial(fs::path const& folder) {
 
 std::vector<std::string> write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
   make_folder(folder);
+  // What takes long is made while the results of before still stand.
+  std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
+  std::string const page = report_html(report, drawn), record = record_bytes(report);
   // What an interrupted run left may have more files than its end: chains of models that died later.
   remove_result(folder);
   FileDigests digests;
@@ -110,10 +113,9 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
     write(prediction_names[p], predict_csv(report, report.predictions[p]));
-  std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
   std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
-  write_file(folder / "report.html", report_html(report, drawn));
-  write_file(folder / "report.cbor", record_bytes(report));
+  write_file(folder / "report.html", page);
+  write_file(folder / "report.cbor", record);
   for (auto const& [name, content] : report.resolved_files) write_file(folder / name, content);
   write_file(folder / "timing.json", timing_json(report));
   write_file(folder / "summary.json", summary_json(report, digests));

@@ -125,6 +125,31 @@ TEST_CASE("a selection interrupted while it polishes is not a finished one") {
   CHECK(selection_files(folder.path() / "results") == selection_files(whole.path() / "results"));
 }
 
+TEST_CASE("what a selection searches and samples by the likelihood is not done again after each of many interruptions") {
+  std::string const text = with(shortened_selection(), "target = 2", "target = 2, polish = yes, polish_samples = 2000");
+  TemporaryFolder folder;
+  RunOptions options;
+  auto const run = [&] {
+    int const exit = run_text(bouc_wen_file, text, options, {"select"}).exit;
+    clear_interrupt();
+    return exit;
+  };
+  options.output = folder.path() / "whole";
+  CHECK(run() != 75);
+  options.output = folder.path() / "results";
+  options.checkpoint_interval = 0;
+  options.interrupt_after = 150;  // far less than its chains ask
+  int interruptions = 0;
+  while (interruptions < 300 && run() == 75) {
+    options.resume = true;
+    ++interruptions;
+  }
+  CHECK(interruptions > 10);
+  CHECK(interruptions < 300);
+  CHECK(selection_files(options.output) == selection_files(folder.path() / "whole"));
+  CHECK_FALSE(std::filesystem::exists(options.output / "selection/checkpoint.cbor"));
+}
+
 TEST_CASE("a prediction from stored particles is the one that follows the selection at once") {
   TemporaryFolder folder;
   RunOptions options;

@@ -5,9 +5,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/answer.hpp"
+#include "app/run/report_results.hpp"
 #include "core/system/folder_lock.hpp"
 #include "core/system/interrupt.hpp"
 #include "report/file/sealed_cbor.hpp"
@@ -327,32 +329,74 @@ TEST_CASE("a forced run that ends without a result leaves the old ones, and a ru
   CHECK(run("k", output.path(), {"fit"}, force).exit <= ExitCode::doubtful);
 }
 
-TEST_CASE("a forced run that is interrupted once it samples has taken the place of the old result") {
-  TemporaryFolder const output;
-  CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
-  RunOptions options;
-  options.force = true;
-  options.interrupt_after = 1;  // in the search: nothing of its own to keep yet
-  CHECK(run("k", output.path(), {"fit"}, options).exit == ExitCode::interrupted);
-  clear_interrupt();
-  CHECK(std::filesystem::exists(output.path() / "posterior" / "summary.json"));
-  CHECK_FALSE(checkpoint_of_an_interrupted_run(output.path()).empty());
-  RunOptions resume;
-  resume.resume = true;
-  CHECK(run("k", output.path(), {"fit"}, resume).exit <= ExitCode::doubtful);
-  CHECK_FALSE(std::filesystem::exists(output.path() / "posterior" / "checkpoint.cbor"));
+namespace {
+
+/// All files of a task, but for what two runs of one seed may differ in.
+std::map<std::string, std::string> files_in(std::filesystem::path const& folder) {
+  std::map<std::string, std::string> files;
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (std::string const name = entry.path().filename(); entry.is_regular_file() && name != "timing.json" && name != "lock")
+      files[name] = content(entry.path());
+  return files;
 }
 
-TEST_CASE("a folder that another run writes into is refused, and its results are not touched") {
+}  // namespace
+
+TEST_CASE("a forced run that is interrupted leaves the old result until it has one, and is gone on with") {
   TemporaryFolder const output;
-  std::filesystem::create_directory(output.path() / "posterior");
-  {
-    FolderLock const lock(output.path() / "posterior");
-    Answer const shown = run("k", output.path(), {"fit"});
-    CHECK(shown.exit == ExitCode::user_error);
-    CHECK(shown.messages.find("writes into `OUT/posterior`\nhelp: wait until it has ended, or write elsewhere with -o DIR") !=
-          std::string::npos);
+  std::filesystem::path const folder = output.path() / "posterior", page = output.path() / "page.html";
+  RunOptions other;
+  other.seed = 2;
+  CHECK(run("k", output.path(), {"fit"}, other).exit <= ExitCode::doubtful);
+  auto const old = files_in(folder);
+  RunOptions force;
+  force.force = true;
+  TemporaryFolder const elsewhere;
+  std::filesystem::path const whole = elsewhere.path() / "posterior";
+  CHECK(run("k", elsewhere.path(), {"fit"}).exit <= ExitCode::doubtful);
+  for (std::uint64_t const poll : {1, 7, 23}) {  // nothing is kept yet; in the search
+    CAPTURE(poll);
+    std::filesystem::remove_all(output.path());
+    CHECK(run("k", output.path(), {"fit"}, other).exit <= ExitCode::doubtful);
+    force.interrupt_after = poll;
+    force.checkpoint_interval = 0;
+    CHECK(run("k", output.path(), {"fit"}, force).exit == ExitCode::interrupted);
+    clear_interrupt();
+    auto standing = files_in(folder);
+    REQUIRE(standing.erase("checkpoint.cbor") == 1);
+    CHECK(standing.at("draws_1.csv") == old.at("draws_1.csv"));
+    CHECK(standing.at("summary.json") == old.at("summary.json"));
+    report_results(folder, page, false);
+    CHECK(std::filesystem::exists(page));
+    // Which of the two is meant is not guessed.
+    Answer const predicted = run("k", output.path(), {"predict"});
+    CHECK(predicted.exit == ExitCode::user_error);
+    CHECK(predicted.messages.find("is unfinished") != std::string::npos);
+    RunOptions resume;
+    resume.resume = true;
+    CHECK(run("k", output.path(), {"fit"}, resume).exit <= ExitCode::doubtful);
+    CHECK_FALSE(std::filesystem::exists(folder / "checkpoint.cbor"));
+    for (char const* name : {"draws_1.csv", "draws_2.csv", "summary.json"}) CHECK(content(folder / name) == content(whole / name));
   }
-  CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
-  CHECK_FALSE(std::filesystem::exists(output.path() / "posterior" / "lock"));
+}
+
+TEST_CASE("a forced run that is interrupted once it samples leaves a result of its own") {
+  TemporaryFolder const output;
+  RunOptions other;
+  other.seed = 2;
+  CHECK(run("k", output.path(), {"fit"}, other).exit <= ExitCode::doubtful);
+  std::string const old = content(output.path() / "posterior" / "summary.json");
+  RunOptions force;
+  force.force = true;
+  bool replaced = false;
+  for (force.interrupt_after = 16; !replaced && force.interrupt_after < 2000; force.interrupt_after += 16) {
+    ExitCode const exit = run("k", output.path(), {"fit"}, force).exit;
+    clear_interrupt();
+    if (exit != ExitCode::interrupted) break;
+    std::string const now = content(output.path() / "posterior" / "summary.json");
+    replaced = now != old;
+    if (replaced) CHECK(now.find("\"interrupted\"") != std::string::npos);
+    CHECK(std::filesystem::exists(output.path() / "posterior" / "checkpoint.cbor"));
+  }
+  CHECK(replaced);
 }

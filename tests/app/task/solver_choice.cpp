@@ -17,8 +17,8 @@ struct Decay {
 
 // Eight samples of a decay that is over between two of them, in noise that leaves its rate open up to where one step of rk4 is
 // wrong.
-Decay run_decay(std::uint64_t seed, std::string const& options = "") {
-  std::string const text = R"(
+std::string decay_text(std::uint64_t seed, std::string const& options) {
+  return R"(
 model lag {
   state y
   initial y = 1
@@ -28,9 +28,13 @@ model lag {
 }
 data record { file "results/truth/made.csv"; time t [s]; measure level = level }
 truth = simulate lag with values(k = 0.9), noise = model, samples = 8, rate = 1 [Hz], substeps = 40, seed = )" +
-                           std::to_string(seed) + R"(, file = "made.csv"
+         std::to_string(seed) + R"(, file = "made.csv"
 posterior = fit lag to record with mh(samples = 6000, burn_in = 2000, thin = 2))" +
-                           options + ", seed = 1\n";
+         options + ", seed = 1\n";
+}
+
+Decay run_decay(std::uint64_t seed, std::string const& options = "") {
+  std::string const text = decay_text(seed, options);
   TemporaryFolder folder;
   RunOptions options_of_run;
   options_of_run.output = folder.path() / "results";
@@ -38,6 +42,26 @@ posterior = fit lag to record with mh(samples = 6000, burn_in = 2000, thin = 2))
   decay.fit = json::parse(read_file(options_of_run.output / "posterior/summary.json"));
   return decay;
 }
+
+/// Counts jobs of the back end, and interrupts a job of the choice of the solver after it at one of its reports.
+class AtSecondChoice : public Progress {
+ public:
+  explicit AtSecondChoice(int report) : report_(report) {}
+  void begin(std::string_view what, std::uint64_t) override {
+    sampled += what == "sampling" ? 1 : 0;
+    choosing_ = sampled == 1 && what.starts_with("trying");
+  }
+  void advance(std::uint64_t, std::string_view) override {
+    if (choosing_ && ++reports == report_) request_interrupt();
+  }
+  void end(bool) override {}
+
+  int sampled = 0, reports = 0;
+
+ private:
+  int report_;
+  bool choosing_ = false;
+};
 
 bool has_finding(json const& summary, std::string const& code) {
   for (json const& finding : summary.at("findings"))
@@ -69,4 +93,35 @@ TEST_CASE("a step that suits mode and draws is not chosen again") {
   CHECK(once.run.exit == 0);
   CHECK(once.run.notices.find("sampling again") == std::string::npos);
   CHECK(once.fit.at("settings").at("substeps") == 1);
+}
+
+TEST_CASE("a fit that is interrupted while its step is chosen again goes on from there, to the same bytes") {
+  TemporaryFolder folder;
+  RunOptions options;
+  auto const run = [&](char const* output, std::vector<std::string> const& verbs, AtSecondChoice& progress) {
+    options.output = folder.path() / output;
+    int const exit = run_text(folder.path() / "lag.sysid", decay_text(1, ""), options, verbs, &progress).exit;
+    clear_interrupt();
+    return exit;
+  };
+  AtSecondChoice unbroken(0);
+  run("results", {"simulate"}, unbroken);
+  REQUIRE(run("results", {"fit"}, unbroken) == 0);
+  REQUIRE(unbroken.sampled == 2);
+  REQUIRE(unbroken.reports > 2);
+  for (int const report : {1, unbroken.reports / 2, unbroken.reports}) {
+    CAPTURE(report);
+    options = {};
+    options.checkpoint_interval = 0;
+    AtSecondChoice broken(report);
+    std::string const output = std::to_string(report);
+    REQUIRE(run(output.c_str(), {"fit"}, broken) == 75);
+    CHECK_FALSE(std::filesystem::exists(options.output / "posterior/summary.json"));
+    options.resume = true;
+    AtSecondChoice rest(0);
+    CHECK(run(output.c_str(), {"fit"}, rest) == 0);
+    CHECK(rest.sampled == 1);  // with the solver that was chosen again alone
+    for (char const* file : {"summary.json", "draws_1.csv"})
+      CHECK(read_file(options.output / "posterior" / file) == read_file(folder.path() / "results/posterior" / file));
+  }
 }
