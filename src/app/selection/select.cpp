@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/process/unknown_functions.hpp"
 #include "app/selection/candidate.hpp"
 #include "app/selection/candidate_posterior.hpp"
 #include "app/selection/mcmc_refinement.hpp"
@@ -22,7 +23,6 @@
 #include "app/session/session.hpp"
 #include "app/session/solver_record.hpp"
 #include "app/session/task_checkpoint.hpp"
-#include "app/process/unknown_functions.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
@@ -252,6 +252,7 @@ class Select {
     report.timing.emplace_back("wall_seconds", wall.count());
     report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
     report.timing.emplace_back("lanes", static_cast<std::int64_t>(session_.options.execution.lanes));
+    report.timing.emplace_back("executor", std::string(name(session_.options.execution.executor)));
   }
 
   // For predictions of this run.
