@@ -27,6 +27,12 @@ std::string refuse_instruction_set(std::string const& name) {
   return "";
 }
 
+ExecutorKind executor_kind(std::string const& name) {
+  for (ExecutorKind const kind : {ExecutorKind::scalar, ExecutorKind::lanes, ExecutorKind::native})
+    if (sysid::name(kind) == name) return kind;
+  return ExecutorKind::automatic;
+}
+
 void add_run_options(CLI::App& verb, TaskOptions& options) {
   add_file(verb, options.file);
   add_output(verb, options.run.output);
@@ -42,6 +48,13 @@ void add_run_options(CLI::App& verb, TaskOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
+  verb.add_option_function<std::string>(
+          "--executor", [&options](std::string const& name) { options.run.execution.executor = executor_kind(name); },
+          "what runs the simulations: lanes, native (machine code), scalar, or auto: native where it pays; results do not depend "
+          "on it")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"auto", "scalar", "lanes", "native"}))
+      ->default_str("auto");
   verb.add_option("--instruction-set", options.instruction_set,
                   "avx2 or avx512 (default: the best available); results do not depend on it")
       ->type_name("NAME")

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "native/machine_code.hpp"
 #include "program/equation_kernels.hpp"
 #include "program/kernel.hpp"
 #include "program/uniform_leaf.hpp"
@@ -98,6 +99,8 @@ struct SimulationProgram {
   Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums
   std::vector<UniformTable> data_sums;  // per channel: terms of data alone, summed once per data set over the summed samples
   std::vector<std::optional<RunningSum>> running_sums;  // per row of the sums
+
+  std::shared_ptr<native::MachineCode> machine_code = std::make_shared<native::MachineCode>();  // of its loops, as they are wanted
 
   // The step as expressions, before algebra: where a failed solve is looked into.
   Graph graph;                      // source.graph, grown

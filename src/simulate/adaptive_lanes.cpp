@@ -9,6 +9,7 @@
 
 #include "program/embedded.hpp"
 #include "simulate/lane_equations.hpp"
+#include "simulate/machine_loop.hpp"
 #include "simulate/state_sizes.hpp"
 
 namespace sysid {
@@ -20,7 +21,8 @@ class AdaptiveLanes : public Stepper {
       : file_(file),
         equations_(file.program, file.schedule),
         control_(file.rows(file.program.registers.first_control(), file.program.registers.control)),
-        failure_(static_cast<std::size_t>(file.executor.width)) {}
+        failure_(static_cast<std::size_t>(file.executor.width)),
+        attempt_(machine_loop(file.program, file.schedule.solver(), file.executor, native::LoopKind::attempt)) {}
 
   void start() override {
     std::fill(failure_.begin(), failure_.end(), std::nullopt);
@@ -48,10 +50,7 @@ class AdaptiveLanes : public Stepper {
       row(Control::objective_kind)[w] = std::numeric_limits<double>::max();
       row(Control::hunts)[w] = 0;
     }
-    file_.load_row(file_.schedule.step_row(sample, 0), file_.program.step.uniforms.kernel.outputs);
-    int const most = file_.schedule.solver().steps;
-    for (int attempts = 0; attempts < most && travelling(position); ++attempts)
-      run(*file_.program.step.linked, file_.executor, file_.file);
+    attempt_steps(sample);
     for (int w = 0; w < file_.executor.width; ++w) {
       if (position[w] >= 1) continue;
       failure_[static_cast<std::size_t>(w)] = look_into(sample, w);
@@ -62,6 +61,21 @@ class AdaptiveLanes : public Stepper {
   std::optional<StepFailure> failure(int lane) const override { return failure_[static_cast<std::size_t>(lane)]; }
 
  private:
+  void attempt_steps(int sample) {
+    double const* const uniforms = file_.schedule.step_row(sample, 0);
+    int const most = file_.schedule.solver().steps;
+    if (attempt_ != nullptr) {
+      native::Call call;
+      call.registers = file_.registers;
+      call.steps = uniforms;
+      call.attempts = most;
+      return attempt_(&call);
+    }
+    file_.load_row(uniforms, file_.program.step.uniforms.kernel.outputs);
+    for (int attempts = 0; attempts < most && travelling(row(Control::position)); ++attempts)
+      run(*file_.program.step.linked, file_.executor, file_.file);
+  }
+
   double* row(Control which) { return &control_(static_cast<int>(which), 0); }
   bool travelling(double const* position) const {
     return std::any_of(position, position + file_.executor.width, [](double p) { return p < 1; });
@@ -113,6 +127,7 @@ class AdaptiveLanes : public Stepper {
   LaneEquations equations_;  // where sizes are looked up, and failures looked into
   Lanes control_;
   std::vector<std::optional<StepFailure>> failure_;
+  native::Function attempt_;  // null: interpreted
 };
 
 }  // namespace

@@ -1,12 +1,15 @@
-// The loop body of every simulation: copy a row of uniforms, run the section.
+// The loop body of every simulation: copy a row of uniforms, run the section; or the whole loop as machine code.
 #include "simulate/block.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "simulate/machine_loop.hpp"
 
 namespace sysid {
 
-Block::Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes)
+Block::Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes, native::LoopKind loop)
     : program_(program),
       schedule_(schedule),
       executor_(executor),
@@ -21,6 +24,11 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
             memory_.view().data() + uniform_space(program.uniforms)},
       stepper_(make_stepper(file_)),
       death_(static_cast<std::size_t>(lanes), -1) {
+  // Where steps are not fixed, records are interpreted: nearly all the time goes into the steps.
+  if (loop == native::LoopKind::observe)
+    observe_loop_ = machine_loop(program, schedule.solver(), executor, loop);
+  else if (fixed_step())
+    record_loop_ = machine_loop(program, schedule.solver(), executor, loop);
   std::copy(program.constants.begin(), program.constants.end(), file_.file);
 }
 
@@ -43,6 +51,7 @@ void Block::start() {
 }
 
 void Block::step(int sample) {
+  if (runs_loops()) return step_to(sample, sample + 1);
   if (!program_.source.memories.empty()) {
     file_.load_row(schedule_.carry_row(sample), program_.carry.uniforms.kernel.outputs);
     run(*program_.carry.linked, executor_, file_.file);
@@ -58,9 +67,66 @@ void Block::observe(int sample) {
   }
 }
 
-void Block::record(int sample) {
-  file_.load_row(schedule_.record_row(sample), program_.record.uniforms.kernel.outputs);
-  run(*program_.record.linked, executor_, file_.file);
+void Block::step_to(int from, int to) {
+  if (runs_loops())
+    return call(observe_loop_ != nullptr ? observe_loop_ : record_loop_, {.from = from, .to = to, .look_from = to, .step_to = to});
+  for (int i = from; i < to; ++i) step(i);
+}
+
+void Block::advance(int from, int to, int step_to) {
+  if (observe_loop_ != nullptr && fixed_step())
+    return call(observe_loop_, {.from = from, .to = to, .look_from = from, .step_to = step_to});
+  for (int i = from; i < to; ++i) {
+    if (observe_loop_ != nullptr)
+      call(observe_loop_, {.from = i, .to = i + 1, .look_from = i});
+    else
+      observe(i);
+    if (i < step_to) step(i);
+  }
+}
+
+void Block::call(native::Function function, native::Call call) const {
+  std::size_t const channels = program_.observe.size();
+  // Few programs have more channels than this; those wait for memory.
+  constexpr std::size_t most = 16;
+  double const* rows_here[most];
+  std::uint8_t const* summed_here[most];
+  std::vector<double const*> more_rows(channels > most ? channels : 0);
+  std::vector<std::uint8_t const*> more_summed(channels > most ? channels : 0);
+  double const** const rows = channels > most ? more_rows.data() : rows_here;
+  std::uint8_t const** const summed = channels > most ? more_summed.data() : summed_here;
+  for (std::size_t c = 0; c < channels; ++c) {
+    rows[c] = schedule_.observe_row(static_cast<int>(c), 0);
+    summed[c] = schedule_.summed(static_cast<int>(c));
+  }
+  double const* const record = schedule_.record_row(0);
+  bool const records = function == record_loop_;
+  call.registers = file_.registers;
+  call.rows = records ? &record : rows;
+  call.summed = summed;
+  call.carry = schedule_.carry_row(0);
+  call.steps = schedule_.step_row(0, 0);
+  call.substeps = schedule_.solver().substeps;
+  function(&call);
+}
+
+void Block::record(int from, int to, Lanes out) {
+  if (record_loop_ == nullptr || !fixed_step()) return record_interpreted(from, to, out);
+  int const rows = (to - from) * program_.registers.records;
+  if (recorded_.rows() < rows) recorded_ = LaneArray(rows, executor_.width);
+  call(record_loop_, {.out = recorded_.view().data(), .from = from, .to = to, .look_from = from, .step_to = to - 1});
+  for (int r = 0; r < rows; ++r) std::copy_n(recorded_.row(r).begin(), lanes_, out.row(r).begin());
+}
+
+void Block::record_interpreted(int from, int to, Lanes out) {
+  int row = 0;
+  for (int i = from; i < to; ++i) {
+    file_.load_row(schedule_.record_row(i), program_.record.uniforms.kernel.outputs);
+    run(*program_.record.linked, executor_, file_.file);
+    ConstLanes const now = rows(program_.registers.first_record(), program_.registers.records);
+    for (int r = 0; r < now.rows(); ++r) std::copy_n(now.row(r).begin(), lanes_, out.row(row++).begin());
+    if (i + 1 < to) step(i);
+  }
 }
 
 void Block::finish() {
@@ -82,7 +148,19 @@ void Block::store(Lanes registers) const {
     std::copy_n(file_.registers + r * executor_.stride(), lanes_, registers.row(r).begin());
 }
 
+// Most blocks have nothing to bury, most of the time; this takes a few vector instructions.
+bool Block::all_live_and_finite() const {
+  ConstLanes const now = states();
+  int bad = 0;
+  for (int r = 0; r < now.rows(); ++r) {
+    double const* const row = now.row(r).data();
+    for (int w = 0; w < lanes_; ++w) bad |= std::fabs(row[w]) <= std::numeric_limits<double>::max() ? 0 : 1;
+  }
+  return bad == 0 && std::all_of(death_.begin(), death_.end(), [](int death) { return death < 0; });
+}
+
 bool Block::bury(int sample) {
+  if (all_live_and_finite()) return true;
   ConstLanes const now = states();
   int live = -1;
   bool found_dead = false;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numeric/lanes.hpp"
+#include "native/machine_code.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
 #include "simulate/schedule.hpp"
@@ -16,19 +17,28 @@ namespace sysid {
 class Block {
  public:
   /// lanes <= executor.width; what the executor has more computes copies of the last lane.
-  Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes);
+  /// Machine code is compiled here where the executor wants it and it is not there yet.
+  Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes,
+        native::LoopKind loop = native::LoopKind::observe);
 
   /// Takes parameters [parameters x lanes] and computes what hangs on them; then the initial states, with empty accumulators.
   void set_parameters(ConstLanes parameters);
   void start();
   /// From `sample` to the next one.
   void step(int sample);
-  /// Adds the sample to the accumulators of the channels it is summed in.
-  void observe(int sample);
-  /// Computes the records of the sample; read them with `records`.
-  void record(int sample);
+  /// Adds samples [from, to) to the accumulators of the channels they are summed in, and steps from each that is before `step_to`
+  /// to the next one.
+  void advance(int from, int to, int step_to);
+  /// Writes the records of samples [from, to) to `out` [(to - from) * records x lanes], a sample after the other, and steps between
+  /// them.
+  void record(int from, int to, Lanes out);
+  /// From sample `from` to sample `to`.
+  void step_to(int from, int to);
   /// Computes the sums from the accumulators; read them with `sums`.
   void finish();
+
+  /// Whether many samples are one call of machine code.
+  bool runs_loops() const { return (observe_loop_ != nullptr || record_loop_ != nullptr) && fixed_step(); }
 
   /// Takes up lanes that were put down: all that a fixed-step solver carries from sample to sample, [RegisterLayout::carried x
   /// lanes].
@@ -39,7 +49,6 @@ class Block {
   bool bury(int sample);
 
   ConstLanes states() const { return rows(program_.registers.first_state(), program_.registers.states); }
-  ConstLanes records() const { return rows(program_.registers.first_record(), program_.registers.records); }
   ConstLanes accumulators() const { return rows(program_.registers.first_accumulator(), program_.registers.accumulators); }
   ConstLanes sums() const { return rows(program_.registers.first_sum(), program_.registers.sums); }
   /// The sample at which a lane was found dead; -1: it lives.
@@ -54,6 +63,11 @@ class Block {
 
  private:
   ConstLanes rows(int first, int count) const { return file_.rows(first, count).columns(0, lanes_); }
+  bool fixed_step() const { return schedule_.solver().fixed_step(); }
+  bool all_live_and_finite() const;
+  void observe(int sample);
+  void record_interpreted(int from, int to, Lanes out);
+  void call(native::Function function, native::Call call) const;
   SimulationProgram const& program_;
   Schedule const& schedule_;
   Executor executor_;
@@ -62,6 +76,8 @@ class Block {
   LaneFile file_;
   std::unique_ptr<Stepper> stepper_;
   std::vector<int> death_;
+  native::Function observe_loop_ = nullptr, record_loop_ = nullptr;  // null: interpreted
+  LaneArray recorded_;                                               // by machine code, for all lanes of the executor
 };
 
 }  // namespace sysid

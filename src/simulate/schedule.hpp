@@ -30,6 +30,8 @@ class Schedule {
   double time(int sample) const { return experiment_.time[static_cast<std::size_t>(sample)]; }
   /// Whether the sample of the channel is summed: its row is scored and it is not missing.
   bool summed(int channel, int sample) const;
+  /// The same for all samples of a channel, as flags.
+  std::uint8_t const* summed(int channel) const { return summed_[static_cast<std::size_t>(channel)].data(); }
   /// The number of summed samples of a channel.
   int count(int channel) const;
   /// One past the last sample that is summed in any channel.

@@ -8,6 +8,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "simulate/block.hpp"
+#include "simulate/machine_loop.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
@@ -15,6 +16,12 @@ namespace {
 
 /// Dead lanes are looked for after every so many samples.
 constexpr int burial_interval = 64;
+
+/// Where a block that is at sample `from` is looked at next: machine code runs on to where dead lanes are looked for, what is
+/// slower can be stopped at every sample.
+int next_look(Block const& block, int from, int end) {
+  return block.runs_loops() ? std::min(end, (from / burial_interval + 1) * burial_interval) : from + 1;
+}
 
 /// Registers of a block beyond this do not stay in a 32 KiB first-level cache beside code and tables.
 constexpr int cache_bytes = 28 * 1024;
@@ -37,6 +44,8 @@ void do_work(std::span<Work const> work, ThreadPool* pool) {
     for (auto const* block : blocks) (*block)();
 }
 
+std::string const& why_no_machine_code() { return native::why_unavailable(); }
+
 std::shared_ptr<ThreadPool> make_pool(ExecutionOptions const& options) {
   int const threads = options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return threads > 1 ? std::make_shared<ThreadPool>(threads) : nullptr;
@@ -51,7 +60,30 @@ Simulator::Simulator(std::shared_ptr<SimulationProgram const> program, Schedule 
 
 int Simulator::threads() const { return pool_ ? pool_->threads() : 1; }
 
-Executor Simulator::executor(int width, double instructions) const {
+Executor Simulator::executor(int width, double instructions, native::LoopKind loop) const {
+  if (options_.executor == ExecutorKind::scalar) return choose_executor(width, 1, ExecutorKind::scalar);
+  if (options_.executor != ExecutorKind::lanes)
+    if (auto const found = native(width, instructions, loop)) return *found;
+  return interpreter(width, instructions);
+}
+
+std::optional<Executor> Simulator::native(int width, double instructions, native::LoopKind loop) const {
+  SolverSettings const& solver = schedule_.solver();
+  if (!solver.row().in_program) return std::nullopt;  // nearly all the work is the solver's own
+  int widest = options_.lanes > 0 ? options_.lanes : most_native_lanes(*program_);
+  if (pool_ && options_.lanes == 0 && instructions > 4 * small_job)
+    widest = std::min(widest, std::max(least_lanes(solver), (width + pool_->threads() - 1) / pool_->threads()));
+  Executor const chosen = choose_executor(std::min(width, widest), std::numeric_limits<int>::max(), ExecutorKind::native);
+  if (options_.executor == ExecutorKind::automatic) {
+    double const seconds = interpretation_time(instructions / width, width, interpreter(width, instructions));
+    if (!program_->machine_code->pays(machine_loop_name(solver, chosen, loop), seconds, compilation_time(*program_, chosen)))
+      return std::nullopt;
+  }
+  if (machine_loop(*program_, solver, chosen, loop) == nullptr) return std::nullopt;
+  return chosen;
+}
+
+Executor Simulator::interpreter(int width, double instructions) const {
   int widest = options_.lanes;
   if (widest == 0) {
     widest = std::max(least_lanes(schedule_.solver()), cache_bytes / 8 / std::max(1, program_->hot_registers));
@@ -62,14 +94,15 @@ Executor Simulator::executor(int width, double instructions) const {
   return choose_executor(std::min(width, widest), options_.lanes == 0 ? widest : std::numeric_limits<int>::max());
 }
 
-Work Simulator::blocks(int width, int samples, BlockWork const& work) const {
+Work Simulator::blocks(int width, int samples, native::LoopKind loop, BlockWork const& work) const {
   Work result;
   if (width == 0) return result;
   result.instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
-  Executor const executor = this->executor(width, result.instructions);
+  Executor const executor = this->executor(width, result.instructions, loop);
+  result.instructions /= speed(executor);
   for (int lane = 0; lane < width; lane += executor.width)
-    result.blocks.push_back([this, work, executor, lane, lanes = std::min(executor.width, width - lane)] {
-      Block block(*program_, schedule_, choose_executor(lanes, executor.width), lanes);  // the last one may be narrower
+    result.blocks.push_back([this, work, executor, loop, lane, lanes = std::min(executor.width, width - lane)] {
+      Block block(*program_, schedule_, narrowed(executor, lanes), lanes, loop);  // the last one may be narrower
       work(block, lane, lanes);
     });
   return result;
@@ -84,15 +117,16 @@ void Simulator::give_up(int sample, int lane, int lanes, Lanes out, std::span<Ou
 
 Work Simulator::sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
   int const end = schedule_.last_summed();
-  return blocks(parameters.width(), end, [=, this](Block& block, int lane, int lanes) {
+  return blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     block.start();
     bool alive = true;
-    for (int i = 0; i < end && alive; ++i) {
-      if (stopped()) return give_up(i, lane, lanes, out, outcome);
-      block.observe(i);
-      if (i + 1 < end) block.step(i);
-      if ((i + 1) % burial_interval == 0 || i + 1 == end) alive = block.bury(i);
+    for (int from = 0; from < end && alive;) {
+      if (stopped()) return give_up(from, lane, lanes, out, outcome);
+      int const to = next_look(block, from, end);
+      block.advance(from, to, end - 1);
+      if (to % burial_interval == 0 || to == end) alive = block.bury(to - 1);
+      from = to;
     }
     if (end == 0) block.bury(0);
     block.finish();
@@ -125,16 +159,18 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
   block.start();
   int const records = program_->registers.records;
   bool alive = true;
-  for (int i = 0; i < last && alive; ++i) {
-    if (stopped()) return give_up(i, lane, lanes, out, outcome);
-    if (i > 0) draw(i);
-    if (i >= first) {
-      block.record(i);
-      ConstLanes const now = block.records();
-      for (int r = 0; r < records; ++r) std::copy_n(now.row(r).begin(), lanes, &out((i - first) * records + r, lane));
-    }
-    if ((i + 1) % burial_interval == 0 || i + 1 == last) alive = block.bury(i);
-    if (i + 1 < last) block.step(i);
+  for (int from = 0; from < last && alive;) {
+    if (stopped()) return give_up(from, lane, lanes, out, outcome);
+    if (from > 0) draw(from);
+    int to = redraw != nullptr ? from + 1 : next_look(block, from, last);
+    if (from < first) to = std::min(to, first);
+    if (from < first)
+      block.step_to(from, to - 1);
+    else
+      block.record(from, to, {&out((from - first) * records, lane), (to - from) * records, lanes, out.stride()});
+    if (to % burial_interval == 0 || to == last) alive = block.bury(to - 1);
+    if (to < last) block.step(to - 1);
+    from = to;
   }
   for (int w = 0; w < lanes; ++w) {
     int const death = block.death()[static_cast<std::size_t>(w)];
@@ -145,7 +181,7 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
 }
 
 Work Simulator::records_work(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const {
-  return blocks(parameters.width(), last, [=, this](Block& block, int lane, int lanes) {
+  return blocks(parameters.width(), last, native::LoopKind::record, [=, this](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     record_block(block, nullptr, lane, lanes, first, last, out, outcome);
   });
@@ -157,9 +193,10 @@ void Simulator::records(ConstLanes parameters, int first, int last, Lanes out, s
 }
 
 void Simulator::records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const {
-  Work const work = blocks(static_cast<int>(outcome.size()), last, [=, this, &redraw](Block& block, int lane, int lanes) {
-    record_block(block, &redraw, lane, lanes, first, last, out, outcome);
-  });
+  Work const work = blocks(static_cast<int>(outcome.size()), last, native::LoopKind::record,
+                           [=, this, &redraw](Block& block, int lane, int lanes) {
+                             record_block(block, &redraw, lane, lanes, first, last, out, outcome);
+                           });
   do_work({&work, 1}, pool_.get());
 }
 

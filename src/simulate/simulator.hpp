@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/numeric/lanes.hpp"
@@ -21,8 +22,9 @@ class ThreadPool;  // simulate/thread_pool.hpp
 struct ExecutionOptions {
   int lanes = 0;    // lanes per block, rounded up to what an executor has; 0: chosen from the work and the first-level cache
   int threads = 1;  // 0: one per processor
-  /// Asked at every sample, from several threads at once. True: what is not done is given up and counts as failed, for a caller who
-  /// uses nothing of it then. Null: never.
+  ExecutorKind executor = ExecutorKind::automatic;
+  /// Asked every few samples, from several threads at once. True: what is not done is given up and counts as failed, for a caller
+  /// who uses nothing of it then. Null: never.
   bool (*stopped)() = nullptr;
 };
 
@@ -50,6 +52,9 @@ struct Work {
 /// Does all blocks of all pieces; returns when they are done. pool: null for the calling thread alone.
 void do_work(std::span<Work const> work, ThreadPool* pool);
 
+/// Why simulations cannot be compiled to machine code; empty where they can. Loads the compiler.
+std::string const& why_no_machine_code();
+
 /// The threads that the options ask for; null for one.
 std::shared_ptr<ThreadPool> make_pool(ExecutionOptions const& options);
 
@@ -66,8 +71,9 @@ class Simulator {
   int threads() const;
   /// As the options say; what has no result then is not looked into either.
   bool stopped() const { return options_.stopped != nullptr && options_.stopped(); }
-  /// For blocks of a batch of `width` lanes that takes so many lane-instructions in all.
-  Executor executor(int width, double instructions) const;
+  /// For blocks of a batch of `width` lanes that takes so many lane-instructions in all, in loops of that kind. Counts them, as
+  /// machine code is made when a program has been interpreted for long enough.
+  Executor executor(int width, double instructions, native::LoopKind loop) const;
 
   /// parameters: [parameters x W], SI. out: [sum_count x W], rows as SimulationProgram::sum_row; NaN in failed lanes. outcome: [W].
   /// A lane fails when a state or a sum is not finite. Lane w depends on column w alone.
@@ -92,7 +98,9 @@ class Simulator {
 
  private:
   using BlockWork = std::function<void(Block&, int lane, int lanes)>;
-  Work blocks(int width, int samples, BlockWork const& work) const;
+  Work blocks(int width, int samples, native::LoopKind loop, BlockWork const& work) const;
+  Executor interpreter(int width, double instructions) const;
+  std::optional<Executor> native(int width, double instructions, native::LoopKind loop) const;
   static void give_up(int sample, int lane, int lanes, Lanes out, std::span<Outcome> outcome);
   void record_block(Block& block, Redraw const* redraw, int lane, int lanes, int first, int last, Lanes out,
                     std::span<Outcome> outcome) const;

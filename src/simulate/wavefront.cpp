@@ -8,6 +8,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "simulate/block.hpp"
+#include "simulate/machine_loop.hpp"
 
 namespace sysid {
 namespace {
@@ -22,7 +23,7 @@ constexpr int blocks_per_crew = 8;
 class Crew {
  public:
   Crew(Simulator const& simulator, ConstLanes parameters, Wanted const& wanted, int first, Lanes out, std::span<Ending> endings,
-       std::span<int> failed_at, int block_lanes)
+       std::span<int> failed_at, Executor executor)
       : simulator_(simulator),
         program_(simulator.program()),
         schedule_(simulator.schedule()),
@@ -32,7 +33,8 @@ class Crew {
         out_(out),
         endings_(endings),
         failed_at_(failed_at),
-        block_lanes_(block_lanes),
+        executor_(executor),
+        block_lanes_(executor.width),
         end_(schedule_.last_summed()) {}
 
   void run() {
@@ -68,10 +70,10 @@ class Crew {
     for (int lane = 0; lane < lanes; lane += block_lanes_) {
       int const count = std::min(block_lanes_, lanes - lane);
       if (count == block_lanes_) {
-        if (!full_) full_.emplace(program_, schedule_, choose_executor(block_lanes_, block_lanes_), block_lanes_);
+        if (!full_) full_.emplace(program_, schedule_, executor_, block_lanes_);
         action(*full_, lane, count);
       } else {
-        Block last(program_, schedule_, choose_executor(count, block_lanes_), count);
+        Block last(program_, schedule_, narrowed(executor_, count), count);
         action(last, lane, count);
       }
     }
@@ -79,10 +81,7 @@ class Crew {
 
   /// Samples [from, to), and the step to `to`.
   void advance(Block& block, int from, int to) const {
-    for (int i = from; i < to; ++i) {
-      block.observe(i);
-      if (i + 1 < end_) block.step(i);
-    }
+    block.advance(from, to, end_ - 1);
     if (to == end_) block.finish();
   }
 
@@ -151,7 +150,7 @@ class Crew {
   void run_in_place() {
     for (int lane = 0; lane < parameters_.width(); lane += block_lanes_) {
       int const count = std::min(block_lanes_, parameters_.width() - lane);
-      Block block(program_, schedule_, choose_executor(count, block_lanes_), count);
+      Block block(program_, schedule_, narrowed(executor_, count), count);
       at_.resize(static_cast<std::size_t>(count));
       std::iota(at_.begin(), at_.end(), lane);
       block.set_parameters(parameters_.columns(lane, count));
@@ -184,6 +183,7 @@ class Crew {
   Lanes out_;
   std::span<Ending> endings_;
   std::span<int> failed_at_;
+  Executor executor_;
   int block_lanes_, end_;
   std::vector<int> at_;  // the lanes of the crew that still run, in order
   std::optional<Block> full_;
@@ -198,7 +198,9 @@ Work wavefront_work(Simulator const& simulator, ConstLanes parameters, Wanted wa
   if (width == 0) return result;
   result.instructions =
       work_per_sample(simulator.program(), simulator.schedule().solver()) * simulator.schedule().last_summed() * width;
-  int const block = simulator.executor(width, result.instructions).width;
+  Executor const executor = simulator.executor(width, result.instructions, native::LoopKind::observe);
+  int const block = executor.width;
+  result.instructions /= speed(executor);
   // Two crews a thread at least, so that threads end together.
   int const share = (width + 2 * simulator.threads() - 1) / (2 * simulator.threads());
   int const crew = std::clamp((share + block - 1) / block * block, block, block * blocks_per_crew);
@@ -208,7 +210,7 @@ Work wavefront_work(Simulator const& simulator, ConstLanes parameters, Wanted wa
       int const lanes = std::min(crew, width - lane);
       auto const first = static_cast<std::size_t>(lane), count = static_cast<std::size_t>(lanes);
       Crew(simulator, parameters.columns(lane, lanes), *shared, lane, out.columns(lane, lanes), endings.subspan(first, count),
-           failed_at.subspan(first, count), block)
+           failed_at.subspan(first, count), executor)
           .run();
     });
   return result;

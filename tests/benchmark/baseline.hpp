@@ -1,4 +1,4 @@
-// What a careful programmer writes for one model without this program: a scalar loop, compiled with -O3 -march=native.
+// What a careful programmer writes for one model without this program: a scalar loop, and one over vectors; -O3 -march=native.
 #pragma once
 #include <vector>
 
@@ -14,5 +14,14 @@ struct Record {
 double duffing(Record const& record, double m, double c, double k, double k3);
 /// n = 2.
 double bouc_wen(Record const& record, double m, double c, double A, double alpha, double beta);
+
+/// Lanes of the widest vectors of the processor that this was compiled for.
+int simd_lanes();
+/// The same for many parameter vectors at once: a row of `lanes` values for each parameter, in the order of the arguments above;
+/// sums: [lanes]. A multiple of simd_lanes().
+void duffing_simd(Record const& record, double const* const* parameters, int lanes, double* sums);
+void bouc_wen_simd(Record const& record, double const* const* parameters, int lanes, double* sums);
+/// With the exponent n as the sixth parameter.
+void bouc_wen_power_simd(Record const& record, double const* const* parameters, int lanes, double* sums);
 
 }  // namespace baseline

@@ -22,6 +22,8 @@ struct Case {
   std::vector<double> centre;  // parameters, spread by a few percent over lanes
   /// The hand-written loop; nullptr: there is none.
   double (*loop)(baseline::Record const&, std::vector<double> const&);
+  /// The same over lanes.
+  void (*simd)(baseline::Record const&, double const* const*, int, double*);
 
   LaneArray parameters(int width) const {
     LaneArray result(static_cast<int>(centre.size()), width);
@@ -58,7 +60,8 @@ inline Case duffing() {
           std::make_shared<SimulationProgram const>(compile(systems::duffing())),
           std::move(experiment),
           {1, 20, 1e4, 5e9, 1e10},
-          [](baseline::Record const& r, std::vector<double> const& p) { return baseline::duffing(r, p[0], p[1], p[2], p[3]); }};
+          [](baseline::Record const& r, std::vector<double> const& p) { return baseline::duffing(r, p[0], p[1], p[2], p[3]); },
+          &baseline::duffing_simd};
 }
 
 /// 1001 samples of a sine; n = 2.
@@ -76,16 +79,18 @@ inline Case bouc_wen() {
       std::make_shared<SimulationProgram const>(compile(systems::bouc_wen(2))),
       std::move(experiment),
       {2, 10, 5e4, 0.8, -1.1},
-      [](baseline::Record const& r, std::vector<double> const& p) { return baseline::bouc_wen(r, p[0], p[1], p[2], p[3], p[4]); }};
+      [](baseline::Record const& r, std::vector<double> const& p) { return baseline::bouc_wen(r, p[0], p[1], p[2], p[3], p[4]); },
+      &baseline::bouc_wen_simd};
 }
 
-/// The same record with the exponent n = 1.5 a parameter: powers dominate; nobody writes that loop by hand.
+/// The same record with the exponent n = 1.5 a parameter: powers dominate.
 inline Case bouc_wen_with_powers() {
   Case result = bouc_wen();
   result.name = "Bouc-Wen n estimated, 1001 samples";
   result.program = std::make_shared<SimulationProgram const>(compile(systems::bouc_wen(0)));
   result.centre = {2, 10, 5e4, 0.8, -1.1, 1.5};
   result.loop = nullptr;
+  result.simd = &baseline::bouc_wen_power_simd;
   return result;
 }
 

@@ -40,8 +40,10 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"solver", {"core", "expression"}},
     {"program/bytecode", {"expression"}},
     {"program/interpreter", {"core", "program/bytecode"}},
-    {"program", {"core", "expression", "solver", "program/bytecode", "program/interpreter"}},
-    {"simulate", {"core", "data", "expression", "solver", "program/interpreter", "program"}},
+    {"native", {"program/bytecode"}},
+    {"native/llvm", {"expression", "program/bytecode", "native"}},
+    {"program", {"core", "expression", "solver", "program/bytecode", "program/interpreter", "native"}},
+    {"simulate", {"core", "data", "expression", "solver", "program/interpreter", "native", "program"}},
     {"likelihood", {"core", "linear_algebra", "result", "model", "solver", "program", "simulate"}},
     {"likelihood/process", {"core", "gaussian_process", "model", "simulate", "likelihood"}},
     {"likelihood/segments", {"core", "linear_algebra", "simulate", "likelihood"}},
@@ -169,7 +171,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
 std::pair<std::string, std::string> const owned[] = {
     {"<boost/spirit", "grammar"}, {"<nlopt", "gaussian_process"}, {"<netcdf", "exchange"},  {"<cvode", "simulate"},
     {"<ida", "simulate"},         {"<arkode", "simulate"},        {"<nvector", "simulate"}, {"<sunmatrix", "simulate"},
-    {"<sunlinsol", "simulate"},   {"<sundials", "simulate"},
+    {"<sunlinsol", "simulate"},   {"<sundials", "simulate"},      {"<llvm", "native/llvm"},
 };
 
 std::set<std::string> const* allowed(std::string const& room) {

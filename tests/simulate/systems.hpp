@@ -57,4 +57,27 @@ inline SimulationSource bouc_wen(double exponent) {
   return source;
 }
 
+/// A chain of masses, m y_i'' + c y_i' + k (2 y_i - y_(i-1) - y_(i+1)) + k3 y_i^3 = x at the first, 0 at the others, between walls;
+/// parameters m, c, k_1 ... k_n, k3.
+inline SimulationSource chain(int masses) {
+  SimulationSource source;
+  Graph& g = source.graph;
+  auto const p = [&](int i) { return g.leaf(LeafKind::parameter, i); };
+  auto const y = [&](int i) { return i < 0 || i >= masses ? g.constant(0) : g.leaf(LeafKind::state, 2 * i); };
+  source.parameters = masses + 3;
+  source.inputs = 1;
+  for (int i = 0; i < masses; ++i) {
+    NodeId const v = g.leaf(LeafKind::state, 2 * i + 1);
+    NodeId const stretch = g.subtract(g.multiply(g.constant(2), y(i)), g.add(y(i - 1), y(i + 1)));
+    NodeId const spring = g.add(g.multiply(p(2 + i), stretch), g.multiply(p(masses + 2), g.power(y(i), g.constant(3))));
+    NodeId const force = i == 0 ? g.leaf(LeafKind::input, 0) : g.constant(0);
+    source.initial.insert(source.initial.end(), {g.constant(0), g.constant(0)});
+    source.derivative.insert(source.derivative.end(),
+                             {v, g.divide(g.subtract(g.subtract(force, g.multiply(p(1), v)), spring), p(0))});
+    source.records.push_back(y(i));
+  }
+  source.channels = {{{g.power(g.subtract(g.leaf(LeafKind::measured, 0), y(0)), g.constant(2))}}};
+  return source;
+}
+
 }  // namespace sysid::systems

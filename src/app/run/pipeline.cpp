@@ -16,6 +16,9 @@ ExitCode run_tasks(Source const& source, CheckedFile const& file, std::vector<st
   auto const asked = [&](Task const& task) {
     return verbs.empty() || std::find(verbs.begin(), verbs.end(), verb_of(task)) != verbs.end();
   };
+  if (options.execution.executor == ExecutorKind::native)
+    if (std::string const why = why_no_machine_code(); !why.empty())
+      notices << "machine code is not available, simulations are interpreted: " << why << '\n';
   if (std::any_of(file.tasks.begin(), file.tasks.end(), asked)) return run_tasks(session, asked);
   notices << nothing_to_do(source, file, verbs);
   return ExitCode::usage;

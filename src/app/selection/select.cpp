@@ -305,6 +305,7 @@ class Select {
     report.timing.emplace_back("wall_seconds", wall.count());
     report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
     report.timing.emplace_back("lanes", static_cast<std::int64_t>(session_.options.execution.lanes));
+    report.timing.emplace_back("executor", std::string(name(session_.options.execution.executor)));
   }
 
   // For predictions of this run.

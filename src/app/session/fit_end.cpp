@@ -86,6 +86,7 @@ ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpo
   report.timing.emplace_back("wall_seconds", wall.count());
   report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
   report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
+  report.timing.emplace_back("executor", std::string(name(session.options.execution.executor)));
   keep_result(session, task, report);
   if (interrupted) {
     session.notices << fmt::format("{}: interrupted; continue with {}\n", task.name, to_resume(session.options.surface));

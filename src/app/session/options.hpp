@@ -24,7 +24,7 @@ struct RunOptions {
   /// None without figures.
   std::vector<FigureFormat> pictures() const { return figures ? figure_formats : std::vector<FigureFormat>{}; }
   std::optional<std::uint64_t> seed;  // in place of the file's
-  ExecutionOptions execution;         // lanes, threads: change nothing in the results
+  ExecutionOptions execution;         // lanes, threads, executor: change nothing in the results
   double checkpoint_interval = 30;    // [s]
   std::uint64_t interrupt_after = 0;  // tests: ask for an interruption at the n-th poll; 0: never
 };

@@ -45,4 +45,13 @@ SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
 #undef SYSID_UNARY
 #undef SYSID_BINARY
 
+void const* vector_form(void const* lanes, bool wide) {
+#define SYSID_FORM(name, accuracy) \
+  if (lanes == reinterpret_cast<void const*>(&name##_lanes)) return wide ? avx512::name##_form() : avx2::name##_form();
+  SYSID_ELEMENTARY_UNARY(SYSID_FORM)
+  SYSID_ELEMENTARY_BINARY(SYSID_FORM)
+#undef SYSID_FORM
+  return nullptr;
+}
+
 }  // namespace sysid::elementary

@@ -27,4 +27,10 @@ SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
 #undef SYSID_UNARY
 #undef SYSID_BINARY
 
+#define SYSID_FORM(name, accuracy) \
+  void const* name##_form() { return reinterpret_cast<void const*>(&Sleef_finz_##name##d8_##accuracy##avx512f); }
+SYSID_ELEMENTARY_UNARY(SYSID_FORM)
+SYSID_ELEMENTARY_BINARY(SYSID_FORM)
+#undef SYSID_FORM
+
 }  // namespace sysid::elementary::avx512

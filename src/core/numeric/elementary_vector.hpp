@@ -5,8 +5,13 @@
 
 namespace sysid::elementary {
 
-#define SYSID_UNARY(name, accuracy) void name(double const* x, double* out, int width);
-#define SYSID_BINARY(name, accuracy) void name(double const* x, double const* y, double* out, int width);
+/// Beside each, the address of the function of one vector behind it.
+#define SYSID_UNARY(name, accuracy)                   \
+  void name(double const* x, double* out, int width); \
+  void const* name##_form();
+#define SYSID_BINARY(name, accuracy)                                   \
+  void name(double const* x, double const* y, double* out, int width); \
+  void const* name##_form();
 namespace avx2 {  // width: a multiple of 4
 SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
 SYSID_ELEMENTARY_BINARY(SYSID_BINARY)

@@ -17,6 +17,16 @@ constexpr Executor wide_executors[] = {{InstructionSet::avx2, 4},
                                        {InstructionSet::avx512, 32},
                                        {InstructionSet::avx512, 64}};
 
+constexpr Executor narrow_native[] = {{InstructionSet::avx2, 1, ExecutorKind::native},
+                                      {InstructionSet::avx2, 4, ExecutorKind::native},
+                                      {InstructionSet::avx2, 8, ExecutorKind::native},
+                                      {InstructionSet::avx2, 16, ExecutorKind::native}};
+constexpr Executor wide_native[] = {{InstructionSet::avx2, 1, ExecutorKind::native},
+                                    {InstructionSet::avx2, 4, ExecutorKind::native},
+                                    {InstructionSet::avx512, 8, ExecutorKind::native},
+                                    {InstructionSet::avx512, 16, ExecutorKind::native},
+                                    {InstructionSet::avx512, 32, ExecutorKind::native}};
+
 std::vector<Step> link_for(Code const& code, int uniforms, Executor executor) {
   bool const wide = executor.set == InstructionSet::avx512;
   std::uint32_t const rows = static_cast<std::uint32_t>(uniform_space(uniforms)) * 8;
@@ -58,8 +68,29 @@ std::span<Executor const> executors(InstructionSet set) {
   return narrow_executors;
 }
 
-Executor choose_executor(int lanes, int widest) {
-  std::span<Executor const> const all = executors(instruction_set());
+std::span<Executor const> native_executors(InstructionSet set) {
+  if (set == InstructionSet::avx512) return wide_native;
+  return narrow_native;
+}
+
+std::string_view name(ExecutorKind kind) {
+  switch (kind) {
+    case ExecutorKind::scalar:
+      return "scalar";
+    case ExecutorKind::lanes:
+      return "lanes";
+    case ExecutorKind::native:
+      return "native";
+    case ExecutorKind::automatic:
+      break;
+  }
+  return "auto";
+}
+
+Executor choose_executor(int lanes, int widest, ExecutorKind kind) {
+  if (kind == ExecutorKind::scalar) return {InstructionSet::avx2, 1, kind};
+  std::span<Executor const> const all =
+      kind == ExecutorKind::native ? native_executors(instruction_set()) : executors(instruction_set());
   Executor chosen = all.front();
   for (Executor const& executor : all) {
     if (executor.width > widest) break;
@@ -69,6 +100,10 @@ Executor choose_executor(int lanes, int widest) {
   return chosen;
 }
 
+Executor narrowed(Executor executor, int lanes) {
+  return executor.kind == ExecutorKind::lanes ? choose_executor(lanes, executor.width) : executor;
+}
+
 std::vector<Step> const& LinkedCode::steps(Executor executor) const {
   int const index = position(executor);
   return executor.set == InstructionSet::avx512 ? wide[index] : narrow[index];
@@ -76,6 +111,8 @@ std::vector<Step> const& LinkedCode::steps(Executor executor) const {
 
 std::shared_ptr<LinkedCode const> link(Code const& code, int uniforms) {
   auto linked = std::make_shared<LinkedCode>();
+  linked->code = code;
+  linked->uniforms = uniforms;
   for (Executor const& executor : narrow_executors) linked->narrow[position(executor)] = link_for(code, uniforms, executor);
   if (supported_instruction_set() == InstructionSet::avx512)
     for (Executor const& executor : wide_executors)
@@ -84,6 +121,7 @@ std::shared_ptr<LinkedCode const> link(Code const& code, int uniforms) {
 }
 
 void run(LinkedCode const& code, Executor executor, double* file) {
+  if (executor.width == 1) return run_scalar(code.code, file, file + uniform_space(code.uniforms));
   Step const* steps = code.steps(executor).data();
   if (executor.set == InstructionSet::avx512)
     avx512::run(steps, reinterpret_cast<char*>(file), executor.width);

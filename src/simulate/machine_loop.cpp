@@ -1,0 +1,81 @@
+// Which sections a loop has, and what it costs to compile and to interpret it.
+#include "simulate/machine_loop.hpp"
+
+#include <algorithm>
+
+#include "core/numeric/elementary.hpp"
+#include "program/embedded.hpp"
+
+namespace sysid {
+namespace {
+
+native::SectionCode code_of(Section const& section) { return {section.code, section.uniforms.kernel.outputs}; }
+
+/// Instructions of a loop's body beyond which vectors side by side cost more, in spilt registers and in compilation, than the
+/// latencies that they hide.
+constexpr double largest_body = 500;
+
+/// Of the loop over samples, for one vector.
+double instructions(SimulationProgram const& program) {
+  std::size_t sum = program.step.code.size() + program.carry.code.size();
+  for (Section const& observe : program.observe) sum += observe.code.size();
+  return static_cast<double>(sum);
+}
+
+int vector_lanes(Executor executor) { return executor.width == 1 ? 1 : executor.set == InstructionSet::avx512 ? 8 : 4; }
+int vectors(Executor executor) { return executor.width / vector_lanes(executor); }
+
+native::Loop write_loop(SimulationProgram const& program, SolverSettings const& solver, Executor executor, native::LoopKind kind) {
+  native::Loop loop;
+  loop.kind = kind;
+  loop.wide = executor.set == InstructionSet::avx512;
+  loop.vector_lanes = vector_lanes(executor);
+  loop.vectors = vectors(executor);
+  loop.vector_form = &elementary::vector_form;
+  loop.stride = executor.stride();
+  loop.one_step = solver.substeps == 1;
+  loop.constants = program.constants;
+  loop.kept = program.registers.carried();
+  if (kind == native::LoopKind::observe)
+    for (Section const& observe : program.observe) loop.samples.push_back(code_of(observe));
+  if (kind == native::LoopKind::record) loop.samples.push_back(code_of(program.record));
+  if (solver.fixed_step() && kind != native::LoopKind::attempt) loop.carry = code_of(program.carry);
+  if (solver.fixed_step() || kind == native::LoopKind::attempt) loop.step = code_of(program.step);
+  loop.first_record = program.registers.first_record();
+  loop.records = program.registers.records;
+  loop.position = program.registers.first_control() + static_cast<int>(Control::position);
+  return loop;
+}
+
+}  // namespace
+
+native::LoopName machine_loop_name(SolverSettings const& solver, Executor executor, native::LoopKind kind) {
+  return {kind, executor.set == InstructionSet::avx512, executor.width, solver.substeps == 1};
+}
+
+native::Function machine_loop(SimulationProgram const& program, SolverSettings const& solver, Executor executor,
+                              native::LoopKind kind) {
+  if (executor.kind != ExecutorKind::native) return nullptr;
+  return program.machine_code->function(machine_loop_name(solver, executor, kind),
+                                        [&] { return write_loop(program, solver, executor, kind); });
+}
+
+double compilation_time(SimulationProgram const& program, Executor executor) {
+  return 0.02 + 75e-6 * instructions(program) * vectors(executor);
+}
+
+int most_native_lanes(SimulationProgram const& program) {
+  int most = 1;
+  for (Executor const& each : native_executors(instruction_set()))
+    if (vectors(each) == 1 || instructions(program) * vectors(each) <= largest_body) most = std::max(most, each.width);
+  return most;
+}
+
+double speed(Executor executor) { return executor.kind == ExecutorKind::native ? 4 : 1; }
+
+double interpretation_time(double instructions, int lanes, Executor executor) {
+  double const blocks = (lanes + executor.width - 1) / executor.width;
+  return instructions * blocks * (0.5e-9 + 0.04e-9 * executor.width);
+}
+
+}  // namespace sysid
