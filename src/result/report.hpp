@@ -96,8 +96,8 @@ struct Report {
   std::vector<std::string> formulas;   // the equations as MathML, one each; empty where one is shown as its text
   std::string model_text;              // the user's text
   std::string resolved_text;           // the file that reproduces this run, every setting spelt out
-  /// The same to be run where it lies in the folder of the results: resolved.sysid, and the modules it uses. By name, with their text;
-  /// not in report.cbor.
+  /// The same to be run where it lies in the folder of the results: resolved.sysid, and the modules it uses. By name, with their
+  /// text; not in report.cbor.
   std::vector<std::pair<std::string, std::string>> resolved_files = {};
   std::vector<PriorInfo> priors;
   std::vector<FixedValue> fixed;  // of a selection and of a discovery none

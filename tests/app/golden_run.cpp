@@ -1,6 +1,6 @@
 // Every shipped model runs to its recorded summary: numbers to 1e-6 of their size (the seed fixes the bytes, but special functions
-// may differ in the last digits between processors), words exactly. Its pages can be made anew, and the documentation quotes what it
-// prints. SYSID_BLESS=1 rewrites the record.
+// may differ in the last digits between processors), words exactly. Its pages can be made anew, and the documentation quotes what
+// it prints. SYSID_BLESS=1 rewrites the record.
 #include <doctest/doctest.h>
 
 #include <cmath>

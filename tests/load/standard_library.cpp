@@ -8,8 +8,8 @@
 #include <set>
 
 #include "app/catalogue/module_page.hpp"
-#include "house/markdown.hpp"
 #include "check/checking.hpp"
+#include "house/markdown.hpp"
 #include "load/modules.hpp"
 
 using namespace sysid;

@@ -2,10 +2,10 @@
 #include <algorithm>
 
 #include "app/fit/fit_likelihood.hpp"
+#include "app/process/unknown_functions.hpp"
 #include "app/session/derived_draws.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
-#include "app/process/unknown_functions.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"

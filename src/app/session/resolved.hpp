@@ -13,7 +13,8 @@ std::string resolved_discover(Session const& session, Task const& task, Discover
 
 /// That text as files that run in the folder of the results: data are named from there, and modules that lie beside the user's file
 /// are written as resolved_NAME.sysid. By name, with their text; resolved.sysid first.
-std::vector<std::pair<std::string, std::string>> resolved_files(Session const& session, Task const& task, std::string const& resolved);
+std::vector<std::pair<std::string, std::string>> resolved_files(Session const& session, Task const& task,
+                                                                std::string const& resolved);
 
 /// "mh(samples = 25000, ...)", every setting in the order of the table.
 std::string settings_text(std::string const& backend, Settings const& settings);

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "app/session/session.hpp"
 #include "app/process/drawn_functions.hpp"
+#include "app/session/session.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "core/text/number.hpp"
-#include "report/figure/series.hpp"
 #include "core/text/utf8.hpp"
+#include "report/figure/series.hpp"
 
 namespace sysid::plot {
 

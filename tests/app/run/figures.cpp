@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "app/run/report_results.hpp"
+#include "app/running.hpp"
 #include "app/stored_pages.hpp"
 #include "experiment/true_parameters.hpp"
 #include "mechanics/second_difference.hpp"
-#include "app/running.hpp"
 
 using namespace sysid;
 
