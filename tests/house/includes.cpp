@@ -70,7 +70,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"search", {"core", "linear_algebra", "result", "gaussian_process", "likelihood"}},
     {"diagnostics", {"core", "linear_algebra", "result", "data", "distribution", "model", "solver", "likelihood", "search"}},
     {"inference/backend", {"core", "result", "likelihood", "likelihood/selection", "search", "diagnostics"}},
-    {"inference/chain", {"core", "linear_algebra", "likelihood", "search", "diagnostics", "inference/backend"}},
+    {"inference/chain", {"core", "linear_algebra", "result", "likelihood", "search", "diagnostics", "inference/backend"}},
     {"inference/abc", {"core", "linear_algebra", "likelihood/selection", "inference/backend"}},
     {"inference",
      {"core", "linear_algebra", "result", "likelihood", "search", "inference/backend", "inference/chain", "inference/abc"}},

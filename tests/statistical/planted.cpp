@@ -58,9 +58,13 @@ data bench {
 truth = simulate linear with values(c = 20, w = 100), input x = gaussian(sd = 10), noise = 1 [percent], samples = 300, rate = 1000 [Hz], file = "data.csv"
 posterior = fit linear to bench with mh(samples = 6000, burn_in = 3000, thin = 2)
 )";
+  Fitted const walks = run_file(with(text, "thin = 2", "thin = 2, proposal = walk"), seeded(3));
+  CHECK(walks.found("posterior", "second_mode"));
+  CHECK(walks.exit == 1);  // chains in different modes disagree, and no start hides that
+  // Independence moves cross, so the chains agree, on both modes: the warning is what is left.
   Fitted const fitted = run_file(text, seeded(3));
   CHECK(fitted.found("posterior", "second_mode"));
-  CHECK(fitted.exit == 1);  // chains in different modes disagree, and no start hides that
+  CHECK(fitted.exit == 0);
   CHECK_FALSE(sound_fit().found("posterior", "second_mode"));
 }
 

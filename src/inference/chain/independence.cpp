@@ -13,16 +13,32 @@
 namespace sysid::metropolis {
 namespace {
 
-constexpr double normal_share = 0.75;
-constexpr int degrees = 6;  // of freedom, even: chi-square variates are sums of squares of normals
+constexpr double normal_share = 0.65, axis_share = 0.25, student_share = 1 - normal_share - axis_share;
+constexpr int degrees = 6, axis_degrees = 3;  // of freedom
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
+
+/// A standard normal over the root of chi-square / degrees has Student's t distribution: this is one over that root.
+double student_scale(Stream& stream, int degrees_of_freedom) {
+  double squares = 0;
+  for (int i = 0; i < degrees_of_freedom; ++i) {
+    double const z = stream.normal();
+    squares += z * z;
+  }
+  return std::sqrt(degrees_of_freedom / squares);
+}
+
+/// log of t_3(z) / N(z), both with their constants.
+double log_axis_ratio(double z) {
+  constexpr double log_constant = -0.08195031641883688;  // log(2 / (pi sqrt 3)) + 1/2 log(2 pi)
+  return log_constant + z * z / 2 - 2 * elementary::log1p(z * z / axis_degrees);
+}
+
+}  // namespace
 
 double log_of_sum(double a, double b) {
   double const high = std::max(a, b), low = std::min(a, b);
   return high == minus_infinity ? high : high + elementary::log1p(elementary::exp(low - high));
 }
-
-}  // namespace
 
 Independence::Independence(std::vector<Component> const& components) {
   std::vector<double> weights;
@@ -35,10 +51,20 @@ Independence::Independence(std::vector<Component> const& components) {
     for (std::size_t i = 0; i < dimension_; ++i)
       for (std::size_t j = 0; j <= i; ++j)
         part.factor[i * dimension_ + j] = factor(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    set_sds(part);
     parts_.push_back(std::move(part));
     weights.push_back(component.weight);
   }
   set_constants(weights);
+}
+
+void Independence::set_sds(Part& part) {
+  std::size_t const n = part.mean.size();
+  part.sd.assign(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) part.sd[i] += part.factor[i * n + j] * part.factor[i * n + j];
+    part.sd[i] = std::sqrt(part.sd[i]);
+  }
 }
 
 void Independence::set_constants(std::vector<double> const& weights) {
@@ -52,8 +78,8 @@ void Independence::set_constants(std::vector<double> const& weights) {
     double log_volume = 0;
     for (std::size_t i = 0; i < dimension_; ++i) log_volume += elementary::log(part.factor[i * dimension_ + i]);
     double const log_weight = elementary::log(weights[k] / sum) - log_volume;
-    part.log_normal = log_weight + elementary::log(normal_share) - p / 2 * elementary::log(2 * std::numbers::pi);
-    part.log_student = log_weight + elementary::log(1 - normal_share) + elementary::lgamma((degrees + p) / 2) -
+    part.log_normal = log_weight - p / 2 * elementary::log(2 * std::numbers::pi);
+    part.log_student = log_weight + elementary::log(student_share) + elementary::lgamma((degrees + p) / 2) -
                        elementary::lgamma(degrees / 2.0) - p / 2 * elementary::log(degrees * std::numbers::pi);
   }
 }
@@ -67,20 +93,28 @@ void Independence::draw(StreamKey key, Lanes to, int lane) const {
       part = &candidate;
       break;
     }
-  double scale = 1;
-  if (stream.uniform() >= normal_share) {
-    double squares = 0;
-    for (int i = 0; i < degrees; ++i) {
-      double const z = stream.normal();
-      squares += z * z;
-    }
-    scale = std::sqrt(degrees / squares);
-  }
+  double const kind = stream.uniform();
+  bool const along_axis = kind >= normal_share && kind < normal_share + axis_share;
+  auto const axis = along_axis ? static_cast<std::size_t>(stream.below(dimension_)) : 0;
+  double const scale = kind < normal_share ? 1 : along_axis ? student_scale(stream, axis_degrees) : student_scale(stream, degrees);
   // Column after column, so that no copy of z is held.
   for (std::size_t i = 0; i < dimension_; ++i) to(static_cast<int>(i), lane) = part->mean[i];
   for (std::size_t j = 0; j < dimension_; ++j) {
-    double const z = scale * stream.normal();
+    double const z = (along_axis ? 1 : scale) * stream.normal();
     for (std::size_t i = j; i < dimension_; ++i) to(static_cast<int>(i), lane) += part->factor[i * dimension_ + j] * z;
+  }
+  if (!along_axis) return;
+  double const z = (to(static_cast<int>(axis), lane) - part->mean[axis]) / part->sd[axis];
+  shift(*part, axis, (scale - 1) * z, to, lane);
+}
+
+void Independence::shift(Part const& part, std::size_t j, double sds, Lanes to, int lane) const {
+  double const* row = part.factor.data() + j * dimension_;
+  for (std::size_t i = 0; i < dimension_; ++i) {
+    double covariance = 0;
+    double const* other = part.factor.data() + i * dimension_;
+    for (std::size_t k = 0; k <= std::min(i, j); ++k) covariance += other[k] * row[k];
+    to(static_cast<int>(i), lane) += covariance / part.sd[j] * sds;
   }
 }
 
@@ -103,7 +137,15 @@ double Independence::log_part(Part const& part, ConstLanes theta, int lane) cons
   }
   if (!std::isfinite(squares)) return minus_infinity;
   double const student = part.log_student - (degrees + static_cast<double>(dimension_)) / 2 * elementary::log1p(squares / degrees);
-  return log_of_sum(part.log_normal - squares / 2, student);
+  // N (0.65 + 0.25 / P sum of ratios), the ratios after their largest: they overflow far out, where N vanishes.
+  double highest = 0, sum = 0;
+  for (std::size_t j = 0; j < dimension_; ++j) {
+    z[j] = log_axis_ratio((theta(static_cast<int>(j), lane) - part.mean[j]) / part.sd[j]);
+    highest = std::max(highest, z[j]);
+  }
+  for (std::size_t j = 0; j < dimension_; ++j) sum += elementary::exp(z[j] - highest);
+  double const inner = normal_share * elementary::exp(-highest) + axis_share * sum / static_cast<double>(dimension_);
+  return log_of_sum(part.log_normal - squares / 2 + highest + elementary::log(inner), student);
 }
 
 double Independence::log_density(ConstLanes theta, int lane) const {
@@ -138,8 +180,14 @@ Independence Independence::restore(nlohmann::json const& stored, int dimension) 
   all.dimension_ = static_cast<std::size_t>(dimension);
   for (nlohmann::json const& from : stored) {
     std::vector<double> const constants = checkpoint::decode(from.at("constants"), 3);
-    all.parts_.push_back({constants.at(0), constants.at(1), constants.at(2), checkpoint::decode(from.at("mean"), all.dimension_),
-                          checkpoint::decode(from.at("factor"), all.dimension_ * all.dimension_)});
+    Part part{constants.at(0),
+              constants.at(1),
+              constants.at(2),
+              checkpoint::decode(from.at("mean"), all.dimension_),
+              checkpoint::decode(from.at("factor"), all.dimension_ * all.dimension_),
+              {}};
+    set_sds(part);
+    all.parts_.push_back(std::move(part));
   }
   return all;
 }

@@ -9,9 +9,15 @@
 
 namespace sysid::metropolis {
 
-/// q(x) = sum over components of  weight (3/4 N(x; mean, S) + 1/4 t_6(x; mean, S)),  S = L L', over the sampler's coordinates.
-/// Student's t keeps the weights p / q bounded where the tails of p are somewhat heavier than normal (Tierney 1994, sec. 2.3.3);
-/// the normal part is what most posteriors near a mode are. In many dimensions the t alone would nearly never be accepted.
+/// log(exp(a) + exp(b)); -infinity is the log of nothing.
+double log_of_sum(double a, double b);
+
+/// q(x) = sum over components of  weight (0.65 N(x) + 0.25 mean over j of N(x) t_3(z_j) / N(z_j) + 0.1 t_6(x)),  N and t_6 with the
+/// component's mean and covariance S = L L' over the sampler's coordinates, z_j = (x_j - mean_j) / sd_j.
+///
+/// The normal part is what most posteriors near a mode are. Student's t keeps the weights p / q bounded where the tails of p are
+/// heavier (Tierney 1994, sec. 2.3.3): in the middle part those of one coordinate, with the others as they follow from it; in the
+/// last those in all directions, which in many dimensions are nearly never drawn.
 class Independence {
  public:
   struct Component {
@@ -44,10 +50,14 @@ class Independence {
     double log_student = 0;
     std::vector<double> mean;    // [P]
     std::vector<double> factor;  // L, lower triangle of [P x P] by rows
+    std::vector<double> sd;      // [P]
   };
+  /// Adds what the others move by when coordinate j moves by `sds`: x += S e_j / sd_j sds.
+  void shift(Part const& part, std::size_t j, double sds, Lanes to, int lane) const;
   /// log of weight times density.
   double log_part(Part const& part, ConstLanes theta, int lane) const;
   void set_constants(std::vector<double> const& weights);
+  static void set_sds(Part& part);
 
   std::size_t dimension_ = 0;
   std::vector<Part> parts_;

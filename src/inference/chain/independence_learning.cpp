@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/elementary.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "search/laplace.hpp"
 
@@ -17,17 +18,18 @@ constexpr std::uint64_t trial_interval = 8;
 /// Laplace's shares may be far off: each mode is visited.
 constexpr double least_weight = 0.02;
 
-/// A move of the random walk is worth 0.33 / P independent draws at best (Gelman, Roberts and Gilks 1996), an independence move at
-/// most its chance of being accepted; but where that is small, chains stay for long in places that the mixture hardly reaches, and
-/// the walk must lead out of them. Between separate modes nothing else leads.
-int moves_for(double acceptance, bool several_modes) {
-  if (acceptance >= 0.5) return 15;
-  if (acceptance >= 0.25) return 7;
-  if (acceptance >= 0.1) return 3;
-  return several_modes && acceptance >= 0.01 ? 1 : 0;
-}
+constexpr int most_moves = 15;
+/// Independence moves that a chain spends in one place at most, between two moves of the random walk that lead out of it.
+constexpr double longest_wait = 30;
 
 }  // namespace
+
+void IndependenceLearning::Fit::add(double log_posterior, double log_q, bool first) {
+  double const log_weight = log_posterior - log_q;
+  log_density += log_q;
+  log_highest = first ? log_weight : std::max(log_highest, log_weight);
+  log_inverse = first ? -log_weight : log_of_sum(log_inverse, -log_weight);
+}
 
 IndependenceLearning::IndependenceLearning(std::vector<Mode> const& modes, std::vector<int> component_of_chain)
     : component_of_chain_(std::move(component_of_chain)) {
@@ -39,14 +41,24 @@ IndependenceLearning::IndependenceLearning(std::vector<Mode> const& modes, std::
   current_ = candidate_ = Independence(components);
 }
 
+// A move of the random walk is worth 0.33 / P independent draws at best (Gelman, Roberts and Gilks 1996), an independence move at
+// most its chance of being accepted. But in a place that the mixture hardly reaches a chain stays for long, and the walk must lead
+// out of it. Between separate modes nothing but independence moves leads.
+int IndependenceLearning::worth() const {
+  int const few = weights_.size() > 1 && acceptance_ >= 0.01 ? 1 : 0;
+  if (acceptance_ < 0.1) return few;
+  int const by_acceptance = acceptance_ >= 0.5 ? most_moves : acceptance_ >= 0.25 ? 7 : 3;
+  return std::max(few, std::min(by_acceptance, static_cast<int>(longest_wait / longest_stay_)));
+}
+
 int IndependenceLearning::moves_in_burn_in() const {
   if (!active()) return 0;
   if (windows_ == 0) return 3;
-  int const worth = moves_for(acceptance_, weights_.size() > 1);
-  return worth > 0 ? worth : cycles_ % trial_interval == 0 ? 1 : 0;
+  int const moves = worth();
+  return moves > 0 ? moves : cycles_ % trial_interval == 0 ? 1 : 0;
 }
 
-int IndependenceLearning::moves() const { return active() && windows_ > 0 ? moves_for(acceptance_, weights_.size() > 1) : 0; }
+int IndependenceLearning::moves() const { return active() && windows_ > 0 ? worth() : 0; }
 
 std::vector<char> IndependenceLearning::away(State const& state) const {
   std::vector<char> is_away(component_of_chain_.size(), 0);
@@ -60,9 +72,10 @@ void IndependenceLearning::learn(State const& state, Info const& info) {
   ++window_.iterations;
   for (int w = 0; w < state.theta.width(); ++w) {
     double const now = current_.log_density(state.theta, w), then = candidate_.log_density(state.theta, w);
-    if (std::isfinite(now) && std::isfinite(then)) {
-      window_.current += now;
-      window_.candidate += then;
+    double const density = state.log_prior[static_cast<std::size_t>(w)] + state.log_likelihood[static_cast<std::size_t>(w)];
+    if (std::isfinite(now) && std::isfinite(then) && std::isfinite(density)) {
+      window_.current.add(density, now, window_.states == 0);
+      window_.candidate.add(density, then, window_.states == 0);
       ++window_.states;
     }
     Move const& move = info[static_cast<std::size_t>(w)];
@@ -75,7 +88,13 @@ void IndependenceLearning::learn(State const& state, Info const& info) {
 void IndependenceLearning::end_cycle(std::span<Adaptation const> groups) {
   ++cycles_;
   if (window_.iterations < std::max(shortest_window, iterations_ / 4)) return;
-  if (window_.candidate > window_.current) current_ = candidate_;
+  bool const better = window_.candidate.log_density > window_.current.log_density;
+  if (better) current_ = candidate_;
+  if (window_.states > 0) {
+    // E w over q is 1 / E(1 / w) over p, of which the states are.
+    Fit const& fit = better ? window_.candidate : window_.current;
+    longest_stay_ = elementary::exp(fit.log_highest + fit.log_inverse) / static_cast<double>(window_.states);
+  }
   if (window_.moves > 0) acceptance_ = window_.acceptance / static_cast<double>(window_.moves);
   ++windows_;
   window_ = {};
@@ -94,7 +113,10 @@ nlohmann::json IndependenceLearning::store() const {
           {"current", current_.store()},
           {"candidate", candidate_.store()},
           {"counts", {window_.iterations, window_.states, window_.moves, iterations_, cycles_, windows_}},
-          {"sums", checkpoint::encode(std::vector<double>{window_.current, window_.candidate, window_.acceptance, acceptance_})}};
+          {"sums",
+           checkpoint::encode(std::vector<double>{
+               window_.current.log_density, window_.current.log_highest, window_.current.log_inverse, window_.candidate.log_density,
+               window_.candidate.log_highest, window_.candidate.log_inverse, window_.acceptance, acceptance_, longest_stay_})}};
 }
 
 IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored, int dimension) {
@@ -104,13 +126,14 @@ IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored,
   all.current_ = Independence::restore(stored.at("current"), dimension);
   all.candidate_ = Independence::restore(stored.at("candidate"), dimension);
   auto const counts = stored.at("counts").get<std::vector<std::uint64_t>>();
-  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 4);
+  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 9);
   if (counts.size() != 6) throw checkpoint::Mismatch("its independence moves differ in form");
-  all.window_ = {counts[0], counts[1], counts[2], sums[0], sums[1], sums[2]};
+  all.window_ = {counts[0], counts[1], counts[2], {sums[0], sums[1], sums[2]}, {sums[3], sums[4], sums[5]}, sums[6]};
   all.iterations_ = counts[3];
   all.cycles_ = counts[4];
   all.windows_ = counts[5];
-  all.acceptance_ = sums[3];
+  all.acceptance_ = sums[7];
+  all.longest_stay_ = sums[8];
   return all;
 }
 

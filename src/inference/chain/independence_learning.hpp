@@ -12,8 +12,9 @@ namespace sysid::metropolis {
 
 /// Begins with the normal distributions at the modes. Burn-in is cut into windows, each a third of what lies before it. At the end
 /// of one a mixture with the means and covariances that the chains had before it replaces the one in use if it gives the states
-/// *of* the window, which it has not seen, a higher mean log density. The share of accepted independence moves decides how many
-/// follow each move of the random walk.
+/// *of* the window, which it has not seen, a higher mean log density. How many independence moves follow each move of the random
+/// walk is decided by the share of them that is accepted, and by how long a chain may stay in one place: at x it takes w(x) / E w
+/// independence moves to leave, w = p / q, E over q (Mengersen and Tweedie 1996).
 class IndependenceLearning {
  public:
   /// Random walks alone.
@@ -42,18 +43,25 @@ class IndependenceLearning {
   static IndependenceLearning restore(nlohmann::json const& stored, int dimension);
 
  private:
+  /// What the states of a window say of a mixture.
+  struct Fit {
+    double log_density = 0;                   // sum of log q over the states
+    double log_highest = 0, log_inverse = 0;  // of the weights w: log max w, log sum 1/w
+    void add(double log_posterior, double log_q, bool first);
+  };
   struct Window {
     std::uint64_t iterations = 0, states = 0, moves = 0;
-    double current = 0, candidate = 0;  // sums of log q over the states
-    double acceptance = 0;              // sum over moves
+    Fit current, candidate;
+    double acceptance = 0;  // sum over moves
   };
+  int worth() const;
 
   std::vector<int> component_of_chain_;
   std::vector<double> weights_;
   Independence current_, candidate_;
   Window window_;
   std::uint64_t iterations_ = 0, cycles_ = 0, windows_ = 0;
-  double acceptance_ = 0;
+  double acceptance_ = 0, longest_stay_ = 1;  // of the last window
 };
 
 }  // namespace sysid::metropolis

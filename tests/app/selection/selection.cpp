@@ -144,7 +144,7 @@ TEST_CASE("what a selection searches and samples by the likelihood is not done a
     options.resume = true;
     ++interruptions;
   }
-  CHECK(interruptions > 10);
+  CHECK(interruptions > 3);
   CHECK(interruptions < 300);
   CHECK(selection_files(options.output) == selection_files(folder.path() / "whole"));
   CHECK_FALSE(std::filesystem::exists(options.output / "selection/checkpoint.cbor"));
