@@ -104,9 +104,9 @@ TEST_CASE("numbers that were changed, files that are not there and other version
   write_file(summary, changed);
   both("summary.json` has been changed since it was written");
   write_file(summary, text.substr(0, text.size() / 2));
-  both("summary.json` ");
+  both("posterior");
   write_file(summary, "");
-  both("summary.json` ");
+  both("posterior");
   Json other = Json::parse(text);
   other["versions"]["form"] = 1;
   seal(fit, other);

@@ -112,7 +112,6 @@ TEST_CASE("a fit that is interrupted while its step is chosen again goes on from
   for (int const report : {1, unbroken.reports / 2, unbroken.reports}) {
     CAPTURE(report);
     options = {};
-    options.checkpoint_interval = 0;
     AtSecondChoice broken(report);
     std::string const output = std::to_string(report);
     REQUIRE(run(output.c_str(), {"fit"}, broken) == 75);
