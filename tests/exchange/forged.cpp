@@ -85,7 +85,8 @@ TEST_CASE("numbers that were changed, files that are not there and other version
   REQUIRE(compared(fit).empty());
   std::string const draws = read_file(chain), text = read_file(summary), bytes = read_file(fit / "posterior.nc");
   auto const both = [&](std::string const& expected) {
-    for (std::string const& said : {exported(fit), compared(fit)}) CHECK_MESSAGE(said.find(expected) != std::string::npos, expected << " in: " << said);
+    for (std::string const& said : {exported(fit), compared(fit)})
+      CHECK_MESSAGE(said.find(expected) != std::string::npos, expected << " in: " << said);
     CHECK(read_file(fit / "posterior.nc") == bytes);
     write_file(chain, draws);
     write_file(summary, text);

@@ -171,8 +171,8 @@ posterior = fit curve to points with mh(samples = 4000, burn_in = 1000, thin = 1
     return exit;
   };
   CHECK(run("whole", 0, false) != 75);
-  int interruptions = run("broken", 300, false) == 75 ? 1 : 0;
-  interruptions += run("broken", 100, true) == 75 ? 1 : 0;
+  int interruptions = run("broken", 250, false) == 75 ? 1 : 0;
+  interruptions += run("broken", 40, true) == 75 ? 1 : 0;
   CHECK(interruptions == 2);
   CHECK(run("broken", 0, true) != 75);
   for (char const* file : {"summary.json", "draws_1.csv", "draws_2.csv", "function_f.csv"})

@@ -117,8 +117,8 @@ TEST_CASE("a selection interrupted while it polishes is not a finished one") {
     return summary.at("populations").at("count").get<std::uint64_t>();
   }();
   CHECK(run(whole.path() / "results", 0, false) != 75);
-  // The chains poll at every batch of their iterations: hundreds of times more often than populations are made.
-  REQUIRE(run(folder.path() / "results", 100 * populations, false) == 75);
+  // The chains poll at every batch of their iterations: many times more often than populations are made.
+  REQUIRE(run(folder.path() / "results", 60 * populations, false) == 75);
   json const summary = json::parse(read_file(folder.path() / "results/selection/summary.json"));
   CHECK(summary.at("populations").at("threshold") == 2);
   CHECK(run(folder.path() / "results", 0, true) != 75);
