@@ -34,7 +34,8 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
              "sample it with mh"}};
   bool const unmixed = std::any_of(found.begin(), found.end(), [](Finding const& each) {
     return each.code == FindingCode::chains_disagree || each.code == FindingCode::chains_not_quite_agreed ||
-           each.code == FindingCode::ess_bulk_low || each.code == FindingCode::ess_tail_low;
+           each.code == FindingCode::ess_bulk_low || each.code == FindingCode::ess_tail_low ||
+           each.code == FindingCode::chain_did_not_move || each.code == FindingCode::few_distinct_states;
   });
   if (!unmixed) return {};
   return {{FindingCode::hierarchy_narrows,
@@ -45,7 +46,7 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
                member->name),
            fmt::format(
                "write `{}` in terms of standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
-               "spread*z` (docs/methods/several_experiments.md)",
+               "spread*z` (docs/methods/several_experiments.md), or sample it with tempering",
                member->name, member->name)}};
 }
 

@@ -250,11 +250,31 @@ TEST_CASE("the eight schools by standardised members agree with quadrature") {
   CHECK_FALSE(fitted.found("posterior", "hierarchy_narrows"));
 }
 
-TEST_CASE("the eight schools as they stand are refused by R-hat, with the way out; their optimum comes with a warning") {
+TEST_CASE("replica exchange samples the eight schools as they stand: they agree with quadrature") {
+  std::vector<double> variance;
+  for (double const e : standard_errors) variance.push_back(e * e);
+  Quadrature const exact(
+      effects, variance, 5, [](double tau) { return -std::log1p(tau * tau / 25); }, 1000, 2e-3);
+  Fitted const fitted = eight_schools("  parameter effect per experiment ~ normal(mu, sd = tau)\n", "tempering");
+  CHECK(fitted.exit == 0);
+  // Six seeds scatter one and a half times as wide as their effective sizes say, which are too large for the visits of the neck.
+  auto const near = [&](std::string const& name, std::size_t at) {
+    INFO(name);
+    auto const& found = fitted.of("posterior", name);
+    CHECK(std::abs(found.at("mean").get<double>() - exact.mean_of(at)) <= 0.06 * exact.sd_of(at));
+    CHECK(found.at("sd").get<double>() == doctest::Approx(exact.sd_of(at)).epsilon(0.05));
+  };
+  near("mu", 0);
+  near("tau", 1);
+  for (std::size_t s = 0; s < 8; ++s) near("effect[" + std::string(1, static_cast<char>('A' + s)) + "]", 2 + s);
+}
+
+TEST_CASE("the eight schools as they stand are refused, with the way out; their optimum comes with a warning") {
   std::string const members = "  parameter effect per experiment ~ normal(mu, sd = tau)\n";
   Fitted const fitted = eight_schools(members, chains);
   CHECK(fitted.exit == 1);
-  CHECK(fitted.found("posterior", "chains_disagree"));
+  bool const refused = fitted.found("posterior", "chains_disagree") || fitted.found("posterior", "chain_did_not_move");
+  CHECK(refused);
   CHECK(fitted.found("posterior", "hierarchy_narrows"));
   CHECK(eight_schools(members, "map").found("posterior", "optimum_of_hierarchy"));
 }
