@@ -20,7 +20,7 @@ constexpr char const* fitted_mass = R"(model mass {
 data bench {
   file    "bench.csv"
   time    t
-  input   x = x
+  input   x = x hold zero_order
   measure d = d
 }
 posterior = fit mass to bench with mh(samples = 100, burn_in = 50, chains = 2), seed = 1

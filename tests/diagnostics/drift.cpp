@@ -16,8 +16,8 @@ std::string notices(std::string const& solver) {
   return run_text(file, with(read_file(file), "ida(relative = 1e-10)", solver), options, {"simulate"}).notices;
 }
 
-std::string const warning = "truth: warning: `x^2 + y^2 = l^2` was differentiated";
-std::string const note = "truth: `x^2 + y^2 = l^2` was differentiated";
+std::string const warning = "truth: warning: the solution does not satisfy the constraint `x^2 + y^2 = l^2` exactly";
+std::string const note = "truth: the solution does not satisfy the constraint `x^2 + y^2 = l^2` exactly";
 
 }  // namespace
 

@@ -233,7 +233,7 @@ TEST_CASE("ranks of true parameters in their posteriors are uniform") {
 }
 
 TEST_CASE("ranks of true parameters tell of a sampler that is wrong") {
-  // The posterior of a third of the noise: too narrow by as much.
+  // The posterior of a sixth of the noise: too narrow by as much.
   static constexpr Problem sharper{
       correlated_problem.name,
       correlated_problem.dimension,
@@ -241,7 +241,7 @@ TEST_CASE("ranks of true parameters tell of a sampler that is wrong") {
       correlated_problem.draw,
       correlated_problem.log_prior,
       correlated_problem.make,
-      [](std::vector<double> const& x, std::vector<double> const& y) { return 9 * correlated_problem.log_likelihood(x, y); }};
+      [](std::vector<double> const& x, std::vector<double> const& y) { return 36 * correlated_problem.log_likelihood(x, y); }};
   Settings chains(mh::settings());
   chains.set("samples", std::int64_t{3000});
   chains.set("burn_in", std::int64_t{500});

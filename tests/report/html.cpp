@@ -346,7 +346,7 @@ TEST_CASE("the verdict's headline is words: capitalised before a colon, without 
   report.discovery->equations[1] = {};
   report.discovery->equations[1].target = "z'";
   std::string const page = run_html({{{report, {}}}, {}, "", {}});
-  CHECK(page.find("<p class=\"headline\">Nothing found for <code>z'</code>; the checks pass</p>") != std::string::npos);
+  CHECK(page.find("<p class=\"headline\">No equation found for <code>z'</code>; the checks pass</p>") != std::string::npos);
   CHECK(page.find("<b>no equation found for <code>z'</code>; the checks pass</b>") != std::string::npos);
 }
 
