@@ -146,7 +146,7 @@ class InputCheck {
     Objective const objective = make_objective(*target, objective_kind_, seed_, refit_stream);
     std::vector<Eigen::VectorXd> const points = {theta_of(mode_)};
     std::vector<Climber> climbers = {climber_at(points.front(), objective.log_density(to_lanes(points), ledger_).front())};
-    climb(objective, climbers, target->has_gradient() ? refit_evaluations : refit_rounds, ledger_, {});
+    climb(objective, climbers, target->is_expensive() ? refit_evaluations : refit_rounds, ledger_, {});
     other.gain = climbers.front().log_density - mode_.log_density;
     if (!std::isfinite(other.gain)) return;
     LaneArray declared(target->dimension(), 1);

@@ -191,7 +191,7 @@ class Shown {
   /// A handful of rounds is usual.
   static std::uint64_t solves_per_mode(Target const& target) {
     auto const dimension = static_cast<std::uint64_t>(target.dimension());
-    return target.has_gradient() ? 20 : 10 * (2 * dimension + 5) + 4 * (1 + 2 * dimension * dimension);
+    return target.is_expensive() ? 20 : 10 * (2 * dimension + 5) + 4 * (1 + 2 * dimension * dimension);
   }
 
   RunContext& context_;

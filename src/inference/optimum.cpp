@@ -150,7 +150,7 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
   result.findings = std::move(found.findings);
   result.search_told = true;
   // By a gradient, searches end where it is small: what Newton's step promises then is of the differences of its curvature.
-  if (best.gain > (target.has_gradient() ? 10 * large_gain : large_gain)) result.findings.push_back(not_reached(best));
+  if (best.gain > (target.is_expensive() ? 10 * large_gain : large_gain)) result.findings.push_back(not_reached(best));
   std::vector<std::string> names, bound;
   for (std::size_t const p : parameters_at_bound(target, best)) {
     names.push_back(target.parameters()[p].name);

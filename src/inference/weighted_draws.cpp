@@ -249,7 +249,7 @@ std::vector<Mode> sampled_modes(Target const& target, ObjectiveKind objective_ki
 
 WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
                              std::function<bool()> const& stop) {
-  if (modes.empty() || target.dimension() == 0 || target.dimension() > most_parameters || target.has_gradient()) return {};
+  if (modes.empty() || target.dimension() == 0 || target.dimension() > most_parameters || target.is_expensive()) return {};
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
   double heaviest = -infinity;
   for (Mode const& mode : modes) heaviest = std::max(heaviest, mode.log_mass);

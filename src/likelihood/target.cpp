@@ -1,12 +1,105 @@
-// Defaults for the optional parts of a target.
+// Derivatives by central differences, for targets that have no better ones.
 #include "likelihood/target.hpp"
 
-#include "core/text/diagnostic.hpp"
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 
 namespace sysid {
+namespace {
 
-double Target::log_likelihood_gradient(std::span<double const>, std::span<double>, Ledger&) const {
-  throw InternalError("a gradient of a target that has none");
+constexpr int prior_draws = 256;
+constexpr std::uint64_t scale_step = 97;  // of Purpose::start
+
+/// Per lane of theta [P x W] its own column, then a step ahead and one behind along each coordinate: 2 P + 1 columns each.
+LaneArray moved_lanes(ConstLanes theta, std::vector<double> const& step) {
+  int const dimension = theta.rows(), columns = 2 * dimension + 1;
+  LaneArray points(dimension, columns * theta.width());
+  for (int w = 0; w < theta.width(); ++w)
+    for (int c = 0; c < columns; ++c)
+      for (int p = 0; p < dimension; ++p) {
+        double const sign = c == 2 * p + 1 ? 1 : c == 2 * p + 2 ? -1 : 0;
+        points(p, w * columns + c) = theta(p, w) + sign * step[static_cast<std::size_t>(p)];
+      }
+  return points;
+}
+
+/// The slope from the values of one function ahead, at and behind a place: of those two that are finite, 0 where there are none.
+double slope(double ahead, double at, double behind, double step) {
+  if (!std::isfinite(at)) return 0;
+  bool const up = std::isfinite(ahead), down = std::isfinite(behind);
+  if (!up && !down) return 0;
+  return ((up ? ahead : at) - (down ? behind : at)) / ((up ? step : 0) + (down ? step : 0));
+}
+
+std::vector<double> steps_of(Target const& target, DifferenceScale const& scale, double width) {
+  std::vector<double> steps = scale.of(target);
+  for (double& step : steps) step *= width;
+  return steps;
+}
+
+/// Values of one function at moved lanes, as values and gradients.
+void take_differences(std::span<double const> values, std::vector<double> const& steps, std::span<double> out, Lanes gradient) {
+  std::size_t const columns = 2 * steps.size() + 1;
+  for (std::size_t w = 0; w < out.size(); ++w) {
+    double const* const f = values.data() + w * columns;
+    out[w] = f[0];
+    for (std::size_t p = 0; p < steps.size(); ++p)
+      gradient(static_cast<int>(p), static_cast<int>(w)) = slope(f[2 * p + 1], f[0], f[2 * p + 2], steps[p]);
+  }
+}
+
+}  // namespace
+
+double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
+
+std::vector<double> const& DifferenceScale::of(Target const& target) const {
+  std::call_once(measured_, [&] {
+    LaneArray draws(target.dimension(), prior_draws);
+    target.sample_prior({0, Purpose::start, 0, scale_step}, draws);
+    for (int p = 0; p < target.dimension(); ++p) {
+      std::vector<double> finite;
+      for (double const v : draws.row(p))
+        if (std::isfinite(v)) finite.push_back(v);
+      double const spread = finite.empty() ? 0 : (quantile(finite, 0.84) - quantile(finite, 0.16)) / 2;
+      scale_.push_back(spread > 0 ? spread : 1);
+    }
+  });
+  return scale_;
+}
+
+void Target::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
+  std::vector<double> const steps = steps_of(*this, scale_, difference_width(*this));
+  LaneArray const points = moved_lanes(theta, steps);
+  std::vector<double> values(static_cast<std::size_t>(points.width()));
+  log_likelihood(points, values, ledger);
+  take_differences(values, steps, out, gradient);
+}
+
+void Target::log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian) const {
+  constexpr double width = 1e-5;
+  std::vector<double> const steps = steps_of(*this, scale_, width);
+  LaneArray const points = moved_lanes(theta, steps);
+  std::vector<double> values(static_cast<std::size_t>(points.width()));
+  log_prior(points, values, jacobian);
+  take_differences(values, steps, out, gradient);
+}
+
+void Target::residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const {
+  std::vector<double> const steps = steps_of(*this, scale_, difference_width(*this));
+  LaneArray const points = moved_lanes(theta, steps);
+  LaneArray rows(residual_count(), points.width());
+  residuals(points, rows, ledger);
+  int const dimension = theta.rows(), columns = 2 * dimension + 1;
+  for (int r = 0; r < rows.rows(); ++r)
+    for (int w = 0; w < theta.width(); ++w) {
+      double const* const f = rows.row(r).data() + w * columns;
+      out(r, w) = f[0];
+      for (int p = 0; p < dimension; ++p)
+        jacobian(r * dimension + p, w) = slope(f[2 * p + 1], f[0], f[2 * p + 2], steps[static_cast<std::size_t>(p)]);
+    }
 }
 
 }  // namespace sysid

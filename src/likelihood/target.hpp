@@ -8,9 +8,17 @@
 #include "core/numeric/lanes.hpp"
 #include "core/numeric/random.hpp"
 #include "core/system/ledger.hpp"
+#include "likelihood/difference_scale.hpp"
 #include "result/parameter_info.hpp"
 
 namespace sysid {
+
+/// How derivatives of a density come about.
+enum class DerivativeSource {
+  exact,        // of the numbers that are computed, to rounding: by tangents of the program
+  mixed,        // exact where a value costs most, by differences of the rest
+  differences,  // central, in lanes of the same batch
+};
 
 class Target {
  public:
@@ -33,16 +41,31 @@ class Target {
   /// scored sample sign(y - centre) sqrt(2 (s - log p(y))), s the largest log density any location gives y, and per channel one row
   /// sqrt(2 (C - sum s)) that carries the scale. A failed lane is +infinity in every row.
   virtual void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const = 0;
-  /// Whether `log_likelihood_gradient` may be called: where a likelihood is dear, a search climbs by it.
-  virtual bool has_gradient() const { return false; }
-  /// log likelihood of one vector theta [P], and its derivatives [P]; -infinity as above, the gradient then 0.
-  virtual double log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const;
+  /// Whether one value costs so much that a search begins at few places and climbs by the gradient (Gaussian processes), instead of
+  /// by Levenberg-Marquardt from many.
+  virtual bool is_expensive() const { return false; }
+  /// Where the three functions below take derivatives from. Differences cost 2 P + 1 values and are known to about half the digits.
+  virtual DerivativeSource derivatives() const { return DerivativeSource::differences; }
+  /// log likelihood [W] of theta [P x W] as above, and its gradient [P x W]. Where a solve failed the value is -infinity and the
+  /// gradient 0; derivatives that are not finite are 0. Lane w depends on column w alone.
+  virtual void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const;
+  /// log prior [W] of theta [P x W] as above, and its gradient [P x W]; 0 where the density is.
+  virtual void log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian = true) const;
+  /// Residuals [R x W] as above, and their derivatives: row r P + p of jacobian [R P x W] is d r_r / d theta_p; 0 in failed lanes.
+  virtual void residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const;
   /// How rough the log likelihood is as a function of theta: what a simulation leaves to chance, as a part of its size. 0 where it
   /// is smooth but for rounding; the tolerance where steps are chosen by the error.
   virtual double roughness() const { return 0; }
   /// Declared values [P x W] (declared units) of theta [P x W], and back.
   virtual void constrain(ConstLanes theta, Lanes declared) const = 0;
   virtual void unconstrain(ConstLanes declared, Lanes theta) const = 0;
+
+ private:
+  DifferenceScale scale_;  // of the differences
 };
+
+/// Of a prior width: values bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
+/// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
+double difference_width(Target const& target);
 
 }  // namespace sysid

@@ -23,13 +23,14 @@ double density(Objective const& objective, Eigen::VectorXd const& theta, Eigen::
       points.back()(p) += sign * width * objective.scale(p);
     }
   std::vector<double> const prior = objective.log_prior(to_lanes(points));
-  std::vector<double> slopes(static_cast<std::size_t>(n));
-  double const likelihood = objective.target.log_likelihood_gradient({theta.data(), static_cast<std::size_t>(n)}, slopes, ledger);
+  LaneArray slopes(static_cast<int>(n), 1);
+  double likelihood = 0;
+  objective.target.log_likelihood_gradient(to_lanes({theta}), {&likelihood, 1}, slopes, ledger);
   gradient.resize(n);
   for (Eigen::Index p = 0; p < n; ++p) {
     auto const ahead = static_cast<std::size_t>(2 * p + 1);
     double const of_prior = (prior[ahead] - prior[ahead + 1]) / (2 * width);
-    gradient(p) = slopes[static_cast<std::size_t>(p)] * objective.scale(p) + (std::isfinite(of_prior) ? of_prior : 0);
+    gradient(p) = slopes(static_cast<int>(p), 0) * objective.scale(p) + (std::isfinite(of_prior) ? of_prior : 0);
   }
   double const value = likelihood + prior[0];
   return std::isfinite(value) ? value : -std::numeric_limits<double>::infinity();

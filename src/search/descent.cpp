@@ -149,8 +149,6 @@ std::vector<std::size_t> not_done(std::vector<Climber> const& climbers) {
 
 }  // namespace
 
-double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
-
 std::size_t climbers_per_block(Objective const& objective) {
   int const columns = 2 * objective.dimension() + 1;
   int const rows = std::max(1, objective.target.residual_count());
@@ -161,7 +159,7 @@ Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::mov
 
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop, Journal* journal) {
-  if (objective.target.has_gradient()) return climb_by_gradient(objective, climbers, rounds, ledger, stop, journal);
+  if (objective.target.is_expensive()) return climb_by_gradient(objective, climbers, rounds, ledger, stop, journal);
   std::size_t const width = climbers_per_block(objective);
   if (stop && stop()) return;
   ClimbingStep kept(journal, "climb", climbers, ledger);

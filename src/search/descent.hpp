@@ -23,10 +23,6 @@ struct Climber {
   bool stalled = false;       // no step that was tried gained anything, whatever was promised
 };
 
-/// Of a prior width: residuals bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
-/// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
-double difference_width(Target const& target);
-
 /// Blocks hold a few million residuals at most, whatever the length of the record.
 std::size_t climbers_per_block(Objective const& objective);
 
@@ -39,7 +35,7 @@ Climber climber_at(Eigen::VectorXd theta, double log_density);
 ///
 /// J by central differences of 1e-5 prior widths, more where the target is rough; P is minus the diagonal second derivative of the
 /// log prior where positive. Each round tries four dampings a decade apart and keeps the best. Steps are at most two prior widths
-/// long in any coordinate. A target that has a gradient is climbed by that instead. Levenberg 1944, Marquardt 1963; as in More 1978
+/// long in any coordinate. An expensive target is climbed by its gradient instead. Levenberg 1944, Marquardt 1963; as in More 1978
 /// but for the choice of damping, which lanes make cheap.
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop, Journal* journal = nullptr);

@@ -238,7 +238,7 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
   Eigen::MatrixXd const slope = fill_declared(objective.target, theta, covariance, mode);
   if (objective.objective_kind != ObjectiveKind::posterior) mode.log_mass += log_absolute_determinant(slope);
   mode.gain = gain;
-  if (!objective.target.has_gradient()) {
+  if (!objective.target.is_expensive()) {
     Outlook const outlook = look_ahead(objective, theta, inverse(covariance));
     mode.gain = outlook.gain;
     mode.log_mass += outlook.log_mass;

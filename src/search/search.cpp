@@ -132,9 +132,9 @@ void begin_without_functions(Target const& target, LaneArray& draws) {
 
 SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context) {
   SearchResult result;
-  Breadth const& breadth = target.has_gradient() ? narrow : has_coefficients(target) ? few : broad;
+  Breadth const& breadth = target.is_expensive() ? narrow : has_coefficients(target) ? few : broad;
   auto const dimension = static_cast<std::uint64_t>(target.dimension());
-  std::uint64_t const round = target.has_gradient() ? 1 : 2 * dimension + 1 + 4,
+  std::uint64_t const round = target.is_expensive() ? 1 : 2 * dimension + 1 + 4,
                       of_draws = static_cast<std::uint64_t>(breadth.draws),
                       early = (breadth.likeliest + breadth.others) * early_rounds * round,
                       last_part = breadth.finalists * usual_rounds * round;
@@ -191,7 +191,7 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
 
 SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context) {
   SearchResult result;
-  auto const round = static_cast<std::uint64_t>(target.has_gradient() ? 1 : 2 * target.dimension() + 1 + 4);
+  auto const round = static_cast<std::uint64_t>(target.is_expensive() ? 1 : 2 * target.dimension() + 1 + 4);
   WorkLeft work(context, "searching near an earlier fit", static_cast<std::uint64_t>(starts.width()) * round * usual_rounds);
   auto const stop = work.stop();
   result.modes = modes_from(target, objective_kind, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger,

@@ -28,7 +28,7 @@ class Fragile : public TestTarget {
   int calls() const { return calls_; }
   bool stopped() const { return calls_ >= last_; }
 
-  bool has_gradient() const override { return gradient_; }
+  bool is_expensive() const override { return gradient_; }
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override {
     TestTarget::residuals(theta, out, ledger);
     if (++calls_ < last_) return;
@@ -36,20 +36,19 @@ class Fragile : public TestTarget {
     for (int w = 0; w < out.width(); ++w)
       for (int r = 0; r < out.rows(); ++r) out(r, w) = infinity;
   }
-  double log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const override {
+  void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const override {
     constexpr double h = 1e-5;
     LaneArray points(2, 5), rows(4, 5);
     for (int w = 0; w < 5; ++w)
-      for (int p = 0; p < 2; ++p)
-        points(p, w) = theta[static_cast<std::size_t>(p)] + (w == 1 + 2 * p ? h : w == 2 + 2 * p ? -h : 0);
+      for (int p = 0; p < 2; ++p) points(p, w) = theta(p, 0) + (w == 1 + 2 * p ? h : w == 2 + 2 * p ? -h : 0);
     residuals(points, rows, ledger);
     auto const value = [&](int w) {
       double sum = 0;
       for (int r = 0; r < 4; ++r) sum += rows(r, w) * rows(r, w);
       return -0.5 * sum;
     };
-    for (int p = 0; p < 2; ++p) gradient[static_cast<std::size_t>(p)] = (value(1 + 2 * p) - value(2 + 2 * p)) / (2 * h);
-    return value(0);
+    for (int p = 0; p < 2; ++p) gradient(p, 0) = (value(1 + 2 * p) - value(2 + 2 * p)) / (2 * h);
+    out[0] = value(0);
   }
 
  private:

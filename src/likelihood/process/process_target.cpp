@@ -167,14 +167,21 @@ void ProcessTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledg
   record(batch, theta, out, ledger);
 }
 
-double ProcessTarget::log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const {
+void ProcessTarget::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
+  for (int w = 0; w < theta.width(); ++w)
+    out[static_cast<std::size_t>(w)] = gradient_at(theta.columns(w, 1), gradient.columns(w, 1), ledger);
+}
+
+double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledger) const {
   int const dimension = this->dimension(), width = 2 * dimension + 1;
   double const step = step_of(roughness());
-  std::fill(gradient.begin(), gradient.end(), 0.0);
+  auto const clear = [&] {
+    for (int p = 0; p < dimension; ++p) gradient(p, 0) = 0;
+  };
+  clear();
   LaneArray points(dimension, width);  // theta, then a step ahead and one behind along each coordinate
   for (int p = 0; p < dimension; ++p)
-    for (int w = 0; w < width; ++w)
-      points(p, w) = theta[static_cast<std::size_t>(p)] + (w == 2 * p + 1 ? step : w == 2 * p + 2 ? -step : 0);
+    for (int w = 0; w < width; ++w) points(p, w) = theta(p, 0) + (w == 2 * p + 1 ? step : w == 2 * p + 2 ? -step : 0);
   Batch const batch = evaluate(points);
   double total = 0;
   for (int c = 0; c < static_cast<int>(measured_.size()); ++c) {
@@ -184,7 +191,7 @@ double ProcessTarget::log_likelihood_gradient(std::span<double const> theta, std
     if (!centre || result.outcome != gaussian_process::Outcome::fine || !std::isfinite(result.log_likelihood)) {
       double const failed[] = {-infinity};
       record(evaluate(points.view().columns(0, 1)), points.view().columns(0, 1), failed, ledger);
-      std::fill(gradient.begin(), gradient.end(), 0.0);
+      clear();
       return -infinity;
     }
     total += result.log_likelihood;
@@ -202,7 +209,7 @@ double ProcessTarget::log_likelihood_gradient(std::span<double const> theta, std
                    (elementary::log(ahead->parameters[k]) - elementary::log(behind->parameters[k])) / (2 * step);
         slope += result.values_gradient.dot(ahead->observations.values - behind->observations.values) / (2 * step);
       }
-      if (std::isfinite(slope)) gradient[static_cast<std::size_t>(p)] += slope;
+      if (std::isfinite(slope)) gradient(p, 0) += slope;
     }
   }
   ledger.add_solves(1);

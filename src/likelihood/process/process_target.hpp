@@ -37,8 +37,9 @@ class ProcessTarget : public Target {
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override;
   /// By the chain rule: what the covariance reads by its analytic gradient, what the parametric part reads by differences of
   /// that part alone; only parameters that inputs of a process read need the likelihood itself at two more points each.
-  bool has_gradient() const override { return true; }
-  double log_likelihood_gradient(std::span<double const> theta, std::span<double> gradient, Ledger& ledger) const override;
+  bool is_expensive() const override { return true; }
+  DerivativeSource derivatives() const override { return DerivativeSource::mixed; }
+  void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const override;
   /// One row, sqrt(2 (C - log likelihood)): what is fitted here is no sum of squares.
   int residual_count() const override;
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
@@ -66,6 +67,8 @@ class ProcessTarget : public Target {
   std::optional<Regression> regression(Batch const& batch, int channel, int lane, bool coefficients) const;
   gaussian_process::Marginal marginal(Regression const& regression, int channel, bool with_gradient) const;
   int count(int channel) const;
+  /// log likelihood of one vector theta [P x 1], and its gradient [P x 1].
+  double gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledger) const;
   void record(Batch const& batch, ConstLanes theta, std::span<double const> values, Ledger& ledger) const;
 
   std::shared_ptr<ProcessModel const> model_;
