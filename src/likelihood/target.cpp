@@ -34,10 +34,9 @@ double slope(double ahead, double at, double behind, double step) {
   return ((up ? ahead : at) - (down ? behind : at)) / ((up ? step : 0) + (down ? step : 0));
 }
 
-std::vector<double> steps_of(Target const& target, DifferenceScale const& scale, double width) {
-  std::vector<double> steps = scale.of(target);
-  for (double& step : steps) step *= width;
-  return steps;
+std::vector<double> scaled(std::vector<double> values, double by) {
+  for (double& value : values) value *= by;
+  return values;
 }
 
 /// Values of one function at moved lanes, as values and gradients.
@@ -55,23 +54,24 @@ void take_differences(std::span<double const> values, std::vector<double> const&
 
 double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
 
-std::vector<double> const& DifferenceScale::of(Target const& target) const {
-  std::call_once(measured_, [&] {
-    LaneArray draws(target.dimension(), prior_draws);
-    target.sample_prior({0, Purpose::start, 0, scale_step}, draws);
-    for (int p = 0; p < target.dimension(); ++p) {
+std::vector<double> const& Target::prior_widths() const {
+  return prior_widths_.get([&] {
+    LaneArray draws(dimension(), prior_draws);
+    sample_prior({0, Purpose::start, 0, scale_step}, draws);
+    std::vector<double> widths;
+    for (int p = 0; p < dimension(); ++p) {
       std::vector<double> finite;
       for (double const v : draws.row(p))
         if (std::isfinite(v)) finite.push_back(v);
       double const spread = finite.empty() ? 0 : (quantile(finite, 0.84) - quantile(finite, 0.16)) / 2;
-      scale_.push_back(spread > 0 ? spread : 1);
+      widths.push_back(spread > 0 ? spread : 1);
     }
+    return widths;
   });
-  return scale_;
 }
 
 void Target::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
-  std::vector<double> const steps = steps_of(*this, scale_, difference_width(*this));
+  std::vector<double> const steps = scaled(prior_widths(), difference_width(*this));
   LaneArray const points = moved_lanes(theta, steps);
   std::vector<double> values(static_cast<std::size_t>(points.width()));
   log_likelihood(points, values, ledger);
@@ -80,7 +80,7 @@ void Target::log_likelihood_gradient(ConstLanes theta, std::span<double> out, La
 
 void Target::log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian) const {
   constexpr double width = 1e-5;
-  std::vector<double> const steps = steps_of(*this, scale_, width);
+  std::vector<double> const steps = scaled(prior_widths(), width);
   LaneArray const points = moved_lanes(theta, steps);
   std::vector<double> values(static_cast<std::size_t>(points.width()));
   log_prior(points, values, jacobian);
@@ -88,7 +88,7 @@ void Target::log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes g
 }
 
 void Target::residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const {
-  std::vector<double> const steps = steps_of(*this, scale_, difference_width(*this));
+  std::vector<double> const steps = scaled(prior_widths(), difference_width(*this));
   LaneArray const points = moved_lanes(theta, steps);
   LaneArray rows(residual_count(), points.width());
   residuals(points, rows, ledger);

@@ -7,8 +7,8 @@
 
 #include "core/numeric/lanes.hpp"
 #include "core/numeric/random.hpp"
+#include "core/system/lazily.hpp"
 #include "core/system/ledger.hpp"
-#include "likelihood/difference_scale.hpp"
 #include "result/parameter_info.hpp"
 
 namespace sysid {
@@ -61,7 +61,9 @@ class Target {
   virtual void unconstrain(ConstLanes declared, Lanes theta) const = 0;
 
  private:
-  DifferenceScale scale_;  // of the differences
+  /// [P] half the central 68 % of prior draws, > 0; 1 where they have no width. Differences are taken over parts of it.
+  std::vector<double> const& prior_widths() const;
+  Lazily<std::vector<double>> prior_widths_;
 };
 
 /// Of a prior width: values bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
