@@ -38,4 +38,15 @@ void record_failures(SolvedBatch const& batch, std::span<Outcome const> outcome,
   }
 }
 
+void all_or_nothing(Ledger& ledger, std::function<void()> const& record) {
+  if (ledger.failed() >= traced_failures) return record();  // none is run again
+  Ledger before = ledger;
+  try {
+    record();
+  } catch (...) {
+    ledger = std::move(before);
+    throw;
+  }
+}
+
 }  // namespace sysid

@@ -22,8 +22,12 @@ struct SolvedBatch {
 };
 
 /// Adds the solves of a batch and those that failed, outcome: [W], with their class, place and time. describe: empty for "the
-/// model"; example: the declared parameters of a lane, for the first of each kind.
+/// model"; example: the declared parameters of a lane, for the first of each kind. Where Interrupted is thrown on the way
+/// (ExecutionOptions::throws), failures of batches before may have been added: `all_or_nothing`.
 void record_failures(SolvedBatch const& batch, std::span<Outcome const> outcome, Describe const& describe,
                      std::function<std::vector<double>(int lane)> const& example, Ledger& ledger);
+
+/// `record` adds what belongs together to a ledger, which stays as it was where that throws.
+void all_or_nothing(Ledger& ledger, std::function<void()> const& record);
 
 }  // namespace sysid

@@ -102,8 +102,10 @@ void ModelTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger
   for (std::size_t e = 0; e < parts_.size(); ++e)
     work.push_back(parts_[e].likelihood.sums_work(parameters[e], sums[e], outcome[e]));
   do_work(work, pool_.get());
-  for (std::size_t e = 0; e < parts_.size(); ++e)
-    record_failures(parts_[e].likelihood, e, parameters[e], outcome[e], theta, ledger);
+  all_or_nothing(ledger, [&] {
+    for (std::size_t e = 0; e < parts_.size(); ++e)
+      record_failures(parts_[e].likelihood, e, parameters[e], outcome[e], theta, ledger);
+  });
   for (std::size_t w = 0; w < width; ++w) {
     double total = 0;
     bool good = true;
@@ -143,8 +145,11 @@ void ModelTarget::residuals(ConstLanes theta, Lanes out, Ledger& ledger) const {
       if (!summed[e][w].ok) outcome[e][w] = summed[e][w];
       good[w] = good[w] && outcome[e][w].ok;
     }
-    record_failures(parts_[e].residuals, e, parameters[e], outcome[e], theta, ledger);
   }
+  all_or_nothing(ledger, [&] {
+    for (std::size_t e = 0; e < parts_.size(); ++e)
+      record_failures(parts_[e].residuals, e, parameters[e], outcome[e], theta, ledger);
+  });
   for (std::size_t r = 0; r < places_.size(); ++r) {
     auto const [experiment, channel, sample] = places_[r];
     auto const e = static_cast<std::size_t>(experiment);

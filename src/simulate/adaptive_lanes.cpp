@@ -15,6 +15,9 @@
 namespace sysid {
 namespace {
 
+/// Attempts of a block that take some milliseconds.
+constexpr int attempts_between_looks = 256;
+
 class AdaptiveLanes : public Stepper {
  public:
   explicit AdaptiveLanes(LaneFile const& file)
@@ -68,14 +71,20 @@ class AdaptiveLanes : public Stepper {
       native::Call call;
       call.registers = file_.registers;
       call.steps = uniforms;
-      call.attempts = most;
-      return attempt_(&call);
+      for (int left = most; left > 0 && travelling(row(Control::position)) && !stopped(); left -= call.attempts) {
+        call.attempts = std::min(left, attempts_between_looks);
+        attempt_(&call);
+      }
+      return;
     }
     file_.load_row(uniforms, file_.program.step.uniforms.kernel.outputs);
-    for (int attempts = 0; attempts < most && travelling(row(Control::position)); ++attempts)
+    for (int attempts = 0; attempts < most && travelling(row(Control::position)); ++attempts) {
+      if (attempts % attempts_between_looks == 0 && stopped()) return;
       run(*file_.program.step.linked, file_.executor, file_.file);
+    }
   }
 
+  bool stopped() const { return file_.stopped != nullptr && file_.stopped(); }
   double* row(Control which) { return &control_(static_cast<int>(which), 0); }
   bool travelling(double const* position) const {
     return std::any_of(position, position + file_.executor.width, [](double p) { return p < 1; });

@@ -9,7 +9,8 @@
 
 namespace sysid {
 
-Block::Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes, native::LoopKind loop)
+Block::Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes, native::LoopKind loop,
+             bool (*stopped)())
     : program_(program),
       schedule_(schedule),
       executor_(executor),
@@ -21,7 +22,8 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
             lanes,
             memory_.view().data(),
             memory_.view().data() + program.constants.size(),
-            memory_.view().data() + uniform_space(program.uniforms)},
+            memory_.view().data() + uniform_space(program.uniforms),
+            stopped},
       stepper_(make_stepper(file_)),
       death_(static_cast<std::size_t>(lanes), -1) {
   // Where steps are not fixed, records are interpreted: nearly all the time goes into the steps.

@@ -17,9 +17,9 @@ namespace sysid {
 class Block {
  public:
   /// lanes <= executor.width; what the executor has more computes copies of the last lane.
-  /// Machine code is compiled here where the executor wants it and it is not there yet.
+  /// Machine code is compiled here where the executor wants it and it is not there yet. stopped: as ExecutionOptions has it.
   Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes,
-        native::LoopKind loop = native::LoopKind::observe);
+        native::LoopKind loop = native::LoopKind::observe, bool (*stopped)() = nullptr);
 
   /// Takes parameters [parameters x lanes] and computes what hangs on them; then the initial states, with empty accumulators.
   void set_parameters(ConstLanes parameters);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/system/interrupt.hpp"
 #include "program/kernel.hpp"
 #include "simulate/block.hpp"
 #include "simulate/not_finite.hpp"
@@ -45,7 +46,7 @@ class Solve {
 
  private:
   std::optional<Diagnosis> run_solver() {
-    Block block(program_, schedule_, choose_executor(1), 1);
+    Block block(program_, schedule_, choose_executor(1), 1, native::LoopKind::observe, simulator_.options().stopped);
     LaneArray parameters(program_.registers.parameters, 1);
     for (int p = 0; p < parameters.rows(); ++p) parameters(p, 0) = parameters_[static_cast<std::size_t>(p)];
     block.set_parameters(parameters);
@@ -131,6 +132,10 @@ class Solve {
 
 }  // namespace
 
-std::optional<Diagnosis> Simulator::diagnose(std::span<double const> parameters) const { return Solve(*this, parameters).run(); }
+std::optional<Diagnosis> Simulator::diagnose(std::span<double const> parameters) const {
+  auto const found = Solve(*this, parameters).run();
+  if (options_.throws && stopped()) throw Interrupted();
+  return found;
+}
 
 }  // namespace sysid

@@ -11,7 +11,7 @@ LaneSolvers::LaneSolvers(LaneFile const& file, Make const& make)
       equations_(file.program, file.schedule),
       lanes_(static_cast<std::size_t>(file.lanes)),
       states_(static_cast<std::size_t>(file.program.registers.states)) {
-  for (Lane& lane : lanes_) lane.solver = make(equations_, file.schedule.solver());
+  for (Lane& lane : lanes_) lane.solver = make(equations_, file.schedule.solver(), file.stopped);
 }
 
 void LaneSolvers::load(int lane) {
@@ -61,6 +61,11 @@ void LaneSolvers::step(int sample) {
     Lane& lane = lanes_[static_cast<std::size_t>(w)];
     if (lane.failure) continue;
     load(w);
+    if (stopped()) {
+      lane.failure = StepFailure{FailureClass::step_limit, equations_.time(sample), std::nullopt};
+      store(w);
+      continue;
+    }
     lane.solver->enter(equations_.time(sample), equations_.time(sample + 1), states_);
     if (lane.fresh || jump) lane.failure = lane.solver->restart(equations_.time(sample), states_);
     lane.fresh = false;

@@ -20,7 +20,7 @@ class LaneSolver {
   virtual void enter(double time, double end, std::span<double const> states) = 0;
   /// Begins anew from `states`, which satisfy the constraints.
   virtual std::optional<StepFailure> restart(double time, std::span<double const> states) = 0;
-  /// To `time`, never beyond it; writes the states there.
+  /// To `time`, never beyond it; writes the states there. Fails soon where the caller wants to stop.
   virtual std::optional<StepFailure> advance(double time, std::span<double> states) = 0;
 };
 
@@ -32,7 +32,7 @@ std::unique_ptr<Stepper> make_ida_steps(LaneFile const& file);
 /// where parameters were changed, and nowhere else; it never steps across a sample.
 class LaneSolvers : public Stepper {
  public:
-  using Make = std::function<std::unique_ptr<LaneSolver>(LaneEquations&, SolverSettings const&)>;
+  using Make = std::function<std::unique_ptr<LaneSolver>(LaneEquations&, SolverSettings const&, bool (*stopped)())>;
   LaneSolvers(LaneFile const& file, Make const& make);
 
   void start() override;
@@ -47,6 +47,7 @@ class LaneSolvers : public Stepper {
     bool fresh = true;  // to be restarted at the next step
   };
   void make_consistent(int sample);
+  bool stopped() const { return file_.stopped != nullptr && file_.stopped(); }
   void load(int lane);
   void store(int lane);
 

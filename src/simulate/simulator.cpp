@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/numeric/not_finite.hpp"
+#include "core/system/interrupt.hpp"
 #include "simulate/block.hpp"
 #include "simulate/machine_loop.hpp"
 #include "simulate/thread_pool.hpp"
@@ -17,10 +18,15 @@ namespace {
 /// Dead lanes are looked for after every so many samples.
 constexpr int burial_interval = 64;
 
-/// Where a block that is at sample `from` is looked at next: machine code runs on to where dead lanes are looked for, what is
-/// slower can be stopped at every sample.
-int next_look(Block const& block, int from, int end) {
-  return block.runs_loops() ? std::min(end, (from / burial_interval + 1) * burial_interval) : from + 1;
+/// Steps of machine code that take some milliseconds.
+constexpr int steps_between_looks = 4096;
+
+/// Where a block that is at sample `from` is looked at next: machine code runs on to where dead lanes are looked for, unless it
+/// takes many steps from sample to sample; what is slower can be stopped at every sample.
+int next_look(Block const& block, int substeps, int from, int end) {
+  if (!block.runs_loops()) return from + 1;
+  int const most = std::max(1, steps_between_looks / substeps);
+  return std::min({end, from + most, (from / burial_interval + 1) * burial_interval});
 }
 
 /// Registers of a block beyond this do not stay in a 32 KiB first-level cache beside code and tables.
@@ -42,6 +48,8 @@ void do_work(std::span<Work const> work, ThreadPool* pool) {
     pool->run(static_cast<int>(blocks.size()), [&](int b) { (*blocks[static_cast<std::size_t>(b)])(); });
   else
     for (auto const* block : blocks) (*block)();
+  for (Work const& each : work)
+    if (each.given_up != nullptr && each.given_up()) throw Interrupted();
 }
 
 std::string const& why_no_machine_code() { return native::why_unavailable(); }
@@ -97,12 +105,14 @@ Executor Simulator::interpreter(int width, double instructions) const {
 Work Simulator::blocks(int width, int samples, native::LoopKind loop, BlockWork const& work) const {
   Work result;
   if (width == 0) return result;
+  result.given_up = given_up();
   result.instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
   Executor const executor = this->executor(width, result.instructions, loop);
   result.instructions /= speed(executor);
   for (int lane = 0; lane < width; lane += executor.width)
     result.blocks.push_back([this, work, executor, loop, lane, lanes = std::min(executor.width, width - lane)] {
-      Block block(*program_, schedule_, narrowed(executor, lanes), lanes, loop);  // the last one may be narrower
+      // The last one may be narrower.
+      Block block(*program_, schedule_, narrowed(executor, lanes), lanes, loop, options_.stopped);
       work(block, lane, lanes);
     });
   return result;
@@ -123,7 +133,7 @@ Work Simulator::sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> o
     bool alive = true;
     for (int from = 0; from < end && alive;) {
       if (stopped()) return give_up(from, lane, lanes, out, outcome);
-      int const to = next_look(block, from, end);
+      int const to = next_look(block, schedule_.solver().substeps, from, end);
       block.advance(from, to, end - 1);
       if (to % burial_interval == 0 || to == end) alive = block.bury(to - 1);
       from = to;
@@ -162,7 +172,7 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
   for (int from = 0; from < last && alive;) {
     if (stopped()) return give_up(from, lane, lanes, out, outcome);
     if (from > 0) draw(from);
-    int to = redraw != nullptr ? from + 1 : next_look(block, from, last);
+    int to = redraw != nullptr ? from + 1 : next_look(block, schedule_.solver().substeps, from, last);
     if (from < first) to = std::min(to, first);
     if (from < first)
       block.step_to(from, to - 1);

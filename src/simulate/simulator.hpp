@@ -26,6 +26,8 @@ struct ExecutionOptions {
   /// Asked every few samples, from several threads at once. True: what is not done is given up and counts as failed, for a caller
   /// who uses nothing of it then. Null: never.
   bool (*stopped)() = nullptr;
+  /// Interrupted is thrown for what has been given up, so that nothing of it is used.
+  bool throws = false;
 };
 
 /// How the solve of one lane ended. `sample`: one by which it had failed (looked for every few samples, the same ones for any
@@ -47,9 +49,10 @@ struct Diagnosis {
 /// Blocks of lanes that may run in any order and on any threads, each touching its own part of the results.
 struct Work {
   std::vector<std::function<void()>> blocks;
-  double instructions = 0;  // in all: too few are not worth waking threads for
+  double instructions = 0;       // in all: too few are not worth waking threads for
+  bool (*given_up)() = nullptr;  // asked at the end: whether to throw Interrupted
 };
-/// Does all blocks of all pieces; returns when they are done. pool: null for the calling thread alone.
+/// Does all blocks of all pieces; returns when they are done, or throws. pool: null for the calling thread alone.
 void do_work(std::span<Work const> work, ThreadPool* pool);
 
 /// Why simulations cannot be compiled to machine code; empty where they can. Loads the compiler.
@@ -71,6 +74,8 @@ class Simulator {
   int threads() const;
   /// As the options say; what has no result then is not looked into either.
   bool stopped() const { return options_.stopped != nullptr && options_.stopped(); }
+  /// For Work::given_up.
+  bool (*given_up() const)() { return options_.throws ? options_.stopped : nullptr; }
   /// For blocks of a batch of `width` lanes that takes so many lane-instructions in all, in loops of that kind. Counts them, as
   /// machine code is made when a program has been interpreted for long enough.
   Executor executor(int width, double instructions, native::LoopKind loop) const;
@@ -93,7 +98,7 @@ class Simulator {
   /// several threads at once.
   void records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const;
 
-  /// Re-runs one lane (fixed steps: with plain arithmetic) until it fails; nothing when it does not.
+  /// Re-runs one lane (fixed steps: with plain arithmetic) until it fails; nothing when it does not. Throws as do_work does.
   std::optional<Diagnosis> diagnose(std::span<double const> parameters) const;
 
  private:

@@ -20,6 +20,8 @@ struct LaneFile {
   double* file;       // where code runs
   double* row;        // uniforms of the running section, after the constants
   double* registers;  // rows of executor.stride()
+  /// ExecutionOptions::stopped, asked within a step where that can take long; null: never.
+  bool (*stopped)() = nullptr;
 
   Lanes rows(int first, int count) const {
     return {registers + first * executor.stride(), count, executor.width, executor.stride()};
@@ -44,7 +46,8 @@ class Stepper {
   virtual void start() {}
   /// The parameters have changed; the states have not.
   virtual void parameters_changed() {}
-  /// From `sample` to the next one. A lane that cannot be brought there gets states that are not finite.
+  /// From `sample` to the next one. A lane that cannot be brought there gets states that are not finite; so do those that have
+  /// not arrived when the caller wants to stop.
   virtual void step(int sample) = 0;
   /// Why a lane's states are not finite, where more is known than that.
   virtual std::optional<StepFailure> failure(int) const { return std::nullopt; }

@@ -13,8 +13,10 @@ namespace {
 
 class CvodeLane : public SundialsLane {
  public:
-  CvodeLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver)
-      : SundialsLane(std::move(context), equations, solver), errors_(make_vector()), memory_(CVodeCreate(CV_BDF, *context_)) {
+  CvodeLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver, bool (*stopped)())
+      : SundialsLane(std::move(context), equations, solver, stopped),
+        errors_(make_vector()),
+        memory_(CVodeCreate(CV_BDF, *context_)) {
     if (memory_ == nullptr) throw InternalError("CVodeCreate returned nothing");
     require(CVodeInit(memory_, &right_side, 0, states_.get()), "CVodeInit");
     require(CVodeSetUserData(memory_, static_cast<SundialsLane*>(this)), "CVodeSetUserData");
@@ -32,7 +34,9 @@ class CvodeLane : public SundialsLane {
   std::optional<StepFailure> restart(double time, std::span<double const> states) override {
     std::copy(states.begin(), states.end(), data(states_));
     // CVODE's own first call would say no more than that something failed.
-    if (right_side(time, states_.get(), errors_.get(), static_cast<SundialsLane*>(this)) != 0) return not_finite();
+    int const flag = right_side(time, states_.get(), errors_.get(), static_cast<SundialsLane*>(this));
+    if (flag == give_up) return given_up(time);
+    if (flag != 0) return not_finite();
     require(CVodeReInit(memory_, time, states_.get()), "CVodeReInit");
     return std::nullopt;
   }
@@ -42,6 +46,7 @@ class CvodeLane : public SundialsLane {
     bad_time_ = never;
     double reached = 0;
     int const flag = CVode(memory_, time, states_.get(), &reached, CV_NORMAL);
+    if (flag < 0 && stopped()) return given_up(reached);
     if (flag < 0) return explain(flag, reached);
     std::copy_n(data(states_), states.size(), states.begin());
     return std::nullopt;
@@ -52,6 +57,7 @@ class CvodeLane : public SundialsLane {
 
   static int right_side(double time, N_Vector states, N_Vector out, void* lane) {
     CvodeLane& me = self(lane);
+    if (me.stopped()) return give_up;
     double const* y = N_VGetArrayPointer(states);
     if (me.equations_.rates(time, y, N_VGetArrayPointer(out))) return 0;
     me.bad_time_ = time;
@@ -103,8 +109,8 @@ class CvodeLane : public SundialsLane {
 
 std::unique_ptr<Stepper> make_cvode_steps(LaneFile const& file) {
   auto const context = std::make_shared<sundials::Context>();
-  return std::make_unique<LaneSolvers>(file, [context](LaneEquations& equations, SolverSettings const& solver) {
-    return std::make_unique<CvodeLane>(context, equations, solver);
+  return std::make_unique<LaneSolvers>(file, [context](LaneEquations& equations, SolverSettings const& solver, bool (*stopped)()) {
+    return std::make_unique<CvodeLane>(context, equations, solver, stopped);
   });
 }
 

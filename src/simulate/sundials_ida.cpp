@@ -17,8 +17,8 @@ namespace {
 
 class IdaLane : public SundialsLane {
  public:
-  IdaLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver)
-      : SundialsLane(std::move(context), equations, solver),
+  IdaLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver, bool (*stopped)())
+      : SundialsLane(std::move(context), equations, solver, stopped),
         rates_(make_vector()),
         errors_(make_vector()),
         evaluated_(count()),
@@ -58,6 +58,7 @@ class IdaLane : public SundialsLane {
     bad_time_ = never;
     double reached = 0;
     int const flag = IDASolve(memory_, time, &reached, states_.get(), rates_.get(), IDA_NORMAL);
+    if (flag < 0 && stopped()) return given_up(reached);
     if (flag < 0) return explain(flag, reached);
     std::copy_n(data(states_), states.size(), states.begin());
     return std::nullopt;
@@ -77,6 +78,7 @@ class IdaLane : public SundialsLane {
 
   static int residual(double time, N_Vector states, N_Vector rates, N_Vector out, void* lane) {
     IdaLane& me = self(lane);
+    if (me.stopped()) return give_up;
     if (!me.evaluate(time, states)) return 1;  // a shorter step may do
     double const* rate = N_VGetArrayPointer(rates);
     double* r = N_VGetArrayPointer(out);
@@ -136,8 +138,8 @@ class IdaLane : public SundialsLane {
 
 std::unique_ptr<Stepper> make_ida_steps(LaneFile const& file) {
   auto const context = std::make_shared<sundials::Context>();
-  return std::make_unique<LaneSolvers>(file, [context](LaneEquations& equations, SolverSettings const& solver) {
-    return std::make_unique<IdaLane>(context, equations, solver);
+  return std::make_unique<LaneSolvers>(file, [context](LaneEquations& equations, SolverSettings const& solver, bool (*stopped)()) {
+    return std::make_unique<IdaLane>(context, equations, solver, stopped);
   });
 }
 

@@ -11,10 +11,11 @@
 
 namespace sysid {
 
-SundialsLane::SundialsLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver)
+SundialsLane::SundialsLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver, bool (*stopped)())
     : context_(std::move(context)),
       equations_(equations),
       solver_(solver),
+      stopped_(stopped),
       reached_(static_cast<std::size_t>(equations.states())),
       states_(make_vector()),
       matrix_(SUNDenseMatrix(equations.states(), equations.states(), *context_)),

@@ -30,7 +30,7 @@ using LinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, Fre
 
 class SundialsLane : public LaneSolver {
  public:
-  SundialsLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver);
+  SundialsLane(SundialsContext context, LaneEquations& equations, SolverSettings const& solver, bool (*stopped)());
   /// Looks up the sizes of the states when the solve begins, and as long as there is one that has not moved.
   void enter(double time, double end, std::span<double const> states) override;
 
@@ -48,12 +48,18 @@ class SundialsLane : public LaneSolver {
   /// An iteration or error control that gave up: at the state whose `errors`, weighted, are largest.
   StepFailure at_worst_state(FailureClass kind, double time, N_Vector errors) const;
 
+  /// Asked at every evaluation: one interval may take ten thousand steps.
+  bool stopped() const { return stopped_ != nullptr && stopped_(); }
+  static constexpr int give_up = -1;  // what a function returns to SUNDIALS then
+  StepFailure given_up(double time) const { return {FailureClass::step_limit, time, std::nullopt}; }
+
   double* data(Vector const& v) const { return N_VGetArrayPointer(v.get()); }
   std::size_t count() const { return reached_.size(); }
 
   SundialsContext context_;
   LaneEquations& equations_;
   SolverSettings solver_;
+  bool (*stopped_)();
   std::vector<double> reached_;
   bool entered_ = false;
   Vector states_;

@@ -34,6 +34,7 @@ class Crew {
         endings_(endings),
         failed_at_(failed_at),
         executor_(executor),
+        stopped_(simulator.options().stopped),
         block_lanes_(executor.width),
         end_(schedule_.last_summed()) {}
 
@@ -48,7 +49,7 @@ class Crew {
       block.start();
       block.store(now.view().columns(lane, count));
     });
-    for (int from = 0; from < end_ && !at_.empty(); from += segment) {
+    for (int from = 0; from < end_ && !at_.empty() && !simulator_.stopped(); from += segment) {
       int const to = std::min(from + segment, end_);
       std::vector<std::uint8_t> stays(at_.size());
       for_blocks(static_cast<int>(at_.size()), [&](Block& block, int lane, int count) {
@@ -70,18 +71,21 @@ class Crew {
     for (int lane = 0; lane < lanes; lane += block_lanes_) {
       int const count = std::min(block_lanes_, lanes - lane);
       if (count == block_lanes_) {
-        if (!full_) full_.emplace(program_, schedule_, executor_, block_lanes_);
+        if (!full_) full_.emplace(program_, schedule_, executor_, block_lanes_, native::LoopKind::observe, stopped_);
         action(*full_, lane, count);
       } else {
-        Block last(program_, schedule_, narrowed(executor_, count), count);
+        Block last(program_, schedule_, narrowed(executor_, count), count, native::LoopKind::observe, stopped_);
         action(last, lane, count);
       }
     }
   }
 
-  /// Samples [from, to), and the step to `to`.
+  /// Samples [from, to), and the step to `to`. Machine code in one go, all else sample by sample, to be stopped anywhere.
   void advance(Block& block, int from, int to) const {
-    block.advance(from, to, end_ - 1);
+    if (block.runs_loops())
+      block.advance(from, to, end_ - 1);
+    else
+      for (int i = from; i < to && !simulator_.stopped(); ++i) block.advance(i, i + 1, end_ - 1);
     if (to == end_) block.finish();
   }
 
@@ -150,13 +154,14 @@ class Crew {
   void run_in_place() {
     for (int lane = 0; lane < parameters_.width(); lane += block_lanes_) {
       int const count = std::min(block_lanes_, parameters_.width() - lane);
-      Block block(program_, schedule_, narrowed(executor_, count), count);
+      Block block(program_, schedule_, narrowed(executor_, count), count, native::LoopKind::observe, stopped_);
       at_.resize(static_cast<std::size_t>(count));
       std::iota(at_.begin(), at_.end(), lane);
       block.set_parameters(parameters_.columns(lane, count));
       block.start();
       std::vector<std::uint8_t> running(static_cast<std::size_t>(count), 1);
-      for (int from = 0; from < end_ && std::count(running.begin(), running.end(), 1) > 0; from += segment) {
+      for (int from = 0; from < end_ && std::count(running.begin(), running.end(), 1) > 0 && !simulator_.stopped();
+           from += segment) {
         int const to = std::min(from + segment, end_);
         advance(block, from, to);
         block.bury(to - 1);
@@ -184,6 +189,7 @@ class Crew {
   std::span<Ending> endings_;
   std::span<int> failed_at_;
   Executor executor_;
+  bool (*stopped_)();
   int block_lanes_, end_;
   std::vector<int> at_;  // the lanes of the crew that still run, in order
   std::optional<Block> full_;
@@ -196,6 +202,7 @@ Work wavefront_work(Simulator const& simulator, ConstLanes parameters, Wanted wa
   Work result;
   int const width = parameters.width();
   if (width == 0) return result;
+  result.given_up = simulator.given_up();
   result.instructions =
       work_per_sample(simulator.program(), simulator.schedule().solver()) * simulator.schedule().last_summed() * width;
   Executor const executor = simulator.executor(width, result.instructions, native::LoopKind::observe);

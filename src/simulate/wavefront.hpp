@@ -19,8 +19,8 @@ using Wanted = std::function<bool(ConstLanes partial, int column, int lane)>;
 /// Runs the simulator's program over its schedule for parameters [parameters x W], SI. out: [sum_count x W], the sums of the lanes
 /// that finished, the partial ones of those given up, NaN for the failed. endings, failed_at (a sample; -1: none): [W]. Lanes are
 /// looked at after the same samples whatever the width, so a lane's ending depends on its column alone. Lanes of solvers that keep
-/// a memory of their own do not move: there a block ends when none of its lanes is wanted. What the arguments view must outlive
-/// the work.
+/// a memory of their own do not move: there a block ends when none of its lanes is wanted. What is given up
+/// (ExecutionOptions::stopped) has no results. What the arguments view must outlive the work.
 Work wavefront_work(Simulator const& simulator, ConstLanes parameters, Wanted wanted, Lanes out, std::span<Ending> endings,
                     std::span<int> failed_at);
 

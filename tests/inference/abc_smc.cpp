@@ -381,6 +381,26 @@ void check_same(SelectionResult const& a, Ledger const& of_a, SelectionResult co
   }
 }
 
+/// Left at a simulation, or at the look at a failed one, by their numbers.
+class LeftToy : public Toy {
+ public:
+  LeftToy(std::vector<OfModel> models, double simulation, double look)
+      : Toy(std::move(models)), simulation_(simulation), look_(look) {}
+  void distances(std::span<Batch const> batches, double bound) const override {
+    for (Batch const& batch : batches) simulated_ += batch.theta.width();
+    if (simulated_ >= simulation_) throw Interrupted();
+    Toy::distances(batches, bound);
+  }
+  std::pair<std::string, double> failure(int model, ConstLanes theta) const override {
+    if (++looked_ >= look_) throw Interrupted();
+    return Toy::failure(model, theta);
+  }
+
+ private:
+  double simulation_, look_;
+  mutable double simulated_ = 0, looked_ = 0;
+};
+
 /// |p|, and nothing for a twentieth of the prior: so that a run has failures to remember.
 double fails_at_the_edge(std::span<double const> values) { return values[0] > 0.9 ? std::nan("") : std::fabs(values[0]); }
 
@@ -399,6 +419,31 @@ TEST_CASE("a run interrupted while it weighs keeps the population that is full, 
   REQUIRE(broken.checkpoint.is_object());
   CHECK(broken.checkpoint.at("record").at("counts").at(3) == 5000);  // accepted of the second
   check_same(broken.resumed, broken.ledger, whole, ledger);
+}
+
+TEST_CASE("a run whose simulations are given up keeps what was accepted before them") {
+  std::vector<Toy::OfModel> models{{"edge", 1, {{Prior::uniform, -1, 1}}, &fails_at_the_edge}};
+  Settings const settings = with({{"particles", std::int64_t{3000}}, {"target", 0.01}, {"quantile", 0.1}});
+  Ledger whole_ledger;
+  SelectionResult const whole = run(Toy(models), settings, 5, &whole_ledger);
+  REQUIRE(whole_ledger.failed() > 8);
+  // A distance, and the look at a failure, in which the interruption is heard.
+  for (int const last : {1, 2500, 9000}) {
+    for (bool const looking : {false, true}) {
+      CAPTURE(last);
+      CAPTURE(looking);
+      nlohmann::json stored;
+      SilentProgress silent;
+      Ledger ledger;
+      RunContext first{5, silent, ledger, {}, [&](nlohmann::json const& state) { stored = state; }, 1e9, {}, {}, {}};
+      CHECK(
+          abc::run(LeftToy(models, looking ? infinity : last, looking ? 1 + last / 2500 : infinity), settings, first).interrupted);
+      SilentProgress quiet;
+      Ledger rest;
+      RunContext second{5, quiet, rest, {}, {}, 60, kept(stored), {}, {}};
+      check_same(whole, whole_ledger, abc::run(Toy(models), settings, second), rest);
+    }
+  }
 }
 
 TEST_CASE("a run interrupted between populations keeps the last one") {

@@ -10,6 +10,7 @@
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/targets.hpp"
+#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -307,6 +308,37 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
       CHECK(unbroken.findings == resumed.findings);
       CHECK(whole.ledger.solves() == second.ledger.solves());
       CHECK(unbroken.proposals[0].factor == resumed.proposals[0].factor);
+    }
+  }
+}
+
+TEST_CASE("a run whose batch is given up goes on from before it, to the same bytes") {
+  Line const known = line();
+  for (char const* proposal : {"walk", "adaptive"}) {
+    CAPTURE(proposal);
+    Settings settings = chosen(1200, 400, 5, 3);
+    settings.set("proposal", std::string(proposal));
+    Bench whole(9);
+    GivenUp const never(known.target, -1);
+    FitResult const unbroken = mh::run(never, settings, whole.context);
+    GivenUp const searched(known.target, -1);
+    Bench search_alone(9);
+    SearchResult const modes = search(searched, ObjectiveKind::posterior, search_alone.context);
+    // In burn-in and in sampling; before them lie the search and the batch of the starts.
+    int const first = searched.batches + 2, count = never.batches - first;
+    for (int const batch : {first + 2, first + count / 4, first + count / 2, first + count * 3 / 4, never.batches - 1}) {
+      CAPTURE(batch);
+      nlohmann::json saved;
+      Bench part(9);
+      part.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
+      GivenUp const given_up(known.target, batch);
+      REQUIRE(mh::run(given_up, settings, part.context).interrupted);
+      Bench rest(9);
+      rest.context.resume = std::make_shared<nlohmann::json const>(saved);
+      FitResult const resumed = mh::run(known.target, settings, rest.context);
+      CHECK(same_draws(unbroken, resumed));
+      CHECK(unbroken.findings == resumed.findings);
+      CHECK(whole.ledger.solves() == rest.ledger.solves());
     }
   }
 }

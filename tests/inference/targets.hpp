@@ -11,6 +11,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/system/interrupt.hpp"
 #include "inference/backend/backend.hpp"
 #include "likelihood/target.hpp"
 
@@ -123,6 +124,20 @@ class TestTarget : public Target {
   int rows_;
   double constant_;
   Residuals residuals_;
+};
+
+/// A target whose batch number `last` is given up, as where simulations are asked to stop (ExecutionOptions::throws).
+class GivenUp : public TestTarget {
+ public:
+  GivenUp(TestTarget target, int last) : TestTarget(std::move(target)), last_(last) {}
+  void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override {
+    if (++batches == last_) throw Interrupted();
+    TestTarget::log_likelihood(theta, out, ledger);
+  }
+  mutable int batches = 0;
+
+ private:
+  int last_;
 };
 
 /// A row that carries a log likelihood as it is: 1/2 r^2 = ceiling - log likelihood, for any ceiling above it.

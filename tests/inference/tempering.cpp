@@ -183,3 +183,24 @@ TEST_CASE("a tempered run stopped anywhere and resumed gives the bytes of one th
     }
   }
 }
+
+TEST_CASE("a tempered run whose move is given up goes on from before it, to the same bytes") {
+  Settings const settings = tempered(400, 200, 5, "prior");
+  Bench whole(9);
+  GivenUp const never(four_modes(), -1);
+  FitResult const unbroken = tempering::run(never, settings, whole.context);
+  for (int const batch : {never.batches - 390, never.batches - 150, never.batches}) {
+    CAPTURE(batch);
+    nlohmann::json saved;
+    Bench part(9);
+    part.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
+    GivenUp const given_up(four_modes(), batch);
+    REQUIRE(tempering::run(given_up, settings, part.context).interrupted);
+    Bench rest(9);
+    rest.context.resume = std::make_shared<nlohmann::json const>(saved);
+    FitResult const resumed = tempering::run(four_modes(), settings, rest.context);
+    CHECK(unbroken.unthinned == resumed.unthinned);
+    CHECK(unbroken.findings == resumed.findings);
+    CHECK(whole.ledger.solves() == rest.ledger.solves());
+  }
+}

@@ -2,11 +2,13 @@
 // states; classes of failure.
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <string>
 
 #include "core/numeric/random.hpp"
+#include "core/system/interrupt.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/simulator.hpp"
 #include "simulate/systems.hpp"
@@ -380,6 +382,33 @@ TEST_CASE("a solve that reaches a singular point fails there, as an outcome") {
   Run const result = run(root(), {.method = "ida"}, data, pair(4, 1));  // z = 0 at t = 2
   CHECK_FALSE(result.outcome[0].ok);
   CHECK(std::isnan(result.records(0, 0)));
+}
+
+namespace {
+
+std::atomic<int> looks = 0;
+bool soon() { return ++looks > 20; }
+
+}  // namespace
+
+TEST_CASE("every solver can be left within one interval between samples") {
+  // Some 10^11 steps of any solver, were it not left.
+  Experiment const data = testing::experiment({0, 1e12, 2e12}, {}, {});
+  LaneArray w(1, 5);
+  for (int lane = 0; lane < 5; ++lane) w(0, lane) = 1 + lane;
+  for (char const* method : {"cvode", "ida", "dopri5"}) {
+    for (ExecutorKind const executor : {ExecutorKind::lanes, ExecutorKind::native}) {
+      CAPTURE(method);
+      looks = 0;
+      ExecutionOptions options{.threads = 1, .executor = executor, .stopped = &soon};
+      Run const left = run(harmonic(), {.method = method, .relative = 1e-8, .steps = 1'000'000'000}, data, w, options);
+      CHECK(looks > 20);
+      for (Outcome const& outcome : left.outcome) CHECK_FALSE(outcome.ok);
+      looks = 0;
+      options.throws = true;
+      CHECK_THROWS_AS(run(harmonic(), {.method = method, .relative = 1e-8, .steps = 1'000'000'000}, data, w, options), Interrupted);
+    }
+  }
 }
 
 TEST_CASE("a budget that is spent, and an expression that is not finite, have their classes") {

@@ -19,6 +19,7 @@
 #include "app/session/solver_record.hpp"
 #include "app/session/solver_refinement.hpp"
 #include "app/session/task_checkpoint.hpp"
+#include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
@@ -68,7 +69,13 @@ class Fit {
     }
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
     while (true) {
-      FitResult result = sample(context);
+      FitResult result;
+      try {
+        result = sample(context);
+      } catch (Interrupted const&) {  // before the first iteration, or an optimum's checks
+        if (!checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
+        return stop_early(session_, task_, checkpoint_);
+      }
       if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
       check_draws_of(result);
       if (!to_be_chosen_again(result)) return finish(std::move(result));
@@ -91,7 +98,7 @@ class Fit {
   }
 
   FitResult sample(RunContext& context) {
-    Target const& target = likelihood_->set_target(preparation_.solver, session_.options.execution);
+    Target const& target = likelihood_->set_target(preparation_.solver, session_.abandonable());
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     FitResult result = backend_.run(target, what_.settings, context);

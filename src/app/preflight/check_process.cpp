@@ -59,7 +59,7 @@ class ProcessPreflight {
   ProcessPreflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page)
       : page_(page),
         model_(process_model(session, what, what.prediction)),
-        target_(process_target(what, model_, experiments_of(data), what.solver, session.options.execution)),
+        target_(process_target(what, model_, experiments_of(data), what.solver, session.abandonable())),
         experiments_(static_cast<int>(data.size())),
         seed_(session.options.seed.value_or(what.seed.value_or(1))) {}
 

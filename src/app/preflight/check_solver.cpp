@@ -90,7 +90,7 @@ std::optional<SolverCheck> found_from_draws(Preflight const& preflight, PriorDra
     for (int w = 0; w < theta.width(); ++w) theta(p, w) = prior.theta(p, order[static_cast<std::size_t>(w)]);
   auto const target_of = [&](SolverSettings const& solver) {
     return make_fit_target(preflight.session, preflight.what, preflight.compiled, preflight.space, preflight.experiments, solver,
-                           preflight.session.options.execution);
+                           preflight.session.abandonable());
   };
   std::uint64_t const seed = preflight.session.options.seed.value_or(preflight.what.seed.value_or(1));
   Ledger ignored;

@@ -94,11 +94,11 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
   solvers.push_back(what.solver);
   while (static_cast<int>(solvers.size()) <= effort.refinements) solvers.push_back(solvers.back().finer());
   for (SolverSettings const& solver : solvers)
-    outputs.emplace_back(compiled, space, experiments, solver, start_rows(what.start), session.options.execution, pool);
+    outputs.emplace_back(compiled, space, experiments, solver, start_rows(what.start), session.abandonable(), pool);
   if (what.solver.fixed_step() && jumps(model())) {
     SolverSettings const adaptive{.method = std::string(adaptive_solver().name), .relative = smooth_enough};
     on_jumps.emplace(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, adaptive.method, what.prediction),
-                     space, experiments, adaptive, start_rows(what.start), session.options.execution, pool);
+                     space, experiments, adaptive, start_rows(what.start), session.abandonable(), pool);
   }
 }
 

@@ -53,11 +53,11 @@ class PriorSimulation {
     LaneArray points = gathered(points_, lanes);
     std::vector<double> density(lanes.size());
     Ledger ledger;
-    make_fit_target(session_, what_, compiled, space_, experiments_, solver, session_.options.execution)
+    make_fit_target(session_, what_, compiled, space_, experiments_, solver, session_.abandonable())
         ->log_likelihood(theta, density, ledger);
     last_compiled_ = compiled;
     last_solver_ = solver;
-    Output const output(compiled, space_, experiments_, solver, start_rows(what_.start), session_.options.execution, pool_);
+    Output const output(compiled, space_, experiments_, solver, start_rows(what_.start), session_.abandonable(), pool_);
     LaneArray centres(result_.centres.rows(), points.width());
     output.start(points);
     output.centres(points, centres);
@@ -96,7 +96,7 @@ class PriorSimulation {
       std::erase_if(lanes,
                     [&](int lane) { return std::find(tried_stiff_.begin(), tried_stiff_.end(), lane) == tried_stiff_.end(); });
     auto const target =
-        make_fit_target(session_, what_, last_compiled_, space_, experiments_, last_solver_, session_.options.execution);
+        make_fit_target(session_, what_, last_compiled_, space_, experiments_, last_solver_, session_.abandonable());
     for (std::size_t i = 0; i < std::min(traced, lanes.size()); ++i) {
       double density = 0;
       Ledger solves;
@@ -151,7 +151,7 @@ PriorSimulations simulate_prior(Session& session, FitTask const& what, std::shar
   result.followed.resize(width);
   result.density.resize(width);
   Ledger untold;
-  make_fit_target(session, what, compiled, space, experiments, what.solver, session.options.execution)
+  make_fit_target(session, what, compiled, space, experiments, what.solver, session.abandonable())
       ->log_likelihood(theta, result.density, untold);
   stated.centres(points, result.centres);
   for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(result.density[w]);

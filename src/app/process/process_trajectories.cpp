@@ -25,7 +25,7 @@ ProcessTrajectories::ProcessTrajectories(Session& session, PredictTask const& wh
       fit_(std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what)),
       trained_(process_target(fit_, process_model(session, fit_, fit_.prediction),
                               experiments_of(load(session, fit_, fit_.experiments, fit_.start, fit_.prediction)), fitted_.solver,
-                              session.options.execution)),
+                              session.abandonable())),
       model_(process_model(session, fit_, what.prediction)),
       space_(parameter_space(model_->model(), fit_.experiments)),
       data_(load(session, fit_, what.experiments, what.start, what.prediction)),
@@ -52,7 +52,7 @@ ProcessForecast ProcessTrajectories::forecast(int e) const {
           data_[static_cast<std::size_t>(e)].experiment,
           fitted_.solver,
           start_rows(what_.start),
-          session_.options.execution};
+          session_.abandonable()};
 }
 
 Trajectory::Result ProcessTrajectories::run(int e, ProcessForecast const& forecast, ConstLanes parameters) const {

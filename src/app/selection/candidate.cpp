@@ -83,7 +83,7 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
     TargetOptions options;
     options.solver = finer ? each.fit->solver.finer() : each.fit->solver;
     options.start_rows = start_rows(each.fit->start);
-    options.execution = session.options.execution;
+    options.execution = session.abandonable();
     options.describe = [&session, model = each.fit->model](NodeId node, Graph const& graph) {
       return session.describe(model, graph, node);
     };

@@ -47,7 +47,7 @@ McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const
       missed("the search for its mode was stopped: by the likelihood, another model is at least exp(30) times as probable");
       continue;
     }
-    auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.options.execution);
+    auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.abandonable());
     Ledger extra;
     RunContext context{.seed = seed,
                        .progress = session.progress,

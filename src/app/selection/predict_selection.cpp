@@ -99,7 +99,7 @@ class PredictSelection {
 
   void add_ranges(std::size_t candidate, SelectionTrajectories::Along const& along, Report& report) const {
     for (Finding& finding : check_ranges(along.model(), along.data->experiment, select_.fits[candidate].solver, along.start_rows,
-                                         along.parameters, session_.options.execution))
+                                         along.parameters, session_.abandonable()))
       report.findings.push_back(std::move(finding));
   }
 

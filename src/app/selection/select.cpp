@@ -24,6 +24,7 @@
 #include "app/session/solver_record.hpp"
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
 #include "data/start_rule.hpp"
@@ -86,7 +87,13 @@ class Select {
                                       task_.name, to_resume(session_.options.surface));
       return ExitCode::interrupted;
     }
-    return finish(target, std::move(result));
+    try {
+      return finish(target, std::move(result));
+    } catch (Interrupted const&) {
+      session_.notices << fmt::format("{}: interrupted before its result was checked; {} continues from there\n", task_.name,
+                                      to_resume(session_.options.surface));
+      return ExitCode::interrupted;
+    }
   }
 
  private:
@@ -172,7 +179,7 @@ class Select {
       LaneArray parameters(static_cast<int>(candidate.compiled->model.parameters.size()), values.width());
       candidate.simulated->select(values, static_cast<int>(e), parameters);
       Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
-                                  session_.options.execution);
+                                  session_.abandonable());
       Trajectory::Result result = trajectory.run(parameters, prediction_noise(seed_, static_cast<int>(e)));
       if (candidate.space->dimension() != candidate.simulated->dimension())
         std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
@@ -183,7 +190,7 @@ class Select {
       for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
         report.findings.push_back(std::move(finding));
       for (Finding& finding : check_ranges(candidate.compiled->model, experiment, candidate.fit->solver,
-                                           start_rows(candidate.fit->start), parameters, session_.options.execution))
+                                           start_rows(candidate.fit->start), parameters, session_.abandonable()))
         report.findings.push_back(std::move(finding));
       if (e > 0) continue;
       for (Finding& finding : check_expansions(candidate.compiled->model, parameters))

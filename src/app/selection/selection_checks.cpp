@@ -43,7 +43,7 @@ std::optional<Floor> floor_at(Session const& session, Candidate const& candidate
       LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
       candidate.space->select(candidate.space->values_of_declared(declared), static_cast<int>(e), parameters);
       Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
-                                  session.options.execution);
+                                  session.abandonable());
       auto const arguments = trajectory.noise_arguments(parameters, static_cast<int>(c));
       for (std::size_t i = 0; i < arguments.size(); ++i)
         if (experiment.scored[i] != 0 && !experiment.measured[c].empty() && std::isfinite(experiment.measured[c][i]))
@@ -117,7 +117,7 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
 
 FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
   if (posterior.modes.empty() || posterior.given_up) return {};
-  FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.options.execution),
+  FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.abandonable()),
                                    posterior.modes.front().declared);
   for (Finding& finding : check.findings) {
     finding.names.insert(finding.names.begin(), candidate.what->name);

@@ -63,7 +63,7 @@ SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate,
     out.parameters = space->of_new_experiment(
         declared, out.data->use.constants, {seed_, Purpose::population, static_cast<std::uint64_t>(experiment) << 32, candidate});
   out.trajectory = std::make_unique<Trajectory const>(
-      out.compiled, out.data->experiment, fit.solver, out.start_rows, session_.options.execution,
+      out.compiled, out.data->experiment, fit.solver, out.start_rows, session_.abandonable(),
       [this, model = fit.model](NodeId node, Graph const& graph) { return session_.describe(model, graph, node); });
   out.result = out.trajectory->run(out.parameters, prediction_noise(seed_, static_cast<int>(experiment)));
   out.result.noisy.assign(out.model().channels.size(), {});

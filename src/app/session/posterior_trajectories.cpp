@@ -67,7 +67,7 @@ Trajectory PosteriorTrajectories::trajectory(int e) const {
           data_[static_cast<std::size_t>(e)].experiment,
           fitted_.solver,
           start_rows(),
-          session_.options.execution,
+          session_.abandonable(),
           [this](NodeId node, Graph const& graph) { return session_.describe(fit_.model, graph, node); }};
 }
 

@@ -75,6 +75,12 @@ ExecutionOptions Session::interruptible() const {
   return execution;
 }
 
+ExecutionOptions Session::abandonable() const {
+  ExecutionOptions execution = interruptible();
+  execution.throws = true;
+  return execution;
+}
+
 std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
                                              StartRule start, PredictionRule prediction) {
   auto const as_predicted = with_prediction(model, prediction);

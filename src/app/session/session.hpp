@@ -65,6 +65,8 @@ class Session {
   bool interrupted();
   /// As the options say, but given up when an interruption is asked for: for work of which nothing is kept then.
   ExecutionOptions interruptible() const;
+  /// As `interruptible`, but what is given up throws Interrupted: for those that keep what was before it.
+  ExecutionOptions abandonable() const;
 
  private:
   std::map<std::tuple<int, bool, std::string, PredictionRule>, std::shared_ptr<CompiledModel const>> compiled_;

@@ -58,7 +58,7 @@ class Discover {
     FoundSource const source{.file = session_.file,
                              .folder = session_.folder(),
                              .results = session_.result_folder(task_),
-                             .execution = session_.options.execution,
+                             .execution = session_.abandonable(),
                              .task = task_,
                              .what = what_,
                              .dictionary = dictionary_,

@@ -94,12 +94,12 @@ class Predict {
     Trajectory::Result const result = trajectories_.run(e, trajectory, draws);
     stop_if_interrupted();
     report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model_));
-    for (Finding& finding : check_ranges(model_, experiment, trajectories_.fitted().solver, trajectories_.start_rows(), draws,
-                                         session_.options.execution))
+    for (Finding& finding :
+         check_ranges(model_, experiment, trajectories_.fitted().solver, trajectories_.start_rows(), draws, session_.abandonable()))
       report.findings.push_back(std::move(finding));
     if (!model_.expansions.empty())
       for (Finding& finding : check_reach(model_, trajectories_.fitted_runs(), {experiment, trajectories_.start_rows(), draws},
-                                          trajectories_.fitted().solver, session_.options.execution))
+                                          trajectories_.fitted().solver, session_.abandonable()))
         report.findings.push_back(std::move(finding));
     // Parameters that change from step to step have no force of their own.
     if (!what_.redraw_each_step) add_restoring_forces(model_, trajectory.quantities(), result, draws, experiment, report.forces);

@@ -68,8 +68,7 @@ std::string first_failure(Session const& session, SimulateTask const& what, Comp
     channel.assign(experiment.time.size(), std::nan(""));
     channel.back() = 0;
   }
-  Simulator const simulator(compiled.likelihood, Schedule(*compiled.likelihood, experiment, what.solver),
-                            session.options.execution);
+  Simulator const simulator(compiled.likelihood, Schedule(*compiled.likelihood, experiment, what.solver), session.abandonable());
   std::vector<double> values;
   // What only the noise reads may have no value; any does here.
   for (int p = 0; p < parameters.rows(); ++p) values.push_back(std::isnan(parameters(p, 0)) ? 1.0 : parameters(p, 0));
@@ -137,7 +136,7 @@ class Simulate {
       feedbacks.push_back(measured_samples(*compiled_));
     }
     if (functions_) feedbacks.push_back(drawn_values(*functions_, time_, history_));
-    Trajectory const trajectory(compiled_, experiment_, what_.solver, 0, session_.options.execution);
+    Trajectory const trajectory(compiled_, experiment_, what_.solver, 0, session_.abandonable());
     announce(trajectory);
     auto const ended = in_rounds(session_, task_, compiled_, experiment_, what_, parameters_, noise_key_, feedbacks);
     if (!ended) throw Interrupted();
@@ -242,7 +241,7 @@ class Simulate {
     for (Finding const& finding : drift_findings(session_.source, model(), result, task_.name))
       session_.notices << fmt::format("{}: {}{}\n", task_.name, finding.severity == Severity::warning ? "warning: " : "",
                                       finding.message);
-    for (Finding const& finding : check_ranges(model(), experiment_, what_.solver, 0, parameters_, session_.options.execution))
+    for (Finding const& finding : check_ranges(model(), experiment_, what_.solver, 0, parameters_, session_.abandonable()))
       session_.notices << fmt::format("{}: warning: {}\n", task_.name, finding.message);
   }
 

@@ -11,6 +11,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/system/interrupt.hpp"
 #include "inference/abc/findings.hpp"
 #include "inference/abc/proposals.hpp"
 #include "inference/abc/state.hpp"
@@ -71,7 +72,7 @@ class Run {
         break;
       }
       if (stop(end_within_population(state_, plan_, seconds()))) break;
-      propose(proposals);
+      if (!propose(proposals)) break;
       full = record_.accepted >= plan_.particles;
       context_.progress.advance(static_cast<std::uint64_t>(next_.accepted()),
                                 fmt::format("threshold {:.4g}, acceptance {:.2g}", next_.threshold, record_.acceptance()));
@@ -90,7 +91,8 @@ class Run {
     return static_cast<int>(std::min(std::clamp<double>(std::ceil(needed), least_batch, most_batch), allowed));
   }
 
-  void propose(Proposals const& proposals) {
+  /// False when the run is interrupted meanwhile: nothing of the batch is kept.
+  bool propose(Proposals const& proposals) {
     int const count = batch_size();
     std::uint64_t const first = record_.proposed;
     Proposed const proposed = proposals.make(first, count);
@@ -115,8 +117,15 @@ class Run {
       ending[m].resize(simulated[m].size());
       if (!simulated[m].empty()) batches.push_back({static_cast<int>(m), theta[m], distance[m], ending[m]});
     }
-    candidates_.distances(batches, next_.threshold);
+    std::vector<Failed> failed;
+    try {
+      candidates_.distances(batches, next_.threshold);
+      failed = look_into(proposed, place, theta, ending);
+    } catch (Interrupted const&) {
+      return !(result_.interrupted = true);
+    }
 
+    std::size_t looked_into = 0;
     for (std::size_t i = 0; i < proposed.model.size() && record_.accepted < plan_.particles; ++i) {
       auto const m = static_cast<std::size_t>(proposed.model[i]);
       auto const column = static_cast<std::size_t>(proposed.column[i]);
@@ -129,15 +138,39 @@ class Run {
       if (ending[m][lane] == Simulated::failed) {
         ++record_.failed;
         ++record_.models[m].failed;
-        note_failure(static_cast<int>(m), theta[m].view().columns(static_cast<int>(lane), 1));
+        note_failure(static_cast<int>(m), theta[m].view().columns(static_cast<int>(lane), 1),
+                     looked_into < failed.size() ? &failed[looked_into++] : nullptr);
       }
       if (ending[m][lane] != Simulated::within) continue;
       next_.models[m].add(proposed.x[m], proposed.column[i], proposed.log_prior[m][column], distance[m][lane]);
       ++record_.accepted;
     }
+    return true;
   }
 
-  void note_failure(int model, ConstLanes theta) {
+  /// Where a simulation went wrong, in the user's words, and when [s].
+  using Failed = std::pair<std::string, double>;
+
+  /// The failures of a batch that are not only counted, in the order of the proposals, up to the one that fills the population.
+  /// Before anything is counted: an interruption throws.
+  std::vector<Failed> look_into(Proposed const& proposed, std::vector<std::vector<int>> const& place,
+                                std::vector<LaneArray> const& theta, std::vector<std::vector<Simulated>> const& ending) const {
+    std::vector<Failed> found;
+    int accepted = record_.accepted;
+    for (std::size_t i = 0; i < proposed.model.size() && accepted < plan_.particles; ++i) {
+      auto const m = static_cast<std::size_t>(proposed.model[i]);
+      int const lane = place[m][static_cast<std::size_t>(proposed.column[i])];
+      if (lane < 0) continue;
+      Simulated const how = ending[m][static_cast<std::size_t>(lane)];
+      if (how == Simulated::within) ++accepted;
+      if (how != Simulated::failed || context_.ledger.failed() + found.size() >= traced_failures) continue;
+      found.push_back(candidates_.failure(static_cast<int>(m), theta[m].view().columns(lane, 1)));
+    }
+    return found;
+  }
+
+  /// failed: null where it is only counted.
+  void note_failure(int model, ConstLanes theta, Failed const* failed) {
     LaneArray declared(theta.rows(), 1);
     candidates_.constrain(model, theta, declared);
     std::vector<double> example;
@@ -146,10 +179,9 @@ class Run {
       example.push_back(declared(d, 0));
       names.push_back(candidates_.parameters(model)[static_cast<std::size_t>(d)].name);
     }
-    if (context_.ledger.failed() < traced_failures) {
-      auto const [where, time] = candidates_.failure(model, theta);
-      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", where, candidates_.name(model)), time,
-                                  std::move(example), 1, std::move(names));
+    if (failed != nullptr) {
+      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", failed->first, candidates_.name(model)),
+                                  failed->second, std::move(example), 1, std::move(names));
     } else {
       context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`{}", candidates_.name(model), Ledger::not_traced),
                                   not_a_number, std::move(example), 1, std::move(names));

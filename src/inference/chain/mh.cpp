@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/numeric/not_finite.hpp"
+#include "core/system/interrupt.hpp"
 #include "diagnostics/chain_checks.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/adaptation.hpp"
@@ -188,7 +189,7 @@ void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Propo
   if (state.independence.active()) state.independence.end_cycle(state.groups);
 }
 
-/// Iterates to the end, or until asked to stop; returns whether it was.
+/// Iterates to the end, or until asked to stop or a batch is given up, of which nothing is kept; returns whether it was.
 bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
   metropolis::Proposal const fixed = metropolis::spherical(target.dimension(), plan.variance);
   std::vector<metropolis::Proposal const*> proposals(static_cast<std::size_t>(plan.chains), &fixed);
@@ -207,8 +208,16 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
 
   context.progress.begin("sampling", plan.samples);
   bool stopped = false;
-  while (!all_lags(plan.burn_in) && !(stopped = context.stop_requested())) {
-    burn_in(target, plan, proposals, key, context.ledger, state);
+  auto const given_up = [&](auto const& batch) {
+    try {
+      batch();
+    } catch (Interrupted const&) {
+      stopped = true;
+    }
+    return stopped;
+  };
+  while (!stopped && !all_lags(plan.burn_in) && !(stopped = context.stop_requested())) {
+    if (given_up([&] { burn_in(target, plan, proposals, key, context.ledger, state); })) break;
     look();
   }
   // The proposals are frozen. Without independence moves idle lanes may run ahead. How far must not depend on the machine, or the
@@ -219,11 +228,14 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     record(chain, move);
   };
   while (!stopped && !all_lags(plan.samples) && !(stopped = context.stop_requested())) {
-    if (moves > 0)
-      metropolis::cycle(target, proposals, state.independence.mixture(), moves, key.with_step(state.next.front()), plan.samples,
-                        state.chains, context.ledger, counted);
-    else
-      metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
+    auto const batch = [&] {
+      if (moves > 0)
+        metropolis::cycle(target, proposals, state.independence.mixture(), moves, key.with_step(state.next.front()), plan.samples,
+                          state.chains, context.ledger, counted);
+      else
+        metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
+    };
+    if (given_up(batch)) break;
     look();
   }
   context.progress.end(!stopped);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/numeric/not_finite.hpp"
+#include "core/system/interrupt.hpp"
 #include "diagnostics/chain_checks.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/chain_record.hpp"
@@ -221,13 +222,19 @@ void learn(Plan const& plan, metropolis::Info const& info, State& state) {
   state.round_end *= 2;
 }
 
-/// Iterates to the end, or until asked to stop; returns whether it was.
+/// Iterates to the end, or until asked to stop or a move is given up, of which nothing is kept; returns whether it was.
 bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
   Watch watch(context, [&] { return store(state, context.ledger, identity); });
   context.progress.begin("sampling", plan.samples);
   bool stopped = false;
   while (state.next < plan.samples && !(stopped = context.stop_requested())) {
-    metropolis::Info info = move(target, plan, context.seed, state, context.ledger);
+    metropolis::Info info;
+    try {
+      info = move(target, plan, context.seed, state, context.ledger);
+    } catch (Interrupted const&) {
+      stopped = true;
+      break;
+    }
     exchange(plan, context.seed, state, info);
     if (state.next < plan.burn_in) learn(plan, info, state);
     for (int c = 0; state.next >= plan.burn_in && c < plan.chains; ++c)

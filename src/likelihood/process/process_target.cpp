@@ -6,6 +6,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "gaussian_process/regression.hpp"
 #include "likelihood/failures.hpp"
@@ -57,6 +58,12 @@ int ProcessTarget::count(int channel) const {
   int total = 0;
   for (ProcessRecord const& record : records_) total += static_cast<int>(record.fitted(channel).size());
   return total;
+}
+
+bool ProcessTarget::stopped() const { return options_.execution.stopped != nullptr && options_.execution.stopped(); }
+
+void ProcessTarget::leave_if_stopped() const {
+  if (options_.execution.throws && stopped()) throw Interrupted();
 }
 
 ProcessTarget::Batch ProcessTarget::evaluate(ConstLanes theta) const {
@@ -138,9 +145,11 @@ void ProcessTarget::record(Batch const& batch, ConstLanes theta, std::span<doubl
     for (int p = 0; p < declared.rows(); ++p) out.push_back(declared(p, lane));
     return out;
   };
-  for (std::size_t e = 0; e < records_.size(); ++e)
-    record_failures({records_[e].simulator(), batch.records[e].parameters, options_.start_rows > 0, {}}, batch.records[e].outcome,
-                    options_.describe, example, ledger);
+  all_or_nothing(ledger, [&] {
+    for (std::size_t e = 0; e < records_.size(); ++e)
+      record_failures({records_[e].simulator(), batch.records[e].parameters, options_.start_rows > 0, {}}, batch.records[e].outcome,
+                      options_.describe, example, ledger);
+  });
   for (int w = 0; w < theta.width(); ++w)
     if (!std::isfinite(values[static_cast<std::size_t>(w)]) && batch.good(w))
       ledger.add_failure(FailureClass::non_finite, "the covariance of the Gaussian process", std::nan(""), example(w));
@@ -151,6 +160,7 @@ void ProcessTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledg
   auto const one = [&](int w) {
     double total = 0;
     for (int c = 0; c < static_cast<int>(measured_.size()); ++c) {
+      if (stopped()) return -infinity;
       auto const given = regression(batch, c, w, true);
       if (!given) return -infinity;
       Marginal const result = marginal(*given, c, false);
@@ -164,6 +174,7 @@ void ProcessTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledg
     pool_->run(theta.width(), task);
   else
     for (int w = 0; w < theta.width(); ++w) task(w);
+  leave_if_stopped();
   record(batch, theta, out, ledger);
 }
 
@@ -195,7 +206,7 @@ double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledg
       return -infinity;
     }
     total += result.log_likelihood;
-    for (int p = 0; p < dimension; ++p) {
+    for (int p = 0; p < dimension && !stopped(); ++p) {
       auto const ahead = regression(batch, c, 2 * p + 1, true), behind = regression(batch, c, 2 * p + 2, true);
       if (!ahead || !behind) continue;  // at the edge of what can be computed: the coordinate is left alone
       bool const inputs_move =
@@ -212,6 +223,7 @@ double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledg
       if (std::isfinite(slope)) gradient(p, 0) += slope;
     }
   }
+  leave_if_stopped();
   ledger.add_solves(1);
   return total;
 }

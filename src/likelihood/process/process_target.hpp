@@ -70,6 +70,9 @@ class ProcessTarget : public Target {
   /// log likelihood of one vector theta [P x 1], and its gradient [P x 1].
   double gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledger) const;
   void record(Batch const& batch, ConstLanes theta, std::span<double const> values, Ledger& ledger) const;
+  bool stopped() const;
+  /// As ExecutionOptions::throws says.
+  void leave_if_stopped() const;
 
   std::shared_ptr<ProcessModel const> model_;
   std::shared_ptr<ParameterSpace const> space_;
