@@ -118,8 +118,9 @@ constexpr ExporterRow exporters[] = {
 Work declare_export(CLI::App& verb) {
   auto const options = std::make_shared<ExportOptions>();
   options->run.execution.threads = 0;
-  verb.add_option("WHAT", options->what,
-                  "folder of a fit or selection, or of a whole run; with --stan also a .sysid file, with --latex only that")
+  verb.add_option(
+          "WHAT", options->what,
+          "folder of a fit, of a selection or of a whole run; --stan also takes a .sysid file, --latex takes only a .sysid file")
       ->required();
   options->exporter = &exporters[0];
   std::vector<std::pair<CLI::Option*, ExporterRow const*>> flags;
@@ -137,11 +138,12 @@ Work declare_export(CLI::App& verb) {
           ->default_str(options->run.output.string());
   verb.add_option("--model", options->model, "the .sysid file of the results (default: the file that they were made from)")
       ->type_name("FILE");
-  CLI::Option* const draws = verb.add_option("--draws", options->draws,
-                                             "number of draws to simulate for likelihoods and predictions; 0: only what is stored")
-                                 ->type_name("N")
-                                 ->check(CLI::Range(0, 1000000))
-                                 ->capture_default_str();
+  CLI::Option* const draws =
+      verb.add_option("--draws", options->draws,
+                      "number of draws to simulate for likelihoods and predictions; 0: export only stored results")
+          ->type_name("N")
+          ->check(CLI::Range(0, 1000000))
+          ->capture_default_str();
   for (auto const& [flag, row] : flags) {
     if (!row->simulates) draws->excludes(flag);
     if (row->into_a_folder) output->needs(flag);

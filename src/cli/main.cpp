@@ -7,7 +7,7 @@
 namespace sysid::cli {
 namespace {
 
-constexpr char const *tasks = "Tasks of a file", *files = "Files", *results = "Results", *looking_up = "Looking up";
+constexpr char const *tasks = "Tasks of a file", *files = "Files", *results = "Results", *looking_up = "Reference";
 
 constexpr Command commands[] = {
     {"run", tasks, "run all tasks of a file", &declare_tasks,
@@ -20,7 +20,7 @@ constexpr Command commands[] = {
     {"discover", tasks, "run the discover tasks of a file: find equations from the terms of a dictionary", &declare_tasks,
      "sysid discover lorenz.sysid"},
     {"predict", tasks, "run the predict tasks of a file, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force"},
-    {"check", files, "check a file and what its data can determine, before any sampling", &declare_check,
+    {"check", files, "check a file, and report what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
     {"fmt", files, "rewrite files in canonical layout", &declare_format,
      "sysid fmt duffing.sysid\nsysid fmt --check models/*.sysid"},
@@ -33,7 +33,7 @@ constexpr Command commands[] = {
      "sysid report results/posterior\nsysid report results -o paper.html --figures pdf"},
     {"export", results, "write results for ArviZ and xarray, a fit as a Stan program, equations as LaTeX", &declare_export,
      "sysid export results --draws 1000\nsysid export duffing.sysid --stan\nsysid export duffing.sysid --latex"},
-    {"list", looking_up, "list the tables of the language: functions, distributions, backends, ...", &declare_list,
+    {"list", looking_up, "list what the language provides: functions, distributions, backends, ...", &declare_list,
      "sysid list distributions"},
     {"explain", looking_up, "explain the code of a message or a finding, with an example", &declare_explain,
      "sysid explain E2103\nsysid explain chains_disagree"},

@@ -167,7 +167,7 @@ Diagnostic repeated_column(std::string const& file, std::string const& column, M
 
 Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Mention mention) {
   if (!quote)
-    return error("E4010", mention, fmt::format("{} holds a text, not a number", place(cell)),
+    return error("E4010", mention, fmt::format("{} contains a text, not a number", place(cell)),
                  "choose a column of numbers; a missing sample of a measured column is an empty cell or NA");
   bool const decimal_comma =
       std::count(text.begin(), text.end(), ',') == 1 && text.find_first_not_of("\"0123456789+-eE,") == std::string_view::npos;
@@ -192,7 +192,7 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
 Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention) {
   std::string const unit = as_unit(text);
   return error("E4010", mention,
-               fmt::format("{} holds words, not numbers: it seems to be a row of units below the header",
+               fmt::format("{} contains words, not numbers: it seems to be a row of units below the header",
                            place(cell.file, cell.row, cell.line)),
                unit.empty()
                    ? fmt::format("delete this line; units are written in the data block, in brackets behind `{}`", cell.column)
@@ -201,12 +201,12 @@ Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention
 
 Diagnostic unknown_separator(std::string const& file, int line, std::string_view separator, Mention mention) {
   return error("E4002", mention,
-               fmt::format("line {} of `{}` names the separator `{}`, which is not read", line, file, shown(separator)),
+               fmt::format("line {} of `{}` declares the separator `{}`, which is not supported", line, file, shown(separator)),
                "separate the columns by commas, semicolons or tabs");
 }
 
 Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention) {
-  return error("E4011", mention, fmt::format("{} holds `{}`", place(cell), shown(text)),
+  return error("E4011", mention, fmt::format("{} contains `{}`", place(cell), shown(text)),
                "check what produced it; a missing sample of a measured column is an empty cell or NA, and an input needs a number "
                "in every row");
 }
@@ -229,7 +229,7 @@ Diagnostic missing_value(Cell const& cell, std::string const& what, Mention ment
 
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention) {
   return error("E4014", mention, fmt::format("{}: time does not increase, {} comes after {}", place(cell), now, before),
-               "sort the rows and remove repeated ones; if the file holds two runs, divide it into two files");
+               "sort the rows and remove repeated ones; if the file contains two runs, divide it into two files");
 }
 
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention) {

@@ -188,7 +188,7 @@ Table Table::read(std::string const& path, std::optional<Span> mention) {
   double const size = static_cast<double>(regular_file_size(path));
   if (size > large) try {
       require_memory(fmt::format("reading `{}`", path), memory_per_byte * size,
-                     "cut the record, or leave out columns that nothing reads");
+                     "cut the record, or remove columns that are not used");
     } catch (UserError const& error) {
       Diagnostic placed = error.diagnostic();
       if (mention) placed.primary = Label{*mention, {}};

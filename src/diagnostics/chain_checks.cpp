@@ -92,7 +92,7 @@ void check_agreement(ChainReport const& report, Findings& findings) {
   findings.push_back(
       {far_above ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
        far_above ? fmt::format("the chains disagree: R-hat of {} is far above {}{}", far.text, rhat_threshold,
-                               near.empty() ? "" : fmt::format(", that of {} is above it", near.text))
+                               near.empty() ? "" : fmt::format(", and R-hat of {} is also above it", near.text))
                  : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_threshold),
        far_above ? "do not use the means and sds; run longer chains, and check for a second mode or for parameters that "
                    "the data cannot separate"

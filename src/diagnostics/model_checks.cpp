@@ -29,7 +29,7 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
     return {{FindingCode::optimum_of_hierarchy,
              Severity::warning,
              {member->name},
-             fmt::format("the density may be unbounded where the spread of `{}` goes to 0, so that an optimum is not meaningful",
+             fmt::format("the density may be unbounded as the spread of `{}` approaches 0, so an optimum is not meaningful",
                          member->name),
              "sample it with mh"}};
   bool const unmixed = std::any_of(found.begin(), found.end(), [](Finding const& each) {

@@ -295,7 +295,7 @@ void name_held(Report const& report, Findings& findings) {
 Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,
                             std::string help) {
   return {FindingCode::worse_than_the_mean, severity, std::move(names),
-          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and that of the mean is 100 %", channel, nmse),
+          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % for the mean", channel, nmse),
           std::move(help)};
 }
 

@@ -213,17 +213,14 @@ std::string sds(double value) {
   return value > 1000 ? "more than 1000" : value >= 10 ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value);
 }
 
-/// "k moves by 0.35 sd", "the mean of k moves by 0.35 +- 0.04 sd, that of m by 0.2 +- 0.03 sd".
+/// "k moves by 0.35 sd", "the mean of k moves by 0.35 +- 0.04 sd, the mean of m by 0.2 +- 0.03 sd".
 std::string moves_text(SolverCheck const& check, bool conditional) {
   bool const mean = check.outcome == SolverCheck::Outcome::mean_moves;
   std::string text;
   for (Moved const& each : check.moved) {
     bool const first = text.empty();
-    text += fmt::format("{}{}{}{}by {}{} sd", first ? "" : ", ",
-                        !mean   ? ""
-                        : first ? "the mean of "
-                                : "that of ",
-                        each.parameter, first ? (conditional ? " would move " : " moves ") : " ", sds(each.move),
+    text += fmt::format("{}{}{}{}by {}{} sd", first ? "" : ", ", mean ? "the mean of " : "", each.parameter,
+                        first ? (conditional ? " would move " : " moves ") : " ", sds(each.move),
                         mean ? fmt::format(" +- {:.1g}", each.error) : std::string());
   }
   return text;
@@ -283,7 +280,7 @@ Findings tolerance_findings(SolverCheck const& check, SolverSettings const& solv
   if (solver.as_model)
     return {{FindingCode::integration_step, Severity::note, std::move(names),
              fmt::format("{} is part of the model: with {} {}", solver.text(), solver.finer_words(), what_happens(check, true)),
-             "the parameters are those of the model with this integrator; another integrator needs parameters of its own"}};
+             "the estimates are valid only with this integrator; for another integrator, fit again"}};
   return {{FindingCode::integration_step, Severity::error, std::move(names),
            fmt::format("the integration {} changes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
                        solver.finer_words(), what_happens(check, false)),

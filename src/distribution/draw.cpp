@@ -49,7 +49,7 @@ double draw(DistributionRow const& row, std::span<double const> arguments, doubl
   auto const number = [&](NodeId node) { return graph.constant_value(node).value(); };
   double const inside = number(mass(graph, use));
   if (!(lower < upper) || !(inside > 0))
-    refuse("E2115", "`" + name + "` has no mass between its bounds", "widen `lower` and `upper`, or move the distribution");
+    refuse("E2115", "`" + name + "` has no probability between its bounds", "widen `lower` and `upper`, or move the distribution");
   Support const bounds = support(graph, use);
   double const low = bounds.lower ? number(*bounds.lower) : -std::numeric_limits<double>::infinity();
   double const high = bounds.upper ? number(*bounds.upper) : std::numeric_limits<double>::infinity();

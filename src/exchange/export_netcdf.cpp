@@ -116,7 +116,7 @@ void require_exportable(ResultsFolder const& results, bool force) {
   }
   if (!any)
     throw refused(
-        fmt::format("`{}` holds no draws", results.one_task ? results.results.front().folder.string() : results.run.string()),
+        fmt::format("`{}` contains no draws", results.one_task ? results.results.front().folder.string() : results.run.string()),
         "only a fit or a selection stores draws");
 }
 

@@ -20,8 +20,9 @@ void require(int status, std::string_view doing) {
   if (status == NC_ENOMEM) throw std::bad_alloc();
   // Names are the user's, or those of a folder that somebody has changed.
   if (status == NC_EBADNAME || status == NC_EMAXNAME || status == NC_ENAMEINUSE)
-    throw refused(fmt::format("NetCDF takes no variable called `{}`: {}", doing.substr(0, longest_shown), nc_strerror(status)),
-                  "rename it in the model and run the task again");
+    throw refused(
+        fmt::format("NetCDF does not allow a variable named `{}`: {}", doing.substr(0, longest_shown), nc_strerror(status)),
+        "rename it in the model and run the task again");
   if (status != NC_NOERR) throw InternalError(fmt::format("NetCDF, {}: {}", doing, nc_strerror(status)));
 }
 

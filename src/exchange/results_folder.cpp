@@ -59,7 +59,7 @@ ResultsFolder find_results(fs::path const& folder) {
     if (found.file.empty()) found.file = recorded_file(task);
   }
   if (tasks.empty())
-    throw refused(fmt::format("`{}` holds no results", folder.string()),
+    throw refused(fmt::format("`{}` contains no results", folder.string()),
                   "give the folder of a task, such as results/posterior, or of a whole run, such as results");
   return found;
 }
@@ -72,7 +72,7 @@ int find_task(Session& session, StoredResult const& stored) {
     return static_cast<int>(t);
   }
   throw refused(
-      fmt::format("`{}` holds results of the task `{}`, but `{}` has no such task", stored.folder.string(), stored.task(),
+      fmt::format("`{}` contains results of the task `{}`, but `{}` has no such task", stored.folder.string(), stored.task(),
                   session.source.name()),
       "name the .sysid file of these results with --model FILE, or use --draws 0 to export only what the folder contains");
 }

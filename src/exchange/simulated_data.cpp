@@ -180,8 +180,8 @@ void add_simulated(Session& session, int index, StoredResult const& stored, int 
   if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty()) {
     add_process_predictive(session, index, stored.seed(), draws, data);
     data.omitted.push_back(
-        "log_likelihood, prior, prior_predictive: a Gaussian process over the rows gives the samples only a joint density, and "
-        "draws of its prior are not supported");
+        "log_likelihood, prior, prior_predictive: with a Gaussian process over the rows the samples have only a joint density, and "
+        "draws from its prior are not supported");
     return;
   }
   StoredFit const fit(session, index);

@@ -33,8 +33,9 @@ Finding not_reached(Mode const& mode) {
   return {FindingCode::optimum_not_reached,
           Severity::error,
           {},
-          fmt::format("the search ended before it reached an optimum: another step should raise the log density by {:.2g}, {}",
-                      mode.gain, mode.stalled ? "but no step that was tried raises it" : "and the search used up its rounds"),
+          fmt::format(
+              "the search ended before it reached an optimum: the next step is predicted to raise the log density by {:.2g}, {}",
+              mode.gain, mode.stalled ? "but no step that was tried raises it" : "and the search has used up its rounds"),
           mode.stalled
               ? "make the solver more accurate, for example `solver = cvode(relative = 1e-9)`, fix parameters that the data "
                 "do not determine, or sample with mh"
@@ -85,13 +86,12 @@ std::optional<Finding> check_widths(Target const& target, std::vector<Mode> cons
   std::string const unit = worst.unit.empty() ? "" : " " + worst.unit;
   std::string const others =
       found.size() > 1 ? fmt::format("; the same holds for {}", counted(found.size() - 1, "further parameter")) : "";
-  return Finding{
-      FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, names,
-      fmt::format("the posterior is not normal around its optimum: draws weighted by its density give {} = {:.3g} ± {:.2g}{}, "
-                  "the optimum {:.3g} ± {:.2g}{}{}{}",
-                  worst.name, draws.mean[p], draws.sd[p], unit, best.declared[p], best.sd[p], unit, others,
-                  draws.tell() ? "" : "; these draws are too few to determine the sds"),
-      "fit with mh, whose draws have the sds of the posterior; of this result use only the optimum"};
+  return Finding{FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, names,
+                 fmt::format("the posterior is not normal around its optimum: weighted draws give {} = {:.3g} ± {:.2g}{}, the "
+                             "Laplace approximation {:.3g} ± {:.2g}{}{}{}",
+                             worst.name, draws.mean[p], draws.sd[p], unit, best.declared[p], best.sd[p], unit, others,
+                             draws.tell() ? "" : "; the weighted draws are too few to determine the sds"),
+                 "fit with mh to get the sds of the posterior; use only the optimum of this result"};
 }
 
 void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {

@@ -76,7 +76,7 @@ constexpr KeywordRow keyword_rows[] = {
     {"file", "file \"bench.csv\"", "the CSV file of a record; its path is relative to the folder of the .sysid file"},
     {"rate", "rate 1000 [Hz]", "samples per second, if no column contains the time"},
     {"step", "step 1 [ms]", "the time between samples, if no column contains it"},
-    {"measure", "measure displacement = y_noisy [mm]", "the column that holds a channel, and its unit"},
+    {"measure", "measure displacement = y_noisy [mm]", "the column with the samples of a channel, and its unit"},
     {"split", "split train = rows 1..500, test = rows 501..1500",
      "named ranges of rows, for example one to fit and one to test; rows count from 1, and both ends are included"},
     {"rows", "split train = rows 1..500", "a range of rows of the file; rows count from 1, and both ends are included"},

@@ -40,7 +40,7 @@ nlohmann::json const* Journal::begin(std::string_view kind) {
   open_ = !was_finished_;
   if (given_up_) return nullptr;
   nlohmann::json const* const kept = was_finished_ ? &finished_[next_] : part_.is_null() ? nullptr : &part_;
-  if (kept != nullptr && kept->at(0).get<std::string>() != kind) throw checkpoint::Mismatch("its search went another way");
+  if (kept != nullptr && kept->at(0).get<std::string>() != kind) throw checkpoint::Mismatch("its search took other steps");
   kind_ = kind;
   if (was_finished_) ++next_;
   return kept == nullptr ? nullptr : &kept->at(1);

@@ -117,7 +117,7 @@ Findings mode_findings(Target const& target, ObjectiveKind objective_kind, std::
         {FindingCode::second_mode,
          Severity::warning,
          {},
-         fmt::format("a {} mode holds about {:.0f} % of the posterior: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
+         fmt::format("a {} mode has about {:.0f} % of the posterior mass: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
                      describe(target, modes[i])),
          "compare both solutions: add data or prior knowledge that distinguishes them, or run more chains and report both"});
   }

@@ -138,7 +138,7 @@ TEST_CASE("a multisine has harmonics in its band, below half the rate") {
   CHECK(band("lowest = 0.1, highest = 0.1").empty());  // the first harmonic, 10 Hz / 100
   CHECK(band("lowest = 1, highest = 5").find("error[E6101]: this multisine reaches 5 Hz, but half the sampling rate is 5 Hz") !=
         std::string::npos);
-  CHECK(band("lowest = 1.01, highest = 1.09").find("error[E6101]: no harmonic of the record, a multiple of 0.1 Hz") !=
+  CHECK(band("lowest = 1.01, highest = 1.09").find("error[E6101]: no harmonic of the record (a multiple of 0.1 Hz)") !=
         std::string::npos);
   CHECK(band("lowest = 0, highest = 0.05").find("error[E6101]: no harmonic") != std::string::npos);
 }

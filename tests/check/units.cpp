@@ -253,7 +253,7 @@ TEST_CASE("what stays unchecked is listed with its reason") {
   CHECK(lines[0] == "x: no unit is declared, so `b*x` is not compared");
   CHECK(lines[1] == "b: no unit is declared, so `b*x` and `e*y` are not compared");
   CHECK(lines[2] == "c: a number without a unit, so `c*y` is not compared");
-  CHECK(lines[3] == "y: its exponent is no fraction of small whole numbers");
+  CHECK(lines[3] == "y: its exponent is not a fraction of small whole numbers");
   CHECK(lines[4] == "h: its unit is not known");
   CHECK(model_of(names + equation).unchecked.size() == 1);  // n
 }

@@ -21,7 +21,7 @@ TEST_CASE("the page of the program names every verb, in groups") {
   CHECK(said.exit == 0);
   CHECK(said.text.find("Usage: sysid VERB [OPTIONS] ...\n") != std::string::npos);
   for (std::string const& verb : verbs) CHECK_MESSAGE(said.text.find("\n  " + verb + " ") != std::string::npos, verb);
-  for (char const* group : {"Tasks of a file:", "Files:", "Results:", "Looking up:", "Examples:"})
+  for (char const* group : {"Tasks of a file:", "Files:", "Results:", "Reference:", "Examples:"})
     CHECK_MESSAGE(said.text.find(group) != std::string::npos, group);
 }
 

@@ -49,5 +49,5 @@ TEST_CASE("results that are there are an error of the program, not of the text")
   REQUIRE(desk.ask("fit line.sysid --quiet --no-figures").exit <= 1);
   Said const said = desk.ask("fit line.sysid");
   CHECK(said.exit == 65);
-  CHECK(said.text.starts_with("sysid: error: `results/posterior` holds results already\nhelp: add --force"));
+  CHECK(said.text.starts_with("sysid: error: `results/posterior` already contains results\nhelp: add --force"));
 }

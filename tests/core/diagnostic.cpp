@@ -109,8 +109,8 @@ TEST_CASE("a message without a place names the file alone") {
 
 TEST_CASE("a message with neither a place nor a code is the program's, not the file's") {
   Source const source("a.sysid", "");
-  CHECK(render(Diagnostic{Severity::error, "", "`results` holds results already", {}, {}, "add --force"}, source) ==
-        "sysid: error: `results` holds results already\nhelp: add --force\n");
+  CHECK(render(Diagnostic{Severity::error, "", "`results` already contains results", {}, {}, "add --force"}, source) ==
+        "sysid: error: `results` already contains results\nhelp: add --force\n");
 }
 
 TEST_CASE("diagnostics are sorted by place, those without one last") {
@@ -258,13 +258,13 @@ TEST_CASE("two messages say the same by code, places and names, whatever their w
 }
 
 TEST_CASE("at the prompt a message names what is typed there") {
-  Diagnostic const error = result_error("E6208", "`a` holds an interrupted run", resume_or_replace());
+  Diagnostic const error = result_error("E6208", "`a` contains an interrupted run", resume_or_replace());
   Source const source("prompt", "");
   CHECK(render(error, source) ==
-        "prompt: error[E6208]: `a` holds an interrupted run\nhelp: continue with --resume, or start again with --force\n"
+        "prompt: error[E6208]: `a` contains an interrupted run\nhelp: continue with --resume, or start again with --force\n"
         "more: sysid explain E6208\n");
   CHECK(render(error, source, false, Surface::prompt) ==
-        "prompt: error[E6208]: `a` holds an interrupted run\n"
+        "prompt: error[E6208]: `a` contains an interrupted run\n"
         "help: give the task another name, or start the prompt with --force or another -o\nmore: help E6208\n");
   Diagnostic plain = error;
   plain.prompt_help.clear();

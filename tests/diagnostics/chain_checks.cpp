@@ -77,7 +77,7 @@ TEST_CASE("only what is far above the limit is said to be far above it") {
   Findings const findings = check_chains(mixed);
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].names == std::vector<std::string>{"k", "c"});
-  CHECK(findings[0].message.find("that of c (1.011) is above it") != std::string::npos);
+  CHECK(findings[0].message.find("R-hat of c (1.011) is also above it") != std::string::npos);
   CHECK(findings[0].message.find("c (1.011)") > findings[0].message.find("far above"));
   mixed.summaries.pop_back();
   CHECK(check_chains(mixed)[0].message.find("above it") == std::string::npos);

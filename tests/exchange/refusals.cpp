@@ -32,7 +32,7 @@ TEST_CASE("an export refuses folders without draws, files that are there and res
   };
   CHECK(require(results).ends_with("posterior/posterior.nc` exists already"));
   CHECK(require(results / "forecast").ends_with("forecast` is a prediction and is exported with its fit"));
-  CHECK(require(results / "posterior/figures").ends_with("figures` holds no results"));
+  CHECK(require(results / "posterior/figures").ends_with("figures` contains no results"));
   CHECK(refusal<IoError>([&] { find_results(results / "nowhere"); }).starts_with("there is no folder"));
 
   Source const source(model.string(), with(read_file(model), "sd = 100", "sd = 101"));

@@ -93,7 +93,7 @@ TEST_CASE("a result is not overwritten unasked, and nothing of a removed one sta
     require_no_result(path);
     FAIL("overwritten");
   } catch (UserError const& error) {
-    CHECK(error.diagnostic().message.find("holds results already") != std::string::npos);
+    CHECK(error.diagnostic().message.find("already contains results") != std::string::npos);
     CHECK(error.diagnostic().help.find("--force") != std::string::npos);
   }
   remove_result(path);

@@ -50,8 +50,8 @@ void check_bands(TaskPage& page) {
             {FindingCode::input_band,
              Severity::warning,
              {input.name, coverage.name},
-             fmt::format("{} of {} has power up to {:.3g} Hz, which is {:.2f} of the sampling rate, but `{}` is exact only up to "
-                         "{} of this rate",
+             fmt::format("{} of {} has power up to {:.3g} Hz, which is {:.2f} times the sampling rate, but `{}` is exact only up "
+                         "to {} times this rate",
                          input.name, coverage.name, input.high, input.high / coverage.rate, input.rule, row_of(*rule).band),
              "check whether it was held between the samples, or sampled without an anti-aliasing filter"});
 }
@@ -79,7 +79,7 @@ void check_rules(TaskPage& page) {
             {FindingCode::input_rule,
              Severity::note,
              {input.name, coverage.name, "zero_order"},
-             fmt::format("{:.0f} % of the power of {} of {} is above 0.4 of the sampling rate: the samples do not determine the "
+             fmt::format("{:.0f} % of the power of {} of {} is above 0.4 times the sampling rate: the samples do not determine the "
                          "input between them",
                          100 * input.top, input.name, coverage.name),
              "write `hold zero_order` if a generator held the input between its samples; else sample it faster"});

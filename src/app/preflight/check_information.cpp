@@ -86,7 +86,7 @@ class Description {
     for (NullDirection const& direction : space.directions) {
       std::string const text = direction_words(direction, asked_, channels_);
       if (prior_separates(direction)) {
-        page_.information->ridges.push_back(fmt::format("{}: only the prior of the standardised members separates them", text));
+        page_.information->ridges.push_back(fmt::format("{}: only the prior of the standardised members distinguishes them", text));
         continue;
       }
       page_.information->null_directions.push_back(text);
@@ -175,11 +175,12 @@ class Description {
     }
     std::string const pair = fmt::format("{} and {} are nearly confounded", asked_[static_cast<std::size_t>(i)].name,
                                          asked_[static_cast<std::size_t>(j)].name);
-    std::string const size = fmt::format("expected correlation {:.3f} to {:.4f} in size (at {} of {} prior draws)",
+    std::string const size = fmt::format("expected absolute correlation {:.3f} to {:.4f} (at {} of {} prior draws)",
                                          *std::min_element(sizes.begin(), sizes.end()),
                                          *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
     if (standardised_[static_cast<std::size_t>(i)] != standardised_[static_cast<std::size_t>(j)]) {
-      page_.information->ridges.push_back(fmt::format("{}, except for the prior of the standardised members: {}", pair, size));
+      page_.information->ridges.push_back(
+          fmt::format("{}, and only the prior of the standardised members distinguishes them: {}", pair, size));
       return;
     }
     if (widest < still_unknown) {

@@ -140,7 +140,7 @@ void check_motion(Preflight const& preflight, PriorPage::Channel const& line, Ch
                             significant(line.measured, 2), line.unit.empty() ? "" : " " + line.unit),
                 dead     ? fmt::format("{} constant in the data: check the column, or give initial values other than zero",
                                        quoted(still) + (still.size() == 1 ? " is" : " are"))
-                : driven ? "check that an equation of this state reads an input"
+                : driven ? "check that an equation of this state contains an input"
                          : "the model has no input: give initial values other than zero, or the input that drove the motion");
 }
 

@@ -81,7 +81,7 @@ class ProcessPreflight {
     out.failed = draws - static_cast<int>(drawn.size());
     if (out.failed > many_failures * draws)
       add(FindingCode::prior_fails, out.failed == draws ? Severity::error : Severity::warning, {declared.name},
-          fmt::format("{} of {} prior draws have no finite likelihood of {}: {}", out.failed, draws, declared.name,
+          fmt::format("at {} of {} prior draws the likelihood of {} is not finite: {}", out.failed, draws, declared.name,
                       model_->model().integrated() ? "the simulation fails, or a hyper-parameter is not positive"
                                                    : "a hyper-parameter or the noise is not positive"),
           "narrow the priors: amplitudes, lengths and noise are positive");
@@ -172,21 +172,24 @@ class ProcessPreflight {
 
   void lengths(Process const& process, Quantity const& input, std::vector<double> const& drawn, Places const& places) {
     if (places.distinct.size() < 2)
-      return add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
-                 fmt::format("{} of `{}` is constant along the data: its length cannot be estimated", input.name, process.name),
-                 "leave it out of the function, or add a record along which it changes");
+      return add(
+          FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
+          fmt::format("{} of `{}` is constant along the data: its length-scale cannot be estimated", input.name, process.name),
+          "leave it out of the function, or add a record along which it changes");
     double const spacing = places.spacing(), range = places.range();
     if (double const part = share(drawn, [&](double length) { return length < spacing; }); part >= most)
       add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
-          fmt::format("{:.0f} % of the prior draws have a length of `{}` in {} below the spacing of its inputs: the function acts "
-                      "as additional noise there",
-                      100 * part, process.name, input.name),
+          fmt::format(
+              "{:.0f} % of the prior draws have a length-scale of `{}` along {} below the spacing of its inputs: the function acts "
+              "as additional noise there",
+              100 * part, process.name, input.name),
           "check the unit of the input and the prior of the length");
     else if (double const flat = share(drawn, [&](double length) { return length > nearly_straight * range; }); flat >= most)
       add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
-          fmt::format("{:.0f} % of the prior draws have a length of `{}` in {} of more than {} times the range of its inputs: the "
-                      "function is nearly straight there",
-                      100 * flat, process.name, input.name, nearly_straight),
+          fmt::format(
+              "{:.0f} % of the prior draws have a length-scale of `{}` along {} above {} times the range of its inputs: the "
+              "function is nearly straight there",
+              100 * flat, process.name, input.name, nearly_straight),
           "check the unit of the input and the prior of the length");
   }
 

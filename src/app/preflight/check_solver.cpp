@@ -108,12 +108,11 @@ void confirm(Preflight const& preflight, PriorDraws const& prior, double suggest
   std::optional<SolverCheck> const found = found_from_draws(preflight, prior);
   if (!found) {
     std::string const sds = suggested > 5 ? "many sds" : fmt::format("{:.2g} sd", suggested);
-    preflight.add(
-        FindingCode::integration_step, Severity::note, {},
-        fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by up to {} with {}, but no mode "
-                    "was found that confirms this",
-                    solver.text(), sds, solver.finer_words()),
-        solver.as_model ? "the solver is part of the model" : "the fit checks its own result");
+    preflight.add(FindingCode::integration_step, Severity::note, {},
+                  fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by up to {} with {}, but no "
+                              "mode was found to confirm this",
+                              solver.text(), sds, solver.finer_words()),
+                  solver.as_model ? "the solver is part of the model" : "the fit checks its own result");
     return;
   }
   if (found->outcome != SolverCheck::Outcome::fails) information.found_move = found->largest();
@@ -132,9 +131,9 @@ Findings check_method(Session const& session, FitTask const& what) {
   return {{FindingCode::slower_solver,
            Severity::note,
            {},
-           fmt::format("{} is for implicit equations, and those of `{}` give their highest derivatives explicitly",
+           fmt::format("{} is a solver for implicit equations, but the equations of `{}` give their highest derivatives explicitly",
                        what.solver.method, model.name),
-           fmt::format("`solver = {}` needs less time for the same tolerance, and {} or {} far less, unless the model is stiff",
+           fmt::format("`solver = {}` is faster at the same tolerance; {} and {} are much faster unless the model is stiff",
                        stiff_solver().name, SolverSettings{}.method, adaptive_solver().name)}};
 }
 

@@ -102,7 +102,7 @@ class PriorSimulation {
       Ledger solves;
       target->log_likelihood(gathered(theta_, {lanes[i]}), {&density, 1}, solves);
       if (solves.failures().empty()) {
-        result_.ledger.add_failure(FailureClass::non_finite, "the likelihood of what is simulated", 0, {});
+        result_.ledger.add_failure(FailureClass::non_finite, "the likelihood of the simulated response", 0, {});
         continue;
       }
       Failure const& first = solves.failures().front();

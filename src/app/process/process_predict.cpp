@@ -42,7 +42,7 @@ class ProcessPredict {
                                  Severity::note,
                                  {fit_task_.name},
                                  fmt::format("`{}` gives an optimum, not a posterior: the bands include the uncertainty of the "
-                                             "process, not that of its hyper-parameters",
+                                             "process, but not of its hyper-parameters",
                                              fit_task_.name),
                                  "fit with mh for bands that include both"});
     for (int e = 0; e < static_cast<int>(trajectories_.data().size()); ++e) predict(e, report);

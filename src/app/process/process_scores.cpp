@@ -50,8 +50,8 @@ void look_at_inputs(ProcessTarget const& target, std::size_t c, ProcessTarget::R
     findings.push_back({FindingCode::length_beyond_range,
                         Severity::note,
                         {name.first, name.second},
-                        fmt::format("the length-scale of `{}` of `{}` is {:.2g} times the range that was fitted: along this input "
-                                    "the process is constant or linear, and its prior determines the length",
+                        fmt::format("the length-scale of `{1}` along `{0}` is {2:.2g} times the range that was fitted: along this "
+                                    "input the process is constant or linear, and the prior determines the length-scale",
                                     name.second, name.first, regression.parameters[k] / range),
                         "remove the input if the fit is as good without it; otherwise add a linear term to the parametric part"});
   }

@@ -80,10 +80,10 @@ std::vector<StoredSummary> results_in(fs::path const& folder) {
   std::erase_if(found, [](StoredSummary const& each) { return !each.is("fit") && !each.is("predict"); });
   if (found.empty() && !others.empty())
     throw refused(
-        fmt::format("`{}` holds {} and no result of a fit or a prediction", folder.string(), fmt::join(others, ", ")),
-        fmt::format("`sysid report {}` shows what it has found; compare sets fits and predictions side by side", folder.string()));
+        fmt::format("`{}` contains {}, but no result of a fit or a prediction", folder.string(), fmt::join(others, ", ")),
+        fmt::format("`sysid report {}` shows these results; `compare` compares only fits and predictions", folder.string()));
   if (found.empty())
-    throw refused(fmt::format("`{}` holds no result of a fit or a prediction", folder.string()),
+    throw refused(fmt::format("`{}` contains no result of a fit or a prediction", folder.string()),
                   "give folders of tasks, such as results/posterior, or of whole runs, such as results");
   return found;
 }
@@ -123,12 +123,14 @@ void require_same_samples(StoredSummary const& one, StoredSummary const& other) 
                                           data_text(one), data_text(other));
   if (data_text(one) != data_text(other)) {
     bool const looks_back = one.lags() > 0 || other.lags() > 0;
-    throw refused(message, looks_back ? "evidences are densities of the samples: start the rows after the longest lag of all "
-                                        "models, so that each is fitted to the same rows"
-                                      : "evidences are densities of the samples: name folders of fits to the same rows");
+    throw refused(
+        message,
+        looks_back
+            ? "evidences can be compared only for the same samples: begin the fitted rows after the longest lag of all models"
+            : "evidences can be compared only for the same samples: give folders of fits to the same rows");
   }
   throw refused(message + " of other files, channels or units",
-                "evidences are densities of the samples: name folders of fits to the same ones");
+                "evidences can be compared only for the same samples: give folders of fits to the same samples");
 }
 
 std::string noise_text(json const& summary) {

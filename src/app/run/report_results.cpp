@@ -30,7 +30,7 @@ bool is_result(fs::path const& folder) { return fs::exists(folder / "summary.jso
 Report whole_result(fs::path const& folder) {
   if (!fs::exists(folder / "summary.json"))
     throw UserError(
-        result_error("", fmt::format("`{}` holds no complete result: it has no `summary.json`", folder.string()), run_again()));
+        result_error("", fmt::format("`{}` contains no complete result: it has no `summary.json`", folder.string()), run_again()));
   Report report = read_result(folder);
   for (PriorInfo& prior : report.priors) add_density(prior);
   if (auto finding = made_from_earlier(folder)) report.findings.push_back(std::move(*finding));
@@ -70,7 +70,7 @@ StoredRun stored_run(fs::path const& folder) {
   if (run.tasks.empty() && run.unfinished.empty())
     throw UserError({Severity::error,
                      "",
-                     fmt::format("`{}` holds no results", folder.string()),
+                     fmt::format("`{}` contains no results", folder.string()),
                      std::nullopt,
                      {},
                      "give the folder of a task, such as results/posterior, or of a whole run, such as results"});

@@ -26,7 +26,7 @@ ExitCode run_or_stop(Session& session, int index, Task const& task) {
   } catch (Interrupted const&) {
     // What holds a complete result of before is not begun by going on.
     if (task_runner(kind_of(task)).complete(session, task))
-      session.notices << fmt::format("{}: interrupted; its earlier results stay\n", task.name);
+      session.notices << fmt::format("{}: interrupted; its earlier results are kept\n", task.name);
     else
       session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
     return ExitCode::interrupted;
@@ -74,7 +74,7 @@ ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& a
     if (!wanted(task)) continue;
     if (kind_of(task) == TaskKind::simulate && kept(task) && !options.force)
       throw UserError(
-          result_error("", fmt::format("`{}` holds results already", session.result_folder(task).string()), replace_results()));
+          result_error("", fmt::format("`{}` already contains results", session.result_folder(task).string()), replace_results()));
     claimed.folders.emplace_back(session.result_folder(task), options);
   }
   ExitCode worst = ExitCode::success;

@@ -49,7 +49,7 @@ void refuse_idle_weights(DistanceRule const& rule, Candidate const& candidate) {
                        fmt::format("channel `{}` has a weight, but no sample in the scored rows", name),
                        std::nullopt,
                        {},
-                       "leave its weight out, or score rows in which it is measured"});
+                       "remove its weight, or score rows in which it is measured"});
   }
 }
 

@@ -161,14 +161,14 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
     SolverSettings const& stated = candidates[k].fit->solver;
     if (posterior.move && *posterior.move > tolerable_offset) {
       std::string const finer = posterior.solver == stated ? stated.finer().option() : posterior.solver.option();
-      findings.push_back(
-          {FindingCode::integration_step,
-           stated.as_model ? Severity::note : Severity::warning,
-           {candidates[k].what->name},
-           fmt::format("the particles of `{}` were simulated with {}, whose error moves parameters by about {} of the likelihood",
-                       candidates[k].what->name, stated.text(),
-                       *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
-           stated.as_model ? "the solver is part of the model" : fmt::format("select again with `{}`", finer)});
+      findings.push_back({FindingCode::integration_step,
+                          stated.as_model ? Severity::note : Severity::warning,
+                          {candidates[k].what->name},
+                          fmt::format("the particles of `{}` were simulated with {}, whose error moves parameters by about {} of "
+                                      "their posterior by the likelihood",
+                                      candidates[k].what->name, stated.text(),
+                                      *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
+                          stated.as_model ? "the solver is part of the model" : fmt::format("select again with `{}`", finer)});
     }
     if (posterior.converged) continue;
     std::string const what =

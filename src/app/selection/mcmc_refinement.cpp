@@ -60,7 +60,7 @@ McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const
                        .checkpoint_end = true};
     FitResult chains = mh::run(*target, settings_for(samples), context);
     if (chains.failure && chains.failure->code == FindingCode::checkpoint_mismatch)
-      throw checkpoint::Mismatch(fmt::format("its chains of `{}` are of another run", model.name));
+      throw checkpoint::Mismatch(fmt::format("its chains of `{}` belong to another run", model.name));
     if (chains.interrupted) {
       refinement.interrupted = true;
       return refinement;

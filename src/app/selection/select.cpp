@@ -289,9 +289,9 @@ class Select {
       report.findings.push_back({FindingCode::width_of_threshold,
                                  Severity::note,
                                  {},
-                                 "the sd of the particles depends on the threshold and is not that of the posterior: it is larger "
-                                 "after an early stop, smaller after a late one",
-                                 refined ? "" : "`polish = yes` continues with chains on the likelihood and prints both"});
+                                 "the sds of the particles depend on the final threshold and are not posterior sds: they are "
+                                 "larger if the run stops early, and smaller if it stops late",
+                                 refined ? "" : "`polish = yes` continues with chains on the likelihood and prints both sds"});
   }
 
   void add_settings(SelectionReport const& selection, Report& report) const {

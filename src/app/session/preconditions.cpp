@@ -32,11 +32,11 @@ Diagnostic refused_settings(Task const& task, std::string_view backend, std::str
 std::optional<Diagnostic> improper_prior(Task const& task, std::string_view backend, Model const& model, std::string const& of) {
   Parameter const* improper = model.improper();
   if (improper == nullptr) return std::nullopt;
-  return refused(
-      task, "E6204",
-      fmt::format("`{}` needs proper priors, but that of `{}`{} is {}", backend, improper->name, of, improper->prior->row->name),
-      fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", improper->name),
-      {improper->name, model.name});
+  return refused(task, "E6204",
+                 fmt::format("`{}` needs proper priors, but the prior of `{}`{} is {}", backend, improper->name, of,
+                             improper->prior->row->name),
+                 fmt::format("give `{}` a wide but proper prior, for example log_uniform or normal", improper->name),
+                 {improper->name, model.name});
 }
 
 std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<ExperimentData> const& data) {

@@ -35,7 +35,7 @@ void ClaimedFolder::MadeFolders::remove_empty() const {
 ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions const& options) : made_(folder), lock_(folder) {
   if (!options.resume && !options.force) {
     if (std::filesystem::exists(checkpoint_path(folder)))
-      throw UserError(result_error("", fmt::format("`{}` holds an interrupted run", folder.string()), resume_or_replace()));
+      throw UserError(result_error("", fmt::format("`{}` contains an interrupted run", folder.string()), resume_or_replace()));
     require_no_result(folder);
   }
   remove_partial(folder);

@@ -42,14 +42,13 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
             {},
             fmt::format("the result has not converged with {}", accuracy(refined.solver)),
             settling_advice(refined.solver)};
-  return {
-      FindingCode::step_not_settled,
-      Severity::error,
-      {},
-      fmt::format("the result has not converged with {}, and finer settings were not tried: with {} {}, almost as much as in the "
-                  "refinement before",
-                  accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
-      settling_advice(refined.solver)};
+  return {FindingCode::step_not_settled,
+          Severity::error,
+          {},
+          fmt::format("the result has not converged with {}, and finer settings were not tried: with {} {}, almost as much as in "
+                      "the previous refinement",
+                      accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
+          settling_advice(refined.solver)};
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ Diagnostic distance_may_be_negative(Span span, std::string const& expression) {
 }
 
 Diagnostic distance_lacks_channel(Span span, std::string const& channel) {
-  return about({channel}, error("E6512", span, fmt::format("this distance omits the measured channel `{}`", channel),
+  return about({channel}, error("E6512", span, fmt::format("this distance does not include the measured channel `{}`", channel),
                                 fmt::format("add an expression for it to the list, or `weights({} = 0)`", channel)));
 }
 

@@ -32,7 +32,7 @@ Diagnostic no_terms(ast::Name const& dictionary) {
 
 Diagnostic nothing_left_of_terms(Span target, std::string const& equation) {
   return about({equation}, error("E6602", target, fmt::format("no term remains for `{}`", equation),
-                                 "allow more units of coefficients, exclude fewer terms, or add terms"));
+                                 "allow more units in `coefficients`, exclude fewer terms, or add terms"));
 }
 
 Diagnostic unknown_generator(ast::Name const& name, Names const& families) {

@@ -173,7 +173,7 @@ Diagnostic never_allowed(Span span, std::string const& distribution, std::string
 }
 
 Diagnostic no_mass(Span span, std::string const& distribution) {
-  return about({distribution}, error("E2115", span, fmt::format("`{}` has no mass between its bounds", distribution),
+  return about({distribution}, error("E2115", span, fmt::format("`{}` has no probability between its bounds", distribution),
                                      "widen `lower` and `upper`, or move the distribution"));
 }
 

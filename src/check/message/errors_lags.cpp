@@ -91,7 +91,7 @@ Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
 
 Diagnostic prediction_without_lags(Span span, std::string const& model) {
   return about({model}, error("E6016", span, fmt::format("model `{}` is not in discrete time: it uses no past samples", model),
-                              "remove the option: a model in continuous time is simulated from its start"));
+                              "remove the option: a model in continuous time is always simulated in a free run"));
 }
 Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model) {
   return about({model},

@@ -71,7 +71,7 @@ Diagnostic hyper_parameter_unit(Span span, std::string const& name, std::string 
                                 Span input_place, std::optional<Unit> const& of_input) {
   std::string const message =
       fmt::format("the {}{} must be {}", name, input.empty() ? "" : fmt::format(" of `{}`", input), measure(wanted));
-  std::string const help = "a length-scale has the unit of its input, an amplitude that of the function's values";
+  std::string const help = "a length-scale has the unit of its input, an amplitude the unit of the function";
   Names const names = input.empty() ? Names{name} : Names{name, input};
   return about(names, of_input ? conflict("E3206", span, measure(given), input_place, measure(*of_input), message, help)
                                : error("E3206", span, message, help, measure(given)));

@@ -38,11 +38,13 @@ Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& lef
                : "the left side must have as many columns as the right side has rows";
   } else if (symbol == "=") {
     what = fmt::format("{} cannot equal {}", left.text(), right.text());
-    help = "an equation of vectors has a vector on either side, or 0";
+    help = "both sides of a vector equation must be vectors, or one side must be 0";
   } else if (symbol == "^") {
-    help = "numbers and vectors are raised to a number, element by element; a matrix is multiplied: `A*A`";
+    help =
+        "only numbers and vectors can be raised to a power, element by element, and the exponent must be a number; for a matrix "
+        "write a product: `A*A`";
   } else if (symbol == "/") {
-    help = "only a number divides; element by element: `diagonal(a)*b^-1`";
+    help = "the divisor must be a number; to divide element by element write `diagonal(a)*b^-1`";
   } else if (symbol == "dot") {
     help = "`dot` takes two vectors of one size";
   }

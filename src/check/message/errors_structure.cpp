@@ -100,7 +100,7 @@ Diagnostic unused_parameter(Span declaration, std::string const& parameter, bool
 Diagnostic unused_input(Span declaration, std::string const& input, Declarer where) {
   return unused(declaration, input, fmt::format("nothing in this {} uses the input `{}`", word(where), input),
                 where == Declarer::dictionary
-                    ? "use it in the target or in a term: an input that acts but is left out remains in the residual"
+                    ? "use it in the target or in a term: an input that acts on the system but is left out remains in the residual"
                     : "use it in an equation or an observation, or delete it");
 }
 

@@ -115,7 +115,7 @@ Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rat
 
 Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution) {
   return error("E6101", span,
-               fmt::format("no harmonic of the record, a multiple of {:.6g} Hz, lies between {:.6g} and {:.6g} Hz", resolution,
+               fmt::format("no harmonic of the record (a multiple of {:.6g} Hz) lies between {:.6g} and {:.6g} Hz", resolution,
                            lowest, highest),
                "widen the band from `lowest` to `highest`, or use more samples");
 }

@@ -34,7 +34,7 @@ std::string with_names(std::string const& cure, std::string const& names) {
 }
 
 std::string subject(Temperature const& temperature) {
-  return temperature.is_name ? "`" + temperature.text + "`" : "what this quantity is computed from";
+  return temperature.is_name ? "`" + temperature.text + "`" : "the quantities from which this is computed";
 }
 
 }  // namespace

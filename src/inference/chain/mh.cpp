@@ -28,8 +28,8 @@ constexpr SettingRow rows[] = {
     {"thin", SettingKind::integer, "10", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "4", 1, 65536, "", "number of independent chains"},
     {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive walk spherical",
-     "learn during burn-in where to propose, from the chain's place and independently of it; a random walk alone; or one with "
-     "`variance` times the identity"},
+     "independence moves and a random walk, both adapted during burn-in; the adaptive random walk alone; or a random walk with "
+     "covariance `variance` times the identity"},
     {"variance", SettingKind::real, "0.1", 1e-300, infinity, "",
      "variance of the spherical proposal, in unconstrained coordinates"},
     {"start", SettingKind::word, "global", 0, 0, "global prior",
@@ -311,7 +311,7 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
     result.findings.push_back({FindingCode::diagnostics_on_thinned,
                                Severity::note,
                                {},
-                               "the run is too long to keep every iteration: diagnostics are of the thinned draws",
+                               "the run is too long to keep every iteration: diagnostics use the thinned draws",
                                ""});
   if (result.draws.total() > 0) {
     result.summaries = summarise(result);

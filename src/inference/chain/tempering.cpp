@@ -25,7 +25,8 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"samples", SettingKind::integer, "12000", 1, 1e9, "", "iterations of each ensemble, burn-in included"},
-    {"burn_in", SettingKind::integer, "4000", 0, 1e9, "", "first iterations, discarded; powers and moves adapt during them"},
+    {"burn_in", SettingKind::integer, "4000", 0, 1e9, "",
+     "first iterations, discarded; temperatures and proposals adapt during them"},
     {"thin", SettingKind::integer, "4", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "4", 1, 4096, "", "number of independent ensembles"},
     {"temperatures", SettingKind::integer, "16", 2, 512, "", "replicas of each ensemble, from the posterior to the prior"},
@@ -255,8 +256,8 @@ Findings check_exchange(Plan const& plan, Ladder const& ladder) {
   return {{FindingCode::replicas_do_not_mix,
            Severity::warning,
            {},
-           fmt::format("states hardly pass between the prior and the posterior: {:.2g} of the exchanges between two neighbouring "
-                       "temperatures are accepted",
+           fmt::format("states hardly move between the prior and the posterior: between two neighbouring temperatures, only a "
+                       "fraction of {:.2g} of the exchanges is accepted",
                        least),
            fmt::format("use temperatures = {}", std::min(enough, 512))}};
 }

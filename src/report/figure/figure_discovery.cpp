@@ -127,7 +127,7 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
     drawing.plots.push_back(coefficient_plot(*terms[i], i, multiples.panel(i, {14, 12, 46, 20})));
   Figure out{drawing.name, fmt::format("Coefficients of {}", discovery.equations[equation].target), "", script(drawing)};
   out.caption = fmt::format(
-      "Posterior densities of the coefficients in {} given exactly these terms; the darker part holds 90 %, the "
+      "Posterior densities of the coefficients in {} given exactly these terms; the darker part contains 90 %, the "
       "numbers above are mean ± sd, in the unit of the axis.{}",
       discovery.equations[equation].target, multiples_excluded(terms.size()));
   return out;

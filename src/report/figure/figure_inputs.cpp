@@ -103,7 +103,7 @@ std::vector<Series> series_of(Style const& style, std::string const& table) {
 
 std::string caption_of(Style const& style, std::string const& quantity, std::string const& over) {
   std::string out = fmt::format("Measured and modelled {} over {}{}.", quantity, over,
-                                style.has_noise  ? ", with the band that holds 95 % of the measurements"
+                                style.has_noise  ? ", with the band that should contain 95 % of the measurements"
                                 : style.has_band ? ", with the 95 % band of the response"
                                                  : "");
   if (!style.curve) out += " At one value of an input the other inputs differ from row to row, so each row has a bar of its own.";

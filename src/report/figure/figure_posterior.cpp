@@ -175,7 +175,7 @@ std::vector<Key> keys_of(Kinds const& kinds) {
 /// far: parameters whose truth lies outside what is shown; cut: parameters whose tails are not shown.
 std::string caption_of(Kinds const& kinds, std::string const& far, std::string const& cut, std::size_t parameters) {
   std::string out =
-      "Marginal posteriors, as a histogram of the draws and as a smooth density; the darker part holds 90 %, the numbers "
+      "Marginal posteriors, as a histogram of the draws and as a smooth density; the darker part contains 90 %, the numbers "
       "above are mean ± sd, in the unit of the axis.";
   if (kinds.prior)
     out +=

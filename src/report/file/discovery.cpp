@@ -61,7 +61,7 @@ ReportTable support_table(DiscoveredEquation const& equation) {
 std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
   std::vector<ReportTable> tables;
   if (!discovery.noise.empty()) {
-    ReportTable noise{"measurement noise", "As the regression used it.", {"channel", "unit", "sd", ""}, {}};
+    ReportTable noise{"measurement noise", "As used by the regression.", {"channel", "unit", "sd", ""}, {}};
     for (DiscoveryReport::Noise const& each : discovery.noise)
       noise.rows.push_back(
           {each.channel, each.unit, each.sd > 0 ? significant(each.sd, 3) : "none", each.given ? "given" : "estimated"});
@@ -73,7 +73,7 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     if (equation.supports.size() > 1) tables.push_back(support_table(equation));
   }
   if (!discovery.excluded.empty()) {
-    ReportTable excluded{"not offered", "Left out of the dictionary before the record was used.", {"term", ""}, {}};
+    ReportTable excluded{"not offered", "Terms that were left out of the dictionary before the record was used.", {"term", ""}, {}};
     for (DiscoveryReport::Excluded const& each : discovery.excluded) excluded.rows.push_back({each.term, each.reason});
     tables.push_back(std::move(excluded));
   }

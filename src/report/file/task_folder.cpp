@@ -67,7 +67,7 @@ bool holds_result(fs::path const& folder) { return !files_of_result(folder).empt
 
 void require_no_result(fs::path const& folder) {
   if (holds_result(folder))
-    throw UserError(result_error("", fmt::format("`{}` holds results already", folder.string()), replace_results()));
+    throw UserError(result_error("", fmt::format("`{}` already contains results", folder.string()), replace_results()));
 }
 
 void remove_result(fs::path const& folder) {

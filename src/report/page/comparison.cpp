@@ -38,9 +38,9 @@ ReportTable fits_table(Comparison const& comparison) {
     std::string note;
     if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);
     if (fit.rough)
-      note = fmt::format("{}: its evidence is approximate: {} changes it by {:+.1f}", fit.name,
-                         fit.rough_by_draws ? "a computation by weighted draws" : "integration along the axes of its mode",
-                         *fit.rough);
+      note =
+          fmt::format("{}: its evidence is approximate: {} changes it by {:+.1f}", fit.name,
+                      fit.rough_by_draws ? "the estimate by weighted draws" : "integration along the axes of its mode", *fit.rough);
     if (!note.empty()) table.caption += (table.caption.empty() ? "" : "\n") + note;
   }
   return table;

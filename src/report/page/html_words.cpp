@@ -191,14 +191,14 @@ std::vector<ChainWords> chain_words(Report const& report) {
   if (count > 0) {
     double const rate = accepted / count;
     bool const good = rate >= least_acceptance;
-    out.push_back({"acceptance",
-                   fmt::format("The steps that led to the kept draws were accepted with a probability of {} % on average: {}.",
-                               number(100 * rate, 2),
-                               !good        ? "the chains hardly moved"
-                               : rate < 0.1 ? "low, but the effective sample sizes above decide"
-                               : rate > 0.6 ? "high, as is usual for short steps, but the effective sample sizes above decide"
-                                            : "as expected for a random walk"),
-                   good});
+    out.push_back(
+        {"acceptance",
+         fmt::format("The mean acceptance probability of the moves that led to the kept draws is {} %: {}.", number(100 * rate, 2),
+                     !good        ? "the chains hardly moved"
+                     : rate < 0.1 ? "low, but the effective sample sizes above decide"
+                     : rate > 0.6 ? "high, as is usual for short steps, but the effective sample sizes above decide"
+                                  : "as expected for a random walk"),
+         good});
   }
   return out;
 }

@@ -187,8 +187,7 @@ long = fit longer to points.head with map, seed = 1
   };
   CHECK(refusal("head", "long") ==
         "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79) and points.head, rows 4..80 (77); "
-        "evidences are densities of the samples: start the rows after the longest lag of all models, so that each is fitted to the "
-        "same rows");
+        "evidences can be compared only for the same samples: begin the fitted rows after the longest lag of all models");
   CHECK(refusal("train", "long").starts_with("`train` and `long` are fitted to different samples"));
   CHECK_THROWS_AS(compare({run.folder.path()}), UserError);  // holds no results itself
   CHECK_THROWS_AS(compare({run.folder.path() / "nowhere"}), IoError);

@@ -257,7 +257,7 @@ TEST_CASE("what is missing or damaged is named, and the page of before stays") {
   CHECK(refused(run.folder.path() / "nothing") == "74: there is no folder `nothing`");
   fs::create_directory(run.folder.path() / "empty");
   CHECK(refused(run.folder.path() / "empty") ==
-        "`empty` holds no results\ngive the folder of a task, such as results/posterior, or of a whole run, such as results");
+        "`empty` contains no results\ngive the folder of a task, such as results/posterior, or of a whole run, such as results");
 
   std::string const record = read_file(task / "report.cbor");
   for (std::size_t const at : {std::size_t{0}, record.size() / 3, record.size() - 1}) {
@@ -288,7 +288,7 @@ TEST_CASE("what is missing or damaged is named, and the page of before stays") {
 
   std::string const summary = read_file(task / "summary.json");
   remove_file(task / "summary.json");
-  CHECK(refused(task).starts_with("`results/posterior` holds no complete result: it has no `summary.json`\n"));
+  CHECK(refused(task).starts_with("`results/posterior` contains no complete result: it has no `summary.json`\n"));
   write_file(task / "summary.json", summary);
   CHECK(read_file(task / "report.html") == page);
   CHECK(refused(task) == "");

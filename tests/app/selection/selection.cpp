@@ -160,7 +160,7 @@ TEST_CASE("a prediction from stored particles is the one that follows the select
     FAIL("a selection was compared");
   } catch (UserError const& error) {
     CHECK(error.diagnostic().message ==
-          "`" + options.output.string() + "` holds the selection `selection` and no result of a fit or a prediction");
+          "`" + options.output.string() + "` contains the selection `selection`, but no result of a fit or a prediction");
   }
   run_text(bouc_wen_file, shortened_selection(), options, {"predict"});
   CHECK(selection_files(options.output) == reference_selection());

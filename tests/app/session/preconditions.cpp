@@ -78,7 +78,7 @@ TEST_CASE("a selection that cannot begin is refused before the first task begins
   Answer const improper = run_to(decay_model + flat + dish + fit + select, output.path());
   CHECK(improper.exit == ExitCode::user_error);
   CHECK(count(improper.messages, "error[E6204]") == 1);
-  CHECK(count(improper.messages, "`abc_smc` needs proper priors, but that of `rate` is flat") == 1);
+  CHECK(count(improper.messages, "`abc_smc` needs proper priors, but the prior of `rate` is flat") == 1);
   Answer const rising = run_to(
       decay_model + dish + fit + "choice = select decay to dish with abc_smc(schedule = (10, 20)), seed = 1\n", output.path());
   CHECK(rising.exit == ExitCode::user_error);

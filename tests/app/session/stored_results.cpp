@@ -57,7 +57,7 @@ TEST_CASE("results that exist already are kept unless force is asked for") {
   Answer const again = run("k", output.path());
   CHECK(again.exit == ExitCode::user_error);
   CHECK(again.messages ==
-        "sysid: error: `OUT/posterior` holds results already\n"
+        "sysid: error: `OUT/posterior` already contains results\n"
         "help: add --force to replace them, or -o DIR to write elsewhere\n");
   CHECK(content(output.path() / "posterior" / "draws_1.csv") == before);
   RunOptions options;

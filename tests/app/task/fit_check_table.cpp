@@ -92,7 +92,7 @@ TEST_CASE("every check of a fit runs or says why it does not apply, with a proce
   for (json const& summary : {plain.summary("best"), process.summary("best")}) {
     check_rows(summary);
     CHECK(check(summary, "residuals").at("ran") == true);
-    CHECK(check(summary, "input_timing").at("reason") == "the model reads no input between samples");
+    CHECK(check(summary, "input_timing").at("reason") == "the model uses no input between samples");
     CHECK(check(summary, "hierarchy").at("reason") == "no parameter is estimated per experiment");
   }
 }
