@@ -84,14 +84,14 @@ class Functions {
       density = graph_.add(density, graph_.constant(elementary::log(channel.unit->scale)));
     StanExpressions const written = of_model({density});
     return fmt::format(
-        "  // Log density of a sample of {}, in its declared unit.\n  real log_density_{}(real measured{}, row_vector "
+        "  // Of a sample of {}, a density of its declared unit.\n  real log_density_{}(real measured{}, row_vector "
         "d, vector p) {{\n{}    return {};\n  }}\n",
         channel.name, c + 1, fit_.states() > 0 ? ", vector y" : "", written.declarations, written.texts.front());
   }
 
   std::string runge_kutta() const {
     int const k = columns_.count();
-    return fmt::format(R"(  // One step of the classical Runge-Kutta method; d: the data at its start, middle and end.
+    return fmt::format(R"(  // One step of the classical Runge-Kutta method; d: what is read at its begin, middle and end.
   vector rk4(vector y, row_vector d, real h, vector p) {{
     vector[{0}] k1 = derivative(y, segment(d, 1, {1}), p);
     vector[{0}] k2 = derivative(y + h / 2 * k1, segment(d, {2}, {1}), p);
