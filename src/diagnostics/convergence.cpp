@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
-#include <numeric>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/fourier.hpp"
@@ -45,20 +45,45 @@ ChainValues split(ChainValues const& draws) {
   return first;
 }
 
-/// Normal scores of the ranks over all chains, ties sharing their average rank.          Vehtari et al. 2021, eq. 14
-ChainValues rank_normalised(ChainValues const& draws) {
-  std::vector<double> const all = pooled(draws);
-  std::vector<std::uint32_t> order(all.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return all[a] < all[b]; });
-  std::vector<double> score(all.size());
-  double const count = static_cast<double>(all.size());
+/// A draw and its place among those of all chains, one behind the other.
+struct Ranked {
+  double value;
+  std::uint32_t place;
+};
+
+std::vector<Ranked> in_order(ChainValues const& draws) {
+  std::vector<Ranked> order;
+  for (auto const& chain : draws)
+    for (double const v : chain) order.push_back({v, static_cast<std::uint32_t>(order.size())});
+  std::sort(order.begin(), order.end(), [](Ranked a, Ranked b) { return a.value < b.value; });
+  return order;
+}
+
+/// The distances of draws, which rise, from their median: two sequences that rise, merged.
+std::vector<Ranked> distances_in_order(std::vector<Ranked> const& order, double median) {
+  auto const distance = [&](Ranked each) { return Ranked{std::fabs(each.value - median), each.place}; };
+  std::vector<Ranked> distances;
+  distances.reserve(order.size());
+  auto above = std::lower_bound(order.begin(), order.end(), median, [](Ranked a, double b) { return a.value < b; });
+  auto below = std::make_reverse_iterator(above);
+  while (below != order.rend() || above != order.end()) {
+    bool const lower = above == order.end() || (below != order.rend() && distance(*below).value < distance(*above).value);
+    distances.push_back(distance(lower ? *below++ : *above++));
+  }
+  return distances;
+}
+
+/// Normal scores of the ranks over all chains, ties sharing their average rank, in the shape of `draws`: their order is that of
+/// the draws or of their distances.          Vehtari et al. 2021, eq. 14
+ChainValues rank_normalised(std::vector<Ranked> const& order, ChainValues const& draws) {
+  std::vector<double> score(order.size());
+  double const count = static_cast<double>(order.size());
   for (std::size_t first = 0; first < order.size();) {
     std::size_t last = first;
-    while (last + 1 < order.size() && all[order[last + 1]] == all[order[first]]) ++last;
+    while (last + 1 < order.size() && order[last + 1].value == order[first].value) ++last;
     double const rank = 0.5 * static_cast<double>(first + last) + 1;
     double const z = normal_score((rank - 0.375) / (count + 0.25));
-    for (std::size_t i = first; i <= last; ++i) score[order[i]] = z;
+    for (std::size_t i = first; i <= last; ++i) score[order[i].place] = z;
     first = last + 1;
   }
   ChainValues scores;
@@ -166,12 +191,10 @@ std::vector<double> sorted(ChainValues const& draws) {
   return all;
 }
 
-double rhat_about(ChainValues const& draws, ChainValues const& scores, double median) {
-  ChainValues folded = draws;
-  for (auto& chain : folded)
-    for (double& v : chain) v = std::fabs(v - median);
+/// halves: split chains; scores: theirs; distances: from the median of the draws.
+double rhat_of(ChainValues const& halves, ChainValues const& scores, std::vector<Ranked> const& distances) {
   double const bulk = basic_rhat(scores);
-  double const tail = basic_rhat(rank_normalised(split(folded)));
+  double const tail = basic_rhat(rank_normalised(distances, halves));
   return std::isnan(bulk) || std::isnan(tail) ? nan : std::max(bulk, tail);
 }
 
@@ -181,11 +204,15 @@ double smaller_or_nan(double a, double b) { return std::isnan(a) || std::isnan(b
 
 double rhat(ChainValues const& draws) {
   if (has_no_diagnostics(draws)) return nan;
-  return rhat_about(draws, rank_normalised(split(draws)), sorted_quantile(sorted(draws), 0.5));
+  ChainValues const halves = split(draws);
+  std::vector<Ranked> const order = in_order(halves);
+  return rhat_of(halves, rank_normalised(order, halves), distances_in_order(order, sorted_quantile(sorted(draws), 0.5)));
 }
 
 double ess_bulk(ChainValues const& draws) {
-  return has_no_diagnostics(draws) ? nan : basic_ess(rank_normalised(split(draws)), fourier_for(draws));
+  if (has_no_diagnostics(draws)) return nan;
+  ChainValues const halves = split(draws);
+  return basic_ess(rank_normalised(in_order(halves), halves), fourier_for(draws));
 }
 
 double ess_tail(ChainValues const& draws) {
@@ -208,20 +235,25 @@ Summary summarise(std::string name, std::string unit, ChainValues const& draws) 
   if (all.empty() || std::any_of(all.begin(), all.end(), [](double v) { return !std::isfinite(v); })) return summary;
   summary.mean = corrected_mean(all);
   summary.sd = std::sqrt(corrected_variance(all));
-  std::sort(all.begin(), all.end());
+  // Sorting is most of the work, so it is done once; halves of an odd length lack the middle draw.
+  ChainValues const halves = split(draws);
+  std::vector<Ranked> const order = in_order(halves);
+  if (order.size() == all.size())
+    std::transform(order.begin(), order.end(), all.begin(), [](Ranked each) { return each.value; });
+  else
+    std::sort(all.begin(), all.end());
   summary.median = sorted_quantile(all, 0.5);
   summary.q5 = sorted_quantile(all, 0.05);
   summary.q95 = sorted_quantile(all, 0.95);
-  std::vector<double> deviation = all;
-  for (double& v : deviation) v = std::fabs(v - summary.median);
-  summary.mad = sd_of_mad * sysid::median(std::move(deviation));
+  for (double& v : all) v = std::fabs(v - summary.median);
+  summary.mad = sd_of_mad * sysid::median(std::move(all));
   if (has_no_diagnostics(draws)) return summary;
-  ChainValues const scores = rank_normalised(split(draws));
-  summary.rhat = rhat_about(draws, scores, summary.median);
+  ChainValues const scores = rank_normalised(order, halves);
+  summary.rhat = rhat_of(halves, scores, distances_in_order(order, summary.median));
   Fourier const fourier = fourier_for(draws);
   summary.ess_bulk = basic_ess(scores, fourier);
   summary.ess_tail = smaller_or_nan(ess_of_quantile(draws, summary.q5, fourier), ess_of_quantile(draws, summary.q95, fourier));
-  summary.mcse_mean = summary.sd / std::sqrt(basic_ess(split(draws), fourier));
+  summary.mcse_mean = summary.sd / std::sqrt(basic_ess(halves, fourier));
   return summary;
 }
 
