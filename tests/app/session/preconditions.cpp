@@ -102,7 +102,7 @@ TEST_CASE("an improper prior of the noise is refused where the likelihood is ask
     RunOptions const options;
     Session session(source, *file, options, progress, ignored, ignored);
     return count(render(check_preconditions(session, [](Task const&) { return true; }).diagnostics, source),
-                 "that of `level` is flat");
+                 "the prior of `level` is flat");
   };
   CHECK(refused("") == 1);
   CHECK(refused(", cross_check = no") == 0);
