@@ -8,7 +8,7 @@
 #include "function/boost_policy.hpp"
 
 namespace sysid {
-namespace {
+namespace beta_parts {
 
 constexpr Spelling first[] = {{"a", 0, nullptr}};
 constexpr Spelling second[] = {{"b", 0, nullptr}};
@@ -49,9 +49,10 @@ double quantile(double probability, Tail tail, Numbers a) {
 
 std::string_view refuse(Numbers a) { return positive(a[0]) && positive(a[1]) ? std::string_view() : "a and b must be positive"; }
 
-}  // namespace
+}  // namespace beta_parts
 
 DistributionRow beta_distribution() {
+  using namespace beta_parts;
   return {.name = "beta",
           .arguments = arguments,
           .dimensionless = true,

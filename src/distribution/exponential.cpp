@@ -3,7 +3,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace exponential_parts {
 
 NodeId mean_from_rate(Graph& graph, NodeId rate, Nodes) { return (1.0 / Term(graph, rate)).id; }
 
@@ -31,9 +31,10 @@ double draw(Stream& stream, Numbers a) { return quantile(stream.uniform(), Tail:
 
 std::string_view refuse(Numbers a) { return positive(a[0]) ? std::string_view() : "mean or rate must be positive"; }
 
-}  // namespace
+}  // namespace exponential_parts
 
 DistributionRow exponential_distribution() {
+  using namespace exponential_parts;
   return {.name = "exponential",
           .arguments = arguments,
           .log_density = &log_density,

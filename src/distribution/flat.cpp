@@ -2,7 +2,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace flat_parts {
 
 /// log p = 0 for every x, also between bounds: `flat()` and `flat(lower = 0)` have no evidence and no prior draws.
 NodeId log_density(Graph& graph, NodeId, Nodes) { return graph.constant(0); }
@@ -12,9 +12,10 @@ NodeId cumulative(Graph&, NodeId x, Nodes) { return x; }
 
 std::string_view refuse(Numbers) { return {}; }
 
-}  // namespace
+}  // namespace flat_parts
 
 DistributionRow flat_distribution() {
+  using namespace flat_parts;
   return {.name = "flat",
           .arguments = {},
           .proper = false,

@@ -8,7 +8,7 @@
 #include "function/boost_policy.hpp"
 
 namespace sysid {
-namespace {
+namespace gamma_parts {
 
 NodeId scale_from_rate(Graph& graph, NodeId rate, Nodes) { return (1.0 / Term(graph, rate)).id; }
 NodeId scale_from_mean(Graph& graph, NodeId mean, Nodes before) { return (Term(graph, mean) / Term(graph, before[0])).id; }
@@ -72,9 +72,10 @@ double inverse_quantile(double probability, Tail tail, Numbers a) {
   return a[1] / standard_quantile(a[0], probability, tail == Tail::lower ? Tail::upper : Tail::lower);
 }
 
-}  // namespace
+}  // namespace gamma_parts
 
 DistributionRow gamma_distribution() {
+  using namespace gamma_parts;
   return {.name = "gamma",
           .arguments = gamma_arguments,
           .log_density = &gamma_log_density,
@@ -88,6 +89,7 @@ DistributionRow gamma_distribution() {
 }
 
 DistributionRow inverse_gamma_distribution() {
+  using namespace gamma_parts;
   return {.name = "inverse_gamma",
           .arguments = inverse_arguments,
           .log_density = &inverse_log_density,

@@ -3,7 +3,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace half_cauchy_parts {
 
 constexpr Spelling scale[] = {{"scale", 1, nullptr}};
 constexpr ArgumentRow arguments[] = {{scale, must_be_given}};
@@ -35,9 +35,10 @@ double draw(Stream& stream, Numbers a) { return quantile(stream.uniform(), Tail:
 
 std::string_view refuse(Numbers a) { return positive(a[0]) ? std::string_view() : "the scale must be positive"; }
 
-}  // namespace
+}  // namespace half_cauchy_parts
 
 DistributionRow half_cauchy_distribution() {
+  using namespace half_cauchy_parts;
   return {.name = "half_cauchy",
           .arguments = arguments,
           .log_density = &log_density,

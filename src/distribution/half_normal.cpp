@@ -2,7 +2,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace half_normal_parts {
 
 constexpr Spelling sd[] = {{"sd", 1, nullptr}};
 constexpr ArgumentRow arguments[] = {{sd, must_be_given}};
@@ -30,9 +30,10 @@ double quantile(double probability, Tail tail, Numbers a) {
 
 std::string_view refuse(Numbers a) { return positive(a[0]) ? std::string_view() : "sd must be positive"; }
 
-}  // namespace
+}  // namespace half_normal_parts
 
 DistributionRow half_normal_distribution() {
+  using namespace half_normal_parts;
   return {.name = "half_normal",
           .arguments = arguments,
           .log_density = &log_density,

@@ -3,7 +3,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace log_normal_parts {
 
 constexpr Spelling median[] = {{"median", 1, nullptr}, {"log_mean", 0, nullptr, true}};
 constexpr Spelling sd[] = {
@@ -43,9 +43,10 @@ std::string_view refuse(Numbers a) {
   return {};
 }
 
-}  // namespace
+}  // namespace log_normal_parts
 
 DistributionRow log_normal_distribution() {
+  using namespace log_normal_parts;
   return {.name = "log_normal",
           .arguments = arguments,
           .noise = true,

@@ -3,7 +3,7 @@
 #include "distribution/counts.hpp"
 
 namespace sysid {
-namespace {
+namespace negative_binomial_parts {
 
 NodeId shape_from_overdispersion(Graph& graph, NodeId overdispersion, Nodes) { return (1.0 / Term(graph, overdispersion)).id; }
 
@@ -55,9 +55,10 @@ std::string_view refuse(Numbers a) {
   return {};
 }
 
-}  // namespace
+}  // namespace negative_binomial_parts
 
 DistributionRow negative_binomial_distribution() {
+  using namespace negative_binomial_parts;
   return {.name = "negative_binomial",
           .arguments = arguments,
           .noise = true,

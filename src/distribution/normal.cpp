@@ -2,7 +2,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace normal_parts {
 
 constexpr Spelling mean[] = {{"mean", 1, nullptr}};
 constexpr Spelling sd[] = {{"sd", 1, nullptr}, {"variance", 2, &sd_from_variance}, {"precision", -2, &sd_from_precision}};
@@ -36,9 +36,10 @@ std::string_view refuse(Numbers a) {
   return {};
 }
 
-}  // namespace
+}  // namespace normal_parts
 
 DistributionRow normal_distribution() {
+  using namespace normal_parts;
   return {.name = "normal",
           .arguments = arguments,
           .noise = true,

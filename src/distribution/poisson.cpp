@@ -3,7 +3,7 @@
 #include "distribution/counts.hpp"
 
 namespace sysid {
-namespace {
+namespace poisson_parts {
 
 constexpr Spelling mean[] = {{"mean", 1, nullptr}};
 constexpr ArgumentRow arguments[] = {{mean, must_be_given}};
@@ -31,7 +31,7 @@ std::string_view refuse(Numbers a) {
   return {};
 }
 
-}  // namespace
+}  // namespace poisson_parts
 
 /// Numbers below 10 by inversion, one probability after the other; from there on by transformed rejection with squeeze (PTRS),
 /// Hoermann 1993, "The transformed rejection method for generating Poisson random variables", Insurance: Math. and Econ. 12.
@@ -59,6 +59,7 @@ double poisson_variate(double mean, Stream& stream) {
 }
 
 DistributionRow poisson_distribution() {
+  using namespace poisson_parts;
   return {.name = "poisson",
           .arguments = arguments,
           .noise = true,

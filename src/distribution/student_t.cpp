@@ -6,7 +6,7 @@
 #include "function/boost_policy.hpp"
 
 namespace sysid {
-namespace {
+namespace student_t_parts {
 
 /// sd^2 = variance = 1/precision = scale^2 n/(n - 2), n > 2: below, the variance is infinite and the scale NaN, which is refused.
 NodeId scale_from_sd(Graph& graph, NodeId sd, Nodes before) {
@@ -87,9 +87,10 @@ std::string_view refuse(Numbers a) {
   return {};
 }
 
-}  // namespace
+}  // namespace student_t_parts
 
 DistributionRow student_t_distribution() {
+  using namespace student_t_parts;
   return {.name = "student_t",
           .arguments = arguments,
           .noise = true,

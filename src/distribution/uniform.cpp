@@ -5,7 +5,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace uniform_parts {
 
 constexpr Spelling lower[] = {{"lower", 1, nullptr}};
 constexpr Spelling upper[] = {{"upper", 1, nullptr}};
@@ -70,9 +70,10 @@ std::string_view log_uniform_refuse(Numbers a) {
   return {};
 }
 
-}  // namespace
+}  // namespace uniform_parts
 
 DistributionRow uniform_distribution() {
+  using namespace uniform_parts;
   return {.name = "uniform",
           .arguments = arguments,
           .log_density = &uniform_log_density,
@@ -87,6 +88,7 @@ DistributionRow uniform_distribution() {
 }
 
 DistributionRow log_uniform_distribution() {
+  using namespace uniform_parts;
   return {.name = "log_uniform",
           .arguments = arguments,
           .logarithmic = true,

@@ -7,7 +7,7 @@
 #include "distribution/rows.hpp"
 
 namespace sysid {
-namespace {
+namespace logistic_parts {
 
 /// variance = (pi scale)^2/3.
 NodeId scale_from_sd(Graph& graph, NodeId sd, Nodes) { return (Term(graph, sd) * (std::numbers::sqrt3 / std::numbers::pi)).id; }
@@ -41,9 +41,10 @@ double draw(Stream& stream, Numbers a) { return quantile(stream.uniform(), Tail:
 
 std::string_view refuse(Numbers a) { return positive(a[1]) ? std::string_view() : "scale or sd must be positive"; }
 
-}  // namespace
+}  // namespace logistic_parts
 
 DistributionRow logistic_distribution() {
+  using namespace logistic_parts;
   return {.name = "logistic",
           .arguments = arguments,
           .noise = true,
