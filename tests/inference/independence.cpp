@@ -62,6 +62,23 @@ TEST_CASE("the log density of a mixture is that of its formula") {
   }
 }
 
+TEST_CASE("a batch has the draws and densities of its columns, bit for bit") {
+  Independence const mixture = in_the_plane();
+  constexpr int width = 37;
+  std::vector<StreamKey> keys;
+  for (std::uint64_t w = 0; w < width; ++w) keys.push_back({5, Purpose::test, w, 9});
+  LaneArray all(2, width), one(2, 1);
+  mixture.draw(keys, all);
+  std::vector<double> densities(width);
+  mixture.log_density(all, densities);
+  for (int w = 0; w < width; ++w) {
+    mixture.draw(keys[static_cast<std::size_t>(w)], one, 0);
+    CHECK(one(0, 0) == all(0, w));
+    CHECK(one(1, 0) == all(1, w));
+    CHECK(densities[static_cast<std::size_t>(w)] == mixture.log_density(one, 0));
+  }
+}
+
 TEST_CASE("draws of a mixture have its density") {
   // The mean of f / q over draws of q is the integral of f: 1 for any density f, here one that q covers in one place each.
   Independence const mixture = in_the_plane();

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/normals.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "linear_algebra/decompositions.hpp"
 
@@ -17,20 +18,20 @@ constexpr double normal_share = 0.65, axis_share = 0.25, student_share = 1 - nor
 constexpr int degrees = 6, axis_degrees = 3;  // of freedom
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
-/// A standard normal over the root of chi-square / degrees has Student's t distribution: this is one over that root.
-double student_scale(Stream& stream, int degrees_of_freedom) {
-  double squares = 0;
-  for (int i = 0; i < degrees_of_freedom; ++i) {
-    double const z = stream.normal();
-    squares += z * z;
-  }
-  return std::sqrt(degrees_of_freedom / squares);
-}
+/// log of t_3(z) / N(z), both with their constants: this and  z^2 / 2 - 2 log(1 + z^2 / 3).
+constexpr double log_axis_constant = -0.08195031641883688;  // log(2 / (pi sqrt 3)) + 1/2 log(2 pi)
 
-/// log of t_3(z) / N(z), both with their constants.
-double log_axis_ratio(double z) {
-  constexpr double log_constant = -0.08195031641883688;  // log(2 / (pi sqrt 3)) + 1/2 log(2 pi)
-  return log_constant + z * z / 2 - 2 * elementary::log1p(z * z / axis_degrees);
+/// `log_of_sum` in place of a; both of one length.
+void add_logs(std::span<double> a, std::span<double const> b) {
+  std::vector<double> rest(a.size());
+  for (std::size_t w = 0; w < a.size(); ++w) rest[w] = std::min(a[w], b[w]) - std::max(a[w], b[w]);
+  auto const width = static_cast<int>(a.size());
+  elementary::exp_lanes(rest.data(), rest.data(), width);
+  elementary::log1p_lanes(rest.data(), rest.data(), width);
+  for (std::size_t w = 0; w < a.size(); ++w) {
+    double const high = std::max(a[w], b[w]);
+    a[w] = high == minus_infinity ? high : high + rest[w];
+  }
 }
 
 }  // namespace
@@ -84,7 +85,16 @@ void Independence::set_constants(std::vector<double> const& weights) {
   }
 }
 
-void Independence::draw(StreamKey key, Lanes to, int lane) const {
+/// A draw before its normal numbers: what it is of, and where they come from.
+struct Independence::Planned {
+  Part const* part;
+  int before;  // normal numbers that its scale takes: the degrees of freedom, or none
+  std::size_t axis;
+  int lane;
+  Stream stream;
+};
+
+Independence::Planned Independence::plan(StreamKey key, int lane) const {
   Stream stream(key);
   double const which = stream.uniform();
   Part const* part = &parts_.back();
@@ -94,18 +104,47 @@ void Independence::draw(StreamKey key, Lanes to, int lane) const {
       break;
     }
   double const kind = stream.uniform();
-  bool const along_axis = kind >= normal_share && kind < normal_share + axis_share;
-  auto const axis = along_axis ? static_cast<std::size_t>(stream.below(dimension_)) : 0;
-  double const scale = kind < normal_share ? 1 : along_axis ? student_scale(stream, axis_degrees) : student_scale(stream, degrees);
+  if (kind < normal_share) return {part, 0, 0, lane, stream};
+  if (kind >= normal_share + axis_share) return {part, degrees, 0, lane, stream};
+  auto const axis = static_cast<std::size_t>(stream.below(dimension_));
+  return {part, axis_degrees, axis, lane, stream};
+}
+
+void Independence::draw(std::span<StreamKey const> keys, Lanes to) const {
+  std::vector<Planned> all;
+  for (std::size_t w = 0; w < keys.size(); ++w) all.push_back(plan(keys[w], static_cast<int>(w)));
+  // Those that take equally many normal numbers draw them together, which is several times cheaper.
+  for (int const before : {0, axis_degrees, degrees}) {
+    std::vector<Planned const*> draws;
+    std::vector<Stream> streams;
+    for (Planned const& each : all) {
+      if (each.before != before) continue;
+      draws.push_back(&each);
+      streams.push_back(each.stream);
+    }
+    LaneArray normals(before + static_cast<int>(dimension_), static_cast<int>(draws.size()));
+    draw_normals(streams, normals);
+    for (std::size_t d = 0; d < draws.size(); ++d) place(*draws[d], normals.view().columns(static_cast<int>(d), 1), to);
+  }
+}
+
+void Independence::place(Planned const& draw, ConstLanes normals, Lanes to) const {
+  // A standard normal over the root of chi-square / degrees has Student's t distribution: the scale is one over that root.
+  double squares = 0;
+  for (int i = 0; i < draw.before; ++i) squares += normals(i, 0) * normals(i, 0);
+  double const scale = draw.before == 0 ? 1 : std::sqrt(draw.before / squares);
+  bool const along_axis = draw.before == axis_degrees;
+  Part const& part = *draw.part;
+  int const lane = draw.lane;
   // Column after column, so that no copy of z is held.
-  for (std::size_t i = 0; i < dimension_; ++i) to(static_cast<int>(i), lane) = part->mean[i];
+  for (std::size_t i = 0; i < dimension_; ++i) to(static_cast<int>(i), lane) = part.mean[i];
   for (std::size_t j = 0; j < dimension_; ++j) {
-    double const z = (along_axis ? 1 : scale) * stream.normal();
-    for (std::size_t i = j; i < dimension_; ++i) to(static_cast<int>(i), lane) += part->factor[i * dimension_ + j] * z;
+    double const z = (along_axis ? 1 : scale) * normals(draw.before + static_cast<int>(j), 0);
+    for (std::size_t i = j; i < dimension_; ++i) to(static_cast<int>(i), lane) += part.factor[i * dimension_ + j] * z;
   }
   if (!along_axis) return;
-  double const z = (to(static_cast<int>(axis), lane) - part->mean[axis]) / part->sd[axis];
-  shift(*part, axis, (scale - 1) * z, to, lane);
+  double const z = (to(static_cast<int>(draw.axis), lane) - part.mean[draw.axis]) / part.sd[draw.axis];
+  shift(part, draw.axis, (scale - 1) * z, to, lane);
 }
 
 void Independence::shift(Part const& part, std::size_t j, double sds, Lanes to, int lane) const {
@@ -118,39 +157,77 @@ void Independence::shift(Part const& part, std::size_t j, double sds, Lanes to, 
   }
 }
 
-double Independence::log_part(Part const& part, ConstLanes theta, int lane) const {
+void Independence::log_part(Part const& part, ConstLanes theta, std::span<double> out) const {
+  int const width = theta.width();
+  std::size_t const lanes = out.size();
   // z = L^-1 (x - mean) by forward substitution.
-  double few[64];
-  std::vector<double> many;
-  double* z = few;
-  if (dimension_ > std::size(few)) {
-    many.resize(dimension_);
-    z = many.data();
-  }
-  double squares = 0;
+  LaneArray z(static_cast<int>(dimension_), width);
+  std::vector<double> squares(lanes, 0.0), work(lanes);
   for (std::size_t i = 0; i < dimension_; ++i) {
-    double rest = theta(static_cast<int>(i), lane) - part.mean[i];
-    double const* row = part.factor.data() + i * dimension_;
-    for (std::size_t j = 0; j < i; ++j) rest -= row[j] * z[j];
-    z[i] = rest / row[i];
-    squares += z[i] * z[i];
+    double const* const factor = part.factor.data() + i * dimension_;
+    auto const x = theta.row(static_cast<int>(i));
+    auto const rest = z.row(static_cast<int>(i));
+    for (std::size_t w = 0; w < lanes; ++w) rest[w] = x[w] - part.mean[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      auto const before = z.row(static_cast<int>(j));
+      for (std::size_t w = 0; w < lanes; ++w) rest[w] -= factor[j] * before[w];
+    }
+    for (std::size_t w = 0; w < lanes; ++w) {
+      rest[w] /= factor[i];
+      squares[w] += rest[w] * rest[w];
+    }
   }
-  if (!std::isfinite(squares)) return minus_infinity;
-  double const student = part.log_student - (degrees + static_cast<double>(dimension_)) / 2 * elementary::log1p(squares / degrees);
   // N (0.65 + 0.25 / P sum of ratios), the ratios after their largest: they overflow far out, where N vanishes.
-  double highest = 0, sum = 0;
+  std::vector<double> highest(lanes, 0.0), sum(lanes, 0.0);
   for (std::size_t j = 0; j < dimension_; ++j) {
-    z[j] = log_axis_ratio((theta(static_cast<int>(j), lane) - part.mean[j]) / part.sd[j]);
-    highest = std::max(highest, z[j]);
+    auto const x = theta.row(static_cast<int>(j));
+    auto const ratio = z.row(static_cast<int>(j));
+    for (std::size_t w = 0; w < lanes; ++w) {
+      ratio[w] = (x[w] - part.mean[j]) / part.sd[j];
+      work[w] = ratio[w] * ratio[w] / axis_degrees;
+    }
+    elementary::log1p_lanes(work.data(), work.data(), width);
+    for (std::size_t w = 0; w < lanes; ++w) {
+      ratio[w] = log_axis_constant + ratio[w] * ratio[w] / 2 - 2 * work[w];
+      highest[w] = std::max(highest[w], ratio[w]);
+    }
   }
-  for (std::size_t j = 0; j < dimension_; ++j) sum += elementary::exp(z[j] - highest);
-  double const inner = normal_share * elementary::exp(-highest) + axis_share * sum / static_cast<double>(dimension_);
-  return log_of_sum(part.log_normal - squares / 2 + highest + elementary::log(inner), student);
+  for (std::size_t j = 0; j < dimension_; ++j) {
+    auto const ratio = z.row(static_cast<int>(j));
+    for (std::size_t w = 0; w < lanes; ++w) work[w] = ratio[w] - highest[w];
+    elementary::exp_lanes(work.data(), work.data(), width);
+    for (std::size_t w = 0; w < lanes; ++w) sum[w] += work[w];
+  }
+  for (std::size_t w = 0; w < lanes; ++w) work[w] = -highest[w];
+  elementary::exp_lanes(work.data(), work.data(), width);
+  for (std::size_t w = 0; w < lanes; ++w) work[w] = normal_share * work[w] + axis_share * sum[w] / static_cast<double>(dimension_);
+  elementary::log_lanes(work.data(), work.data(), width);
+  for (std::size_t w = 0; w < lanes; ++w) out[w] = part.log_normal - squares[w] / 2 + highest[w] + work[w];
+  // Student's t in all directions.
+  for (std::size_t w = 0; w < lanes; ++w) work[w] = squares[w] / degrees;
+  elementary::log1p_lanes(work.data(), work.data(), width);
+  for (std::size_t w = 0; w < lanes; ++w) work[w] = part.log_student - (degrees + static_cast<double>(dimension_)) / 2 * work[w];
+  add_logs(out, work);
+  for (std::size_t w = 0; w < lanes; ++w)
+    if (!std::isfinite(squares[w])) out[w] = minus_infinity;
+}
+
+void Independence::log_density(ConstLanes theta, std::span<double> out) const {
+  std::fill(out.begin(), out.end(), minus_infinity);
+  std::vector<double> next(out.size());
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    if (k == 0) {
+      log_part(parts_[k], theta, out);
+      continue;
+    }
+    log_part(parts_[k], theta, next);
+    add_logs(out, next);
+  }
 }
 
 double Independence::log_density(ConstLanes theta, int lane) const {
-  double sum = minus_infinity;
-  for (Part const& part : parts_) sum = log_of_sum(sum, log_part(part, theta, lane));
+  double sum = 0;
+  log_density(theta.columns(lane, 1), {&sum, 1});
   return sum;
 }
 
@@ -158,7 +235,8 @@ int Independence::nearest(ConstLanes theta, int lane) const {
   int best = parts_.empty() ? -1 : 0;
   double highest = minus_infinity;
   for (std::size_t k = 0; parts_.size() > 1 && k < parts_.size(); ++k) {
-    double const here = log_part(parts_[k], theta, lane);
+    double here = 0;
+    log_part(parts_[k], theta.columns(lane, 1), {&here, 1});
     if (here <= highest) continue;
     highest = here;
     best = static_cast<int>(k);

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <vector>
 
 #include "core/numeric/lanes.hpp"
@@ -32,9 +33,11 @@ class Independence {
   explicit Independence(std::vector<Component> const& components);
 
   bool empty() const { return parts_.empty(); }
-  /// Writes a draw into column `lane` of `to` [P x W].
-  void draw(StreamKey key, Lanes to, int lane) const;
-  /// log q of a column, all constants kept; -infinity when empty.
+  /// Writes a draw into each column of `to` [P x W]; keys [W]: of its numbers.
+  void draw(std::span<StreamKey const> keys, Lanes to) const;
+  void draw(StreamKey key, Lanes to, int lane) const { draw({&key, 1}, to.columns(lane, 1)); }
+  /// log q of each column, all constants kept; -infinity when empty. out: [W].
+  void log_density(ConstLanes theta, std::span<double> out) const;
   double log_density(ConstLanes theta, int lane) const;
   /// The component that most likely drew a column; -1 when empty.
   int nearest(ConstLanes theta, int lane) const;
@@ -52,10 +55,14 @@ class Independence {
     std::vector<double> factor;  // L, lower triangle of [P x P] by rows
     std::vector<double> sd;      // [P]
   };
+  struct Planned;
+  Planned plan(StreamKey key, int lane) const;
+  /// Writes a draw into its column; normals: a column of as many as it takes.
+  void place(Planned const& draw, ConstLanes normals, Lanes to) const;
   /// Adds what the others move by when coordinate j moves by `sds`: x += S e_j / sd_j sds.
   void shift(Part const& part, std::size_t j, double sds, Lanes to, int lane) const;
-  /// log of weight times density.
-  double log_part(Part const& part, ConstLanes theta, int lane) const;
+  /// log of weight times density of each column. out: [W].
+  void log_part(Part const& part, ConstLanes theta, std::span<double> out) const;
   void set_constants(std::vector<double> const& weights);
   static void set_sds(Part& part);
 

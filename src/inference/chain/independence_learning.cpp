@@ -70,8 +70,11 @@ std::vector<char> IndependenceLearning::away(State const& state) const {
 void IndependenceLearning::learn(State const& state, Info const& info) {
   ++iterations_;
   ++window_.iterations;
+  std::vector<double> of_current(info.size()), of_candidate(info.size());
+  current_.log_density(state.theta, of_current);
+  candidate_.log_density(state.theta, of_candidate);
   for (int w = 0; w < state.theta.width(); ++w) {
-    double const now = current_.log_density(state.theta, w), then = candidate_.log_density(state.theta, w);
+    double const now = of_current[static_cast<std::size_t>(w)], then = of_candidate[static_cast<std::size_t>(w)];
     double const density = state.log_prior[static_cast<std::size_t>(w)] + state.log_likelihood[static_cast<std::size_t>(w)];
     if (std::isfinite(now) && std::isfinite(then) && std::isfinite(density)) {
       window_.current.add(density, now, window_.states == 0);

@@ -87,11 +87,13 @@ int cycle(Target const& target, std::span<Proposal const* const> proposals, Inde
   for (std::size_t w = 0; w < chains; ++w)
     small[w] =
         propose(*proposals[w], key_of(Purpose::proposal, w, 0), state.theta, static_cast<int>(w), proposed, static_cast<int>(w));
+  auto const independent = proposed.view().columns(static_cast<int>(chains), static_cast<int>((iterations - 1) * chains));
+  std::vector<StreamKey> keys;
   for (std::size_t i = 1; i < iterations; ++i)
-    for (std::size_t w = 0; w < chains; ++w)
-      independence.draw(key_of(Purpose::proposal, w, i), proposed, static_cast<int>(i * chains + w));
+    for (std::size_t w = 0; w < chains; ++w) keys.push_back(key_of(Purpose::proposal, w, i));
+  if (iterations > 1) independence.draw(keys, independent);
 
-  std::vector<double> log_prior(chains * iterations), log_likelihood(log_prior), here(chains);
+  std::vector<double> log_prior(chains * iterations), log_likelihood(log_prior), here(chains), there(keys.size());
   target.log_prior(proposed, log_prior);
   target.log_likelihood(proposed, log_likelihood, ledger);
   for (std::size_t w = 0; w < chains; ++w) {
@@ -99,15 +101,16 @@ int cycle(Target const& target, std::span<Proposal const* const> proposals, Inde
     move.small = small[w] != 0;
     visit(static_cast<int>(w), move);
   }
-  for (std::size_t w = 0; iterations > 1 && w < chains; ++w) here[w] = independence.log_density(state.theta, static_cast<int>(w));
+  if (iterations == 1) return 1;
+  independence.log_density(state.theta, here);
+  independence.log_density(independent, there);
   for (std::size_t i = 1; i < iterations; ++i)
     for (std::size_t w = 0; w < chains; ++w) {
-      std::size_t const lane = i * chains + w;
-      double const there = independence.log_density(proposed, static_cast<int>(lane));
+      std::size_t const lane = i * chains + w, candidate = lane - chains;
       Move move = decide(key_of(Purpose::accept, w, i), state, w, proposed, static_cast<int>(lane), log_prior[lane],
-                         log_likelihood[lane], {.log_reverse = here[w] - there});
+                         log_likelihood[lane], {.log_reverse = here[w] - there[candidate]});
       move.independent = true;
-      if (move.accepted) here[w] = there;
+      if (move.accepted) here[w] = there[candidate];
       visit(static_cast<int>(w), move);
     }
   return static_cast<int>(iterations);
