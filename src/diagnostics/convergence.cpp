@@ -11,6 +11,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/fourier.hpp"
 #include "core/numeric/normal_quantile.hpp"
+#include "core/numeric/order.hpp"
 #include "core/numeric/statistics.hpp"
 
 namespace sysid {
@@ -45,17 +46,13 @@ ChainValues split(ChainValues const& draws) {
   return first;
 }
 
-/// A draw and its place among those of all chains, one behind the other.
-struct Ranked {
-  double value;
-  std::uint32_t place;
-};
-
+/// Draws with their places among those of all chains, one behind the other.
 std::vector<Ranked> in_order(ChainValues const& draws) {
   std::vector<Ranked> order;
+  order.reserve(draws.size() * draws.front().size());
   for (auto const& chain : draws)
     for (double const v : chain) order.push_back({v, static_cast<std::uint32_t>(order.size())});
-  std::sort(order.begin(), order.end(), [](Ranked a, Ranked b) { return a.value < b.value; });
+  sort_by_value(order);
   return order;
 }
 
@@ -99,7 +96,7 @@ ChainValues rank_normalised(std::vector<Ranked> const& order, ChainValues const&
 /// A transform long enough for the autocovariance of the halves of these chains.
 Fourier fourier_for(ChainValues const& draws) {
   std::size_t const longest = draws.empty() ? 0 : draws.front().size();
-  return Fourier(std::bit_ceil(std::max<std::size_t>(4, 2 * ((longest + 1) / 2))));
+  return Fourier(std::bit_ceil(std::max<std::size_t>(8, 2 * ((longest + 1) / 2))));
 }
 
 /// Autocovariance (divisor N) at every lag, averaged over the chains. Two chains share one transform: the real part of the
@@ -178,11 +175,12 @@ double basic_ess(ChainValues const& chains, Fourier const& fourier) {
   return count / tau;
 }
 
-double ess_of_quantile(ChainValues const& draws, double bound, Fourier const& fourier) {
-  ChainValues below = draws;
+/// Of the share of draws up to `bound`; halves: split chains.
+double ess_of_quantile(ChainValues const& halves, double bound, Fourier const& fourier) {
+  ChainValues below = halves;
   for (auto& chain : below)
     for (double& v : chain) v = v <= bound ? 1.0 : 0.0;
-  return basic_ess(split(below), fourier);
+  return basic_ess(below, fourier);
 }
 
 std::vector<double> sorted(ChainValues const& draws) {
@@ -218,9 +216,10 @@ double ess_bulk(ChainValues const& draws) {
 double ess_tail(ChainValues const& draws) {
   if (has_no_diagnostics(draws)) return nan;
   std::vector<double> const all = sorted(draws);
+  ChainValues const halves = split(draws);
   Fourier const fourier = fourier_for(draws);
-  return smaller_or_nan(ess_of_quantile(draws, sorted_quantile(all, 0.05), fourier),
-                        ess_of_quantile(draws, sorted_quantile(all, 0.95), fourier));
+  return smaller_or_nan(ess_of_quantile(halves, sorted_quantile(all, 0.05), fourier),
+                        ess_of_quantile(halves, sorted_quantile(all, 0.95), fourier));
 }
 
 double ess_mean(ChainValues const& draws) { return basic_ess(split(draws), fourier_for(draws)); }
@@ -235,24 +234,34 @@ Summary summarise(std::string name, std::string unit, ChainValues const& draws) 
   if (all.empty() || std::any_of(all.begin(), all.end(), [](double v) { return !std::isfinite(v); })) return summary;
   summary.mean = corrected_mean(all);
   summary.sd = std::sqrt(corrected_variance(all));
-  // Sorting is most of the work, so it is done once; halves of an odd length lack the middle draw.
+  // Sorting is done once; halves of an odd length lack the middle draw.
   ChainValues const halves = split(draws);
   std::vector<Ranked> const order = in_order(halves);
-  if (order.size() == all.size())
-    std::transform(order.begin(), order.end(), all.begin(), [](Ranked each) { return each.value; });
+  bool const whole = order.size() == all.size();
+  auto const take = [&](std::vector<Ranked> const& from) {
+    std::transform(from.begin(), from.end(), all.begin(), [](Ranked each) { return each.value; });
+  };
+  if (whole)
+    take(order);
   else
     std::sort(all.begin(), all.end());
   summary.median = sorted_quantile(all, 0.5);
   summary.q5 = sorted_quantile(all, 0.05);
   summary.q95 = sorted_quantile(all, 0.95);
-  for (double& v : all) v = std::fabs(v - summary.median);
-  summary.mad = sd_of_mad * sysid::median(std::move(all));
+  std::vector<Ranked> const distances = distances_in_order(order, summary.median);
+  if (whole) {
+    take(distances);
+  } else {
+    for (double& v : all) v = std::fabs(v - summary.median);
+    std::sort(all.begin(), all.end());
+  }
+  summary.mad = sd_of_mad * sorted_quantile(all, 0.5);
   if (has_no_diagnostics(draws)) return summary;
   ChainValues const scores = rank_normalised(order, halves);
-  summary.rhat = rhat_of(halves, scores, distances_in_order(order, summary.median));
+  summary.rhat = rhat_of(halves, scores, distances);
   Fourier const fourier = fourier_for(draws);
   summary.ess_bulk = basic_ess(scores, fourier);
-  summary.ess_tail = smaller_or_nan(ess_of_quantile(draws, summary.q5, fourier), ess_of_quantile(draws, summary.q95, fourier));
+  summary.ess_tail = smaller_or_nan(ess_of_quantile(halves, summary.q5, fourier), ess_of_quantile(halves, summary.q95, fourier));
   summary.mcse_mean = summary.sd / std::sqrt(basic_ess(halves, fourier));
   return summary;
 }

@@ -23,43 +23,34 @@ Fourier::Fourier(std::size_t size) : size_(size), cosine_(size), sine_(size) {
 }
 
 void Fourier::to_reversed(Parts& re, Parts& im, Between between) const {
-  for (std::size_t half = size_ / 2; half > 0; half /= 2) {
+  fourier_stages::Points const points = at(re, im);
+  long half = points.size / 2;
+  for (; half >= 8; half /= 4) {
     if (between != nullptr) between();
-    double const *const c = &cosine_[half], *const s = &sine_[half];
-    for (std::size_t start = 0; start < size_; start += 2 * half) {
-      double *const ar = &re[start], *const ai = &im[start], *const br = ar + half, *const bi = ai + half;
-      for (std::size_t k = 0; k < half; ++k) {
-        double const dr = ar[k] - br[k], di = ai[k] - bi[k];
-        ar[k] += br[k];
-        ai[k] += bi[k];
-        br[k] = dr * c[k] - di * s[k];
-        bi[k] = dr * s[k] + di * c[k];
-      }
-    }
+    fourier_stages::two_in_frequency(points, half);
   }
+  for (; half > 0; half /= 2) fourier_stages::in_frequency(points, half);
 }
 
 void Fourier::from_reversed(Parts& re, Parts& im, Between between) const {
-  for (std::size_t half = 1; half < size_; half *= 2) {
+  fourier_stages::Points const points = at(re, im);
+  long half = 1;
+  for (; half < 4; half *= 2) fourier_stages::in_time(points, half);
+  for (; 2 * half < points.size; half *= 4) {
     if (between != nullptr) between();
-    double const *const c = &cosine_[half], *const s = &sine_[half];
-    for (std::size_t start = 0; start < size_; start += 2 * half) {
-      double *const ar = &re[start], *const ai = &im[start], *const br = ar + half, *const bi = ai + half;
-      for (std::size_t k = 0; k < half; ++k) {
-        double const tr = br[k] * c[k] - bi[k] * s[k], ti = br[k] * s[k] + bi[k] * c[k];
-        br[k] = ar[k] - tr;
-        bi[k] = ai[k] - ti;
-        ar[k] += tr;
-        ai[k] += ti;
-      }
-    }
+    fourier_stages::two_in_time(points, half);
   }
+  if (half < points.size) fourier_stages::in_time(points, half);
+}
+
+fourier_stages::Points Fourier::at(Parts& re, Parts& im) const {
+  return {re.data(), im.data(), static_cast<long>(size_), cosine_.data(), sine_.data()};
 }
 
 namespace {
 
 /// Of the circular convolution that replaces a transform of N points.
-std::size_t convolution_size(std::size_t size) { return std::max<std::size_t>(4, std::bit_ceil(2 * size)); }
+std::size_t convolution_size(std::size_t size) { return std::max<std::size_t>(8, std::bit_ceil(2 * size)); }
 
 }  // namespace
 

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/numeric/fourier_stages.hpp"
+
 namespace sysid {
 
-/// Transforms of one power-of-two length of at least 4, real and imaginary parts apart, in place and unscaled.
+/// Transforms of one power-of-two length of at least 8, real and imaginary parts apart, in place and unscaled.
 class Fourier {
  public:
   using Parts = std::vector<double>;
@@ -22,6 +24,8 @@ class Fourier {
   void from_reversed(Parts& re, Parts& im, Between between = nullptr) const;
 
  private:
+  fourier_stages::Points at(Parts& re, Parts& im) const;
+
   std::size_t size_;
   Parts cosine_, sine_;  // the factors of the stage with blocks of 2 h stand at h .. 2 h - 1
 };
