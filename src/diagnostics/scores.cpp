@@ -35,7 +35,6 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
     for (std::size_t d = 0; d < usable.size(); ++d) values[d] = (*usable[d])[i];
     out.mean.push_back(mean(values));
     out.sd.push_back(usable.size() > 1 ? std::sqrt(sample_variance(values)) : 0);
-    std::sort(values.begin(), values.end());
     out.lower.push_back(predictive_quantile(values, 0.025));
     out.upper.push_back(predictive_quantile(values, 0.975));
   }

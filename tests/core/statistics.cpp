@@ -52,9 +52,10 @@ TEST_CASE("quantiles of types 6 and 7") {
   CHECK(quantile(x, 1) == 4);
   CHECK(quantile(x, 0.1) == doctest::Approx(1.3).epsilon(1e-15));
   CHECK(sorted_quantile(sorted, 0.1) == quantile(x, 0.1));
-  CHECK(predictive_quantile(sorted, 0.3) == doctest::Approx(1.5).epsilon(1e-15));
-  CHECK(predictive_quantile(sorted, 0.01) == 1);
-  CHECK(predictive_quantile(sorted, 0.99) == 4);
+  Values draws = x;
+  CHECK(predictive_quantile(draws, 0.3) == doctest::Approx(1.5).epsilon(1e-15));
+  CHECK(predictive_quantile(draws, 0.01) == 1);
+  CHECK(predictive_quantile(draws, 0.99) == 4);
   CHECK(std::isnan(quantile({}, 0.5)));
   CHECK(std::isnan(quantile({1, std::nan("")}, 0.5)));
   CHECK(quantile({beyond_all, beyond_all}, 0.5) == beyond_all);  // not beyond_all - beyond_all

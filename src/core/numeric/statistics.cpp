@@ -61,12 +61,13 @@ double sorted_quantile(std::vector<double> const& sorted, double probability) {
   return (1 - h) * a + h * b;
 }
 
-double predictive_quantile(std::vector<double> const& sorted, double probability) {
-  auto const last = static_cast<double>(sorted.size()) - 1;
+double predictive_quantile(std::vector<double>& draws, double probability) {
+  auto const last = static_cast<double>(draws.size()) - 1;
   double const place = std::clamp(probability * (last + 2) - 1, 0.0, last);
-  auto const below = static_cast<std::size_t>(place);
-  std::size_t const above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+  auto const at = draws.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(draws.begin(), at, draws.end());
+  double const above = at + 1 == draws.end() ? *at : *std::min_element(at + 1, draws.end());
+  return *at + (place - std::floor(place)) * (above - *at);
 }
 
 double quantile(std::vector<double> draws, double probability) {

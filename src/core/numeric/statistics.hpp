@@ -34,9 +34,9 @@ std::vector<double> pooled(std::vector<std::vector<double>> const& chains);
 double quantile(std::vector<double> draws, double probability);
 /// The same of draws that rise and are not empty.
 double sorted_quantile(std::vector<double> const& sorted, double probability);
-/// Quantile of type 6, of draws that rise and are not empty. Between those of 2.5 % and 97.5 % another draw falls with probability
-/// 0.95 however few draws there are, from 39 on; between those of type 7, 0.931 with 100.
-double predictive_quantile(std::vector<double> const& sorted, double probability);
+/// Quantile of type 6, of draws in any order, which changes; they are not empty. Between those of 2.5 % and 97.5 % another draw
+/// falls with probability 0.95 however few draws there are, from 39 on; between those of type 7, 0.931 with 100.
+double predictive_quantile(std::vector<double>& draws, double probability);
 /// Quantile of type 7 of one half: of an even number of draws the mean of the middle two.
 double median(std::vector<double> draws);
 /// The middle draw, of an even number the larger of the middle two: always one of the draws, and infinite where half of them are.
