@@ -133,7 +133,7 @@ Figure trace_figure(Draws const& draws) {
   std::size_t const stride = (longest + 399) / 400;
   for (std::size_t i = 0; i < count; ++i) {
     auto const [low, high] = finite_range(draws.column(i));
-    Plot plot{layout.multiples.panel(i, {66, 14, 24, 8})};
+    Plot plot{layout.multiples.panel(i, {66, 20, 24, 8})};
     plot.panel.x = draw_axis(longest);
     plot.panel.y = axis(low, high, 3, 0.05);
     plot.panel.y_label = axis_label(draws.names[i], draws.units[i], plot.panel.y);

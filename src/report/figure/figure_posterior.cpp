@@ -100,7 +100,7 @@ std::vector<double> density_of(Marginal const& of, Axis const& x) {
                         lower > smallest - reach ? lower : -infinity, upper < largest + reach ? upper : infinity);
 }
 
-constexpr Margins margins{14, 12, 46, 20};
+constexpr Margins margins{14, 18, 46, 20};
 
 Plot plot_without_draws(Summary const& summary, Panel panel) {
   panel.x = panel.y = axis(0, 1, 1);
