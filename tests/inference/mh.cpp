@@ -26,6 +26,13 @@ Settings chosen(std::int64_t samples, std::int64_t burn_in, std::int64_t thin = 
   return settings;
 }
 
+/// Three chains, thinned, that learn for a third of their iterations.
+Settings short_chains(std::string const& proposal) {
+  Settings settings = chosen(1200, 400, 5, 3);
+  settings.set("proposal", proposal);
+  return settings;
+}
+
 FitResult fit(Target const& target, Settings const& settings, std::uint64_t seed = 1) {
   Bench bench(seed);
   return mh::run(target, settings, bench.context);
@@ -269,8 +276,7 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
   Line const known = line();
   for (char const* proposal : {"walk", "adaptive"}) {
     CAPTURE(proposal);
-    Settings settings = chosen(1200, 400, 5, 3);
-    settings.set("proposal", std::string(proposal));
+    Settings const settings = short_chains(proposal);
     Bench whole(9);
     // One question is asked before every batch: those of the search, of burn-in, and of sampling, which has fewer than iterations.
     int questions = 0;
@@ -316,8 +322,7 @@ TEST_CASE("a run whose batch is given up goes on from before it, to the same byt
   Line const known = line();
   for (char const* proposal : {"walk", "adaptive"}) {
     CAPTURE(proposal);
-    Settings settings = chosen(1200, 400, 5, 3);
-    settings.set("proposal", std::string(proposal));
+    Settings const settings = short_chains(proposal);
     Bench whole(9);
     GivenUp const never(known.target, -1);
     FitResult const unbroken = mh::run(never, settings, whole.context);
