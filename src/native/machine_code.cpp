@@ -1,12 +1,16 @@
 // Compiled loops by name.
 #include "native/machine_code.hpp"
 
-#include <algorithm>
+#include <atomic>
 
 namespace sysid::native {
 namespace {
 
-constexpr double smallest_job = 0.05;  // [s]
+/// [s] of interpretation, of which a job that has less never waits for the compiler to be loaded.
+constexpr double smallest_job = 0.05;
+
+/// Whether it has been: loops cost no more than their own compilation then.
+std::atomic<bool> compiler_is_there = false;
 
 }  // namespace
 
@@ -17,6 +21,7 @@ Function MachineCode::function(LoopName const& name, std::function<Loop()> const
     std::unique_ptr<Machine> machine;
     std::string why;
     if (Module const* const compiler = module()) machine = compiler->compile(write(), why);
+    compiler_is_there = true;
     found = machines_.emplace(name, std::move(machine)).first;
   }
   return found->second ? found->second->function() : nullptr;
@@ -28,7 +33,9 @@ bool MachineCode::pays(LoopName const& name, double seconds, double compilation)
   if (found != machines_.end()) return found->second != nullptr;
   double& spent = spent_[name];
   spent += seconds;
-  return spent >= std::max(smallest_job, compilation);
+  double of_all_loops = 0;
+  for (auto const& [_, each] : spent_) of_all_loops += each;
+  return spent >= compilation && (compiler_is_there || of_all_loops >= smallest_job);
 }
 
 }  // namespace sysid::native

@@ -61,7 +61,7 @@ native::Function machine_loop(SimulationProgram const& program, SolverSettings c
 }
 
 double compilation_time(SimulationProgram const& program, Executor executor) {
-  return 0.02 + 75e-6 * instructions(program) * vectors(executor);
+  return 75e-6 * instructions(program) * vectors(executor);
 }
 
 int most_native_lanes(SimulationProgram const& program) {

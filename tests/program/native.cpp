@@ -19,6 +19,7 @@
 
 #include "core/numeric/instruction_set.hpp"
 #include "core/numeric/lanes.hpp"
+#include "native/machine_code.hpp"
 #include "native/module.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/kernel.hpp"
@@ -210,6 +211,18 @@ TEST_CASE("where memory may not become executable, there is no machine code and 
   REQUIRE(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 0);
   CHECK_MESSAGE(std::string(text).find("ermission denied") != std::string::npos, text);
+}
+
+TEST_CASE("a loop waits for machine code until it has been interpreted for as long as compiling it takes") {
+  native::MachineCode code;
+  native::LoopName const narrow{.width = 4}, wide{.width = 16};
+  double const compilation = 0.013;
+  CHECK_FALSE(code.pays(narrow, 0.012, compilation));
+  CHECK_FALSE(code.pays(wide, 0.009, compilation));
+  // Loading the compiler takes 50 ms of all loops together, of which no more than one has to be compiled.
+  CHECK(code.pays(narrow, 0.05, compilation));
+  CHECK(code.pays(narrow, 0, compilation));
+  CHECK_FALSE(code.pays(wide, 0.001, compilation));
 }
 
 TEST_CASE("a compiler that is not there is said, not fatal") {
