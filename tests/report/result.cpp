@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <map>
 
 #include "core/system/files.hpp"
@@ -52,6 +53,23 @@ TEST_CASE("pictures stand beside each other in the formats asked for, and go wit
   CHECK(files.contains("figures/posterior.gnuplot"));
   for (char const* ending : {"svg", "pdf", "txt", "png"}) CHECK_FALSE(files.contains(std::string("figures/posterior.") + ending));
   CHECK(files["report.html"].find("<svg") == std::string::npos);
+}
+
+TEST_CASE("a result without pictures starts no gnuplot") {
+  TemporaryFolder const folder;
+  std::string const before = std::getenv("PATH");
+  // One that tells that it was started.
+  fs::path const started = folder.path() / "started", program = folder.path() / "gnuplot";
+  write_file(program, "#!/bin/sh\n: >'" + started.string() + "'\n");
+  fs::permissions(program, fs::perms::owner_all);
+  setenv("PATH", (folder.path().string() + ":" + before).c_str(), 1);
+  write_result(example::duffing(10), folder.path() / "posterior", {});
+  bool const without = fs::exists(started);
+  write_result(example::duffing(10), folder.path() / "posterior", {FigureFormat::svg});
+  bool const with = fs::exists(started);
+  setenv("PATH", before.c_str(), 1);
+  CHECK_FALSE(without);
+  CHECK(with);
 }
 
 TEST_CASE("pictures that gnuplot refuses are named, and their scripts stay") {

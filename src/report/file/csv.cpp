@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/text/number.hpp"
@@ -44,6 +46,14 @@ std::string units(std::vector<std::string> const& names, std::vector<std::string
   return out + "\n";
 }
 
+/// As `shortest` has it, and a comma.
+void add_cell(std::string& out, double value) {
+  if (std::isfinite(value))
+    fmt::format_to(std::back_inserter(out), "{},", value);
+  else
+    out += shortest(value) + ',';
+}
+
 double value_at(std::vector<double> const& values, std::size_t i) {
   return i < values.size() ? values[i] : std::numeric_limits<double>::quiet_NaN();
 }
@@ -76,10 +86,10 @@ std::string draws_csv(Report const& report, int chain) {
   for (std::string const& name : report.draws.names) out += "," + csv_field(stan_name(name));
   out += '\n';
   for (std::size_t d = 0; d < draws.values.size(); ++d) {
-    out += fmt::format("{},{},{},{}", shortest(value_at(draws.log_density, d)), shortest(value_at(draws.acceptance, d)),
-                       shortest(value_at(draws.log_prior, d)), shortest(value_at(draws.log_likelihood, d)));
-    for (double const value : draws.values[d]) out += "," + shortest(value);
-    out += '\n';
+    for (auto* const column : {&draws.log_density, &draws.acceptance, &draws.log_prior, &draws.log_likelihood})
+      add_cell(out, value_at(*column, d));
+    for (double const value : draws.values[d]) add_cell(out, value);
+    out.back() = '\n';
   }
   return out;
 }
@@ -109,9 +119,9 @@ std::string predict_csv(Report const& report, Prediction const& prediction) {
   }
   out += units(names, unit_texts) + header + ",scored\n";
   for (std::size_t i = 0; i < prediction.time.size(); ++i) {
-    out += shortest(prediction.time[i]);
-    for (std::vector<double> const* column : columns) out += "," + shortest(value_at(*column, i));
-    out += prediction.scored[i] != 0 ? ",1\n" : ",0\n";
+    add_cell(out, prediction.time[i]);
+    for (std::vector<double> const* column : columns) add_cell(out, value_at(*column, i));
+    out += prediction.scored[i] != 0 ? "1\n" : "0\n";
   }
   return out;
 }

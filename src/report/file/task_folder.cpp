@@ -131,7 +131,7 @@ std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
 
 std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, fs::path const& folder,
                                        std::vector<FigureFormat> const& pictures) {
-  bool const can_draw = gnuplot_installed();
+  bool const can_draw = !pictures.empty() && gnuplot_installed();
   std::vector<std::string> undrawn;
   if (!figures.empty()) make_folder(folder / "figures");
   for (DrawnFigure const& each : figures) {
