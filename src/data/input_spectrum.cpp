@@ -30,7 +30,7 @@ double chord_error(InputSignal const& signal, double sd) {
 
 /// Powers at multiples of rate/size, from 0 to half the rate, of samples padded with zeros to `size`.
 std::vector<double> periodogram(std::vector<double> const& samples) {
-  std::size_t const size = std::max<std::size_t>(8, std::bit_ceil(samples.size()));
+  std::size_t const size = std::max<std::size_t>(4, std::bit_ceil(samples.size()));
   Fourier::Parts re(size, 0.0), im(size, 0.0);
   int const bits = std::countr_zero(size);
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -96,7 +96,7 @@ ChainValues rank_normalised(std::vector<Ranked> const& order, ChainValues const&
 /// A transform long enough for the autocovariance of the halves of these chains.
 Fourier fourier_for(ChainValues const& draws) {
   std::size_t const longest = draws.empty() ? 0 : draws.front().size();
-  return Fourier(std::bit_ceil(std::max<std::size_t>(8, 2 * ((longest + 1) / 2))));
+  return Fourier(std::bit_ceil(std::max<std::size_t>(4, 2 * ((longest + 1) / 2))));
 }
 
 /// Autocovariance (divisor N) at every lag, averaged over the chains. Two chains share one transform: the real part of the

@@ -23,24 +23,17 @@ Fourier::Fourier(std::size_t size) : size_(size), cosine_(size), sine_(size) {
 }
 
 void Fourier::to_reversed(Parts& re, Parts& im, Between between) const {
-  fourier_stages::Points const points = at(re, im);
-  long half = points.size / 2;
-  for (; half >= 8; half /= 4) {
+  for (long half = static_cast<long>(size_) / 2; half > 0; half /= 2) {
     if (between != nullptr) between();
-    fourier_stages::two_in_frequency(points, half);
+    fourier_stages::in_frequency(at(re, im), half);
   }
-  for (; half > 0; half /= 2) fourier_stages::in_frequency(points, half);
 }
 
 void Fourier::from_reversed(Parts& re, Parts& im, Between between) const {
-  fourier_stages::Points const points = at(re, im);
-  long half = 1;
-  for (; half < 4; half *= 2) fourier_stages::in_time(points, half);
-  for (; 2 * half < points.size; half *= 4) {
+  for (long half = 1; half < static_cast<long>(size_); half *= 2) {
     if (between != nullptr) between();
-    fourier_stages::two_in_time(points, half);
+    fourier_stages::in_time(at(re, im), half);
   }
-  if (half < points.size) fourier_stages::in_time(points, half);
 }
 
 fourier_stages::Points Fourier::at(Parts& re, Parts& im) const {
@@ -50,7 +43,7 @@ fourier_stages::Points Fourier::at(Parts& re, Parts& im) const {
 namespace {
 
 /// Of the circular convolution that replaces a transform of N points.
-std::size_t convolution_size(std::size_t size) { return std::max<std::size_t>(8, std::bit_ceil(2 * size)); }
+std::size_t convolution_size(std::size_t size) { return std::max<std::size_t>(4, std::bit_ceil(2 * size)); }
 
 }  // namespace
 

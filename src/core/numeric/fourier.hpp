@@ -8,7 +8,7 @@
 
 namespace sysid {
 
-/// Transforms of one power-of-two length of at least 8, real and imaginary parts apart, in place and unscaled.
+/// Transforms of one power-of-two length of at least 4, real and imaginary parts apart, in place and unscaled.
 class Fourier {
  public:
   using Parts = std::vector<double>;

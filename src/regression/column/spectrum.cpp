@@ -31,7 +31,7 @@ Spectrum spectrum_of(std::span<double const> samples, double step) {
 
   double mean = 0;
   for (double const value : filled) mean += value / static_cast<double>(n);
-  std::size_t const size = std::bit_ceil(std::max<std::size_t>(n, 8));
+  std::size_t const size = std::bit_ceil(std::max<std::size_t>(n, 4));
   Fourier::Parts re(size, 0.0), im(size, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     double const angle = 2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
