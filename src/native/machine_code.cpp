@@ -9,8 +9,8 @@ namespace {
 /// [s] of interpretation, of which a job that has less never waits for the compiler to be loaded.
 constexpr double smallest_job = 0.05;
 
-/// Whether it has been: loops cost no more than their own compilation then.
-std::atomic<bool> compiler_is_there = false;
+/// Whether that has been tried: loops cost no more than their own compilation then.
+std::atomic<bool> compiler_was_loaded = false;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Function MachineCode::function(LoopName const& name, std::function<Loop()> const
     std::unique_ptr<Machine> machine;
     std::string why;
     if (Module const* const compiler = module()) machine = compiler->compile(write(), why);
-    compiler_is_there = true;
+    compiler_was_loaded = true;
     found = machines_.emplace(name, std::move(machine)).first;
   }
   return found->second ? found->second->function() : nullptr;
@@ -35,7 +35,7 @@ bool MachineCode::pays(LoopName const& name, double seconds, double compilation)
   spent += seconds;
   double of_all_loops = 0;
   for (auto const& [_, each] : spent_) of_all_loops += each;
-  return spent >= compilation && (compiler_is_there || of_all_loops >= smallest_job);
+  return spent >= compilation && (compiler_was_loaded || of_all_loops >= smallest_job);
 }
 
 }  // namespace sysid::native

@@ -1,6 +1,7 @@
 // Tables of uniforms: raw data leaves in, one row per step or sample out, by the same kernels that serve lanes.
 #include "simulate/schedule.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/numeric/lanes.hpp"
@@ -8,6 +9,11 @@
 #include "program/embedded.hpp"
 
 namespace sysid {
+namespace {
+
+constexpr int rows_at_once = 4096;
+
+}  // namespace
 
 Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver)
     : experiment_(experiment), solver_(solver), map_(program.source.map) {
@@ -122,16 +128,23 @@ double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
 UniformRows Schedule::tabulate(UniformTable const& table, int rows, bool steps) const {
   int const width = table.kernel.outputs;
   UniformRows result{width, std::vector<double>(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))};
-  if (rows == 0 || width == 0) return result;
-  LaneArray leaves(table.kernel.inputs, rows), values(width, rows);
-  for (int k = 0; k < table.kernel.inputs; ++k) {
-    UniformLeaf const& leaf = table.leaves[static_cast<std::size_t>(k)];
-    for (int r = 0; r < rows; ++r)
-      leaves(k, r) = steps ? at_step(leaf, r / solver_.substeps, r % solver_.substeps) : at_sample(leaf, r);
+  if (width == 0) return result;
+  // A few thousand rows at a time: of a long record the whole would be written to fresh memory three times, which takes longer than
+  // the arithmetic.
+  for (int first = 0; first < rows; first += rows_at_once) {
+    int const count = std::min(rows_at_once, rows - first);
+    LaneArray leaves(table.kernel.inputs, count), values(width, count);
+    for (int k = 0; k < table.kernel.inputs; ++k) {
+      UniformLeaf const& leaf = table.leaves[static_cast<std::size_t>(k)];
+      for (int r = 0; r < count; ++r)
+        leaves(k, r) =
+            steps ? at_step(leaf, (first + r) / solver_.substeps, (first + r) % solver_.substeps) : at_sample(leaf, first + r);
+    }
+    run(table.kernel, leaves, values);
+    double* row = result.values.data() + static_cast<std::size_t>(first) * static_cast<std::size_t>(width);
+    for (int r = 0; r < count; ++r, row += width)
+      for (int k = 0; k < width; ++k) row[k] = values(k, r);
   }
-  run(table.kernel, leaves, values);
-  for (int r = 0; r < rows; ++r)
-    for (int k = 0; k < width; ++k) result.values[static_cast<std::size_t>(r * width + k)] = values(k, r);
   return result;
 }
 

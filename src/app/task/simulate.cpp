@@ -32,7 +32,7 @@ namespace {
 // Made data carry the error of the integrator: said when it is more than a tenth of the noise (or a thousandth of the response).
 void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
-  Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.interruptible());
+  Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.abandonable());
   Trajectory::Result const fine = finer.run(parameters, {});
   stop_if_interrupted();
   char const* const severity = what.solver.as_model ? "" : "warning: ";
@@ -172,7 +172,7 @@ class Simulate {
           InputSignal(held ? InputRule::zero_order : what_.inputs[i].rule, time, std::move(samples)).view(history_, beginning);
     }
     auto const began = std::chrono::steady_clock::now();
-    Trajectory const trajectory(compiled_, part, what_.solver, 0, session_.interruptible());
+    Trajectory const trajectory(compiled_, part, what_.solver, 0, session_.abandonable());
     (void)trajectory.run(parameters_, noise_key_);
     std::chrono::duration<double> const took = std::chrono::steady_clock::now() - began;
     // With finer steps once more, at about twice the cost; writing takes some hundred nanoseconds a number.

@@ -71,7 +71,7 @@ std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
                                             std::vector<Feedback>& feedbacks) {
   auto const most = static_cast<std::size_t>(what.samples) * feedbacks.size() + 1;
   for (std::size_t round = 0; round <= most; ++round) {
-    Trajectory const trajectory(compiled, experiment, what.solver, 0, session.interruptible());
+    Trajectory const trajectory(compiled, experiment, what.solver, 0, session.abandonable());
     Trajectory::Result result = trajectory.run(parameters, noise_key);
     if (session.interrupted()) return std::nullopt;
     if (result.failed() > 0) return result;

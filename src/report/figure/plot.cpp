@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "core/text/number.hpp"
@@ -109,26 +108,12 @@ std::string preamble(std::string_view name, int width, int height, int lines) {
                    muted, ink, rule);
 }
 
-namespace {
-
-/// With seven digits, more than a figure shows. The standard library writes those several times as fast as fmt.
-void append_number(std::string& out, double value) {
-  char text[32];
-  out.append(text, std::to_chars(std::begin(text), std::end(text), value, std::chars_format::general, 7).ptr);
-}
-
-}  // namespace
-
 std::string data_block(std::string_view name, std::vector<std::vector<double>> const& rows) {
   std::string out = fmt::format("${} << EOD\n", name);
   for (std::vector<double> const& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) out += ' ';
-      if (std::isfinite(row[c]))
-        append_number(out, row[c]);
-      else
-        out += "NaN";
-    }
+    // Seven digits are more than a figure shows.
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out += std::isfinite(row[c]) ? fmt::format("{}{:.7g}", c == 0 ? "" : " ", row[c]) : fmt::format("{}NaN", c == 0 ? "" : " ");
     out += '\n';
   }
   return out + "EOD\n";
