@@ -88,7 +88,7 @@ double distance(RestoringForce::Path const& smoothed, std::vector<double> const&
 
 void add_differentiated(ForceModel const& link, Displacements const& samples, Displacements const& of_model,
                         std::vector<double> const& force, Experiment const& experiment, RestoringForce& out) {
-  out.why_no_data = "the samples are not equally far apart";
+  out.why_no_data = "the samples are not equally spaced";
   if (!equidistant(experiment.time)) return;
   out.why_no_data = "smoothing that removes the noise of the samples would distort the force";
   double const step = experiment.time[1] - experiment.time[0], spread = spread_of(force);
@@ -192,7 +192,8 @@ void add_data(ForceModel const& link, std::vector<MeasuredMotion> const& motions
   auto const& held = link.link().held;
   if (held.empty()) {
     out.why_no_data =
-        "the connections of these masses do not separate them, so their motion does not determine the forces one by one";
+        "the connections between these masses and the ground form a closed loop, so the motion does not determine each force "
+        "separately";
     return;
   }
   std::vector<double> force;
@@ -207,7 +208,7 @@ void add_data(ForceModel const& link, std::vector<MeasuredMotion> const& motions
   };
   out.why_no_data = held.size() == 1 && !link.link().other
                         ? "no channel measures the displacement alone, and no channel measures the acceleration"
-                        : "they need several displacements, and not each of these is measured by a channel of its own";
+                        : "the force needs several displacements, and some of these have no channel of their own";
   for (Link::Held const& each : held) {
     if (motions[each.mass].displacement.empty()) return;
     samples.held.push_back(motions[each.mass].displacement);

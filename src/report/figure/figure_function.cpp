@@ -76,7 +76,7 @@ Figure function_figure(FunctionReport const& function) {
   Figure out{drawing.name, fmt::format("The estimated function {}", function.name), "", script(drawing)};
   out.caption = fmt::format(
       "The function and its 90 % band, given the draws of the other parameters (for an optimum, given their single value){}.",
-      count == 1 ? "" : ", along each input, with the others at a central value");
+      count == 1 ? "" : ", along each input, with the other inputs at a central value");
   if (visited)
     out.caption +=
         " Bars along the bottom: how many of the fitted rows use the function there; without bars the curve follows from its "

@@ -117,13 +117,14 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
   out.caption = fmt::format(
       "Autocorrelation of the residuals of {}{}. For white residuals 99 % of the values lie inside the band; a pattern shows "
       "dynamics that the model lacks.",
-      quantity.name,
-      crossed.shown.empty() ? "" : ", and below it their correlation with the input the same number of samples before");
+      quantity.name, crossed.shown.empty() ? "" : ", and below it their correlation with past values of the input");
   if (quantity.response.draws != 1)
     out.caption +=
-        " Residuals are relative to the mean of the draws; the checks of a fit use those of its best mode, divided by the sd of "
-        "the noise.";
-  if (!crossed.shown.empty()) out.caption += " Bars outside the lower band show effects of the input that the model misses.";
+        " Residuals are measured minus mean prediction of the draws; the checks of a fit use those of its best mode, divided by "
+        "the "
+        "sd of the noise.";
+  if (!crossed.shown.empty())
+    out.caption += " Bars outside the band of a lower panel show effects of the input that the model misses.";
   if (crossed.hidden > 0)
     out.caption += fmt::format(" Shown are the first {} of {} inputs.", most_crossed, most_crossed + crossed.hidden);
   if (crossed.constant > 0) out.caption += " A constant input has no correlation.";

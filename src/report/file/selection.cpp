@@ -87,7 +87,7 @@ ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
 
 ReportTable shared_table(SelectionReport const& selection) {
   ReportTable table{"shared parameters",
-                    "Averaged over the models that have them, by their probabilities.",
+                    "Averaged over the models that have them, weighted by the probabilities of the models.",
                     {"", "unit", "mean", "sd", "q5", "median", "q95"},
                     {}};
   for (WeightedSummary const& s : selection.shared) add_row(table, as_summary(s, selection.result.populations.back().ess), "");

@@ -43,12 +43,10 @@ ReportTable structure_table(ValidationReport const& validation) {
   bool const scored = !validation.held_out.empty();
   if (scored) {
     table.caption += fmt::format(
-        " Errors: root mean square in percent of the sd, the worst channel, on {}{}; {} rows ahead are {}; starts from {} rows "
-        "before.",
+        " Errors: root mean square in percent of the sd, for the worst channel, on {}{}; {} rows are {}; each start is estimated "
+        "from the {} rows before it.",
         validation.held_out,
-        validation.held_out_seen
-            ? ", which were not used to estimate the coefficients of these scores, but were used to choose the terms"
-            : "",
+        validation.held_out_seen ? " (used to choose the terms, but not to estimate the coefficients that are scored here)" : "",
         validation.horizon_rows, seconds(validation.horizon), validation.window_rows);
     table.header.insert(table.header.end(), {"1 row ahead %", fmt::format("{} rows %", validation.horizon_rows), "free run %"});
   }

@@ -171,11 +171,11 @@ std::string information_text(InformationPage const& page) {
                          : page.taken.empty() ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
                                               : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
   if (page.found_move)
-    out += entry("", {fmt::format("a mode found from these draws with {} moves by {} sd with {}", page.moves.front().first,
+    out += entry("", {fmt::format("the mode that {} finds from these draws moves by {} sd with {}", page.moves.front().first,
                                   significant(*page.found_move, 2), page.refinement)});
   if (page.response_move && std::isfinite(*page.response_move))
-    out += entry("", {fmt::format("with {}, the median response changes by {} % of its sd, which is an nmse of {}", page.refinement,
-                                  significant(100 * *page.response_move, 2),
+    out += entry("", {fmt::format("with {}, the median response changes by {} % of its sd, which is an nmse of {} %",
+                                  page.refinement, significant(100 * *page.response_move, 2),
                                   significant(100 * *page.response_move * *page.response_move, 2))});
   return out;
 }
@@ -194,7 +194,7 @@ std::string process_text(ProcessPage const& page) {
     std::string text = fmt::format("{}: {} of {} to {}, median {}", line.name, line.what, significant(line.prior.low, 2),
                                    significant(line.prior.high, 2), number_with_unit(significant(line.prior.middle, 2), line.unit));
     if (line.inputs)
-      text += fmt::format("; {} over a range of {}, spacing {}", counted(line.inputs->places, "place"),
+      text += fmt::format("; {} over a range of {}, spacing {}", counted(line.inputs->places, "distinct input"),
                           number_with_unit(significant(line.inputs->range, 2), line.unit), significant(line.inputs->spacing, 2));
     else
       text += fmt::format("; sd of {} {}", page.channel, number_with_unit(significant(page.measured_sd, 2), page.unit));
