@@ -79,12 +79,14 @@ std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
     for (Feedback& feedback : feedbacks) changed = feedback(result, experiment) || changed;
     if (!changed) return result;
   }
-  throw UserError({Severity::error,
-                   "E5001",
-                   fmt::format("the simulation `{}` does not converge: its feedback changes in every round", task.name),
-                   Label{task.span, {}},
-                   {},
-                   "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});
+  throw UserError(
+      {Severity::error,
+       "E5001",
+       fmt::format("the simulation `{}` does not converge: the samples that the model reads back change with every repetition",
+                   task.name),
+       Label{task.span, {}},
+       {},
+       "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});
 }
 
 }  // namespace sysid

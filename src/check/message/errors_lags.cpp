@@ -100,8 +100,8 @@ Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model)
 }
 Diagnostic other_step(Span span, double given, double declared, std::string const& model) {
   return about({model}, error("E6018", span,
-                              fmt::format("the data have one sample every {:.9g} s, but model `{}` has steps of {:.9g} s", given,
-                                          model, declared),
+                              fmt::format("the simulation has one sample every {:.9g} s, but model `{}` has steps of {:.9g} s",
+                                          given, model, declared),
                               "remove the option, or make both steps equal"));
 }
 

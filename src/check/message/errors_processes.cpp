@@ -129,11 +129,11 @@ Diagnostic expansion_of_number(Span span, std::string const& name) {
                              "give the number a unit, or apply the function to a quantity first"));
 }
 Diagnostic expansion_beside_process(Span span, std::string const& process, std::string const& expansion) {
-  return about({process, expansion},
-               error("E3217", span,
-                     fmt::format("`{}` is an exact Gaussian process at the samples, but `{}` is approximated by a finite sum",
-                                 process, expansion),
-                     fmt::format("give `{}` a range as well: `within = (low, high)`", process)));
+  return about(
+      {process, expansion},
+      error("E3217", span,
+            fmt::format("`{}` has no range, but `{}` has one: a model cannot have functions of both kinds", process, expansion),
+            fmt::format("give `{}` a range as well: `within = (low, high)`", process)));
 }
 Diagnostic expansion_by_likelihood(Span span, std::string const& model) {
   return about({model}, error("E3217", span,
@@ -165,7 +165,7 @@ Diagnostic expansion_too_small(Span span, std::size_t conditions) {
 }
 Diagnostic no_expansion(Span span, std::string const& what) {
   return error("E3233", span, fmt::format("{} has no approximation by a finite sum", what),
-               "use squared_exponential, matern12, matern32, matern52, linear, constant, or a sum of them");
+               "use squared_exponential, matern12, matern32, matern52, linear, constant, oscillator, or a sum of them");
 }
 Diagnostic expansion_of_lags(Span span, std::string const& name) {
   return about({name},

@@ -126,7 +126,7 @@ Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) 
       about({input},
             error("E2807", binding,
                   fmt::format("the part needs the time derivative of its input `{}`, which this expression does not have", input),
-                  "bind a state, or sums, products and integer powers of states and inputs")),
+                  "bind a state or an input, or sums, products, quotients and constant powers of these")),
       use, "the derivative is used here");
 }
 Diagnostic candidate_range(Span span, long models, std::size_t most) {

@@ -90,10 +90,9 @@ Diagnostic data_unused(ast::Task const& task, Span data) {
 }
 
 Diagnostic not_a_fit(ast::Name const& name, std::string const& verb) {
-  return about({name.text},
-               error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
-                     words::task_kind(verb) == TaskKind::predict ? "predict needs the name of a fit task"
-                                                                 : "`search = near(...)` needs the name of a fit task"));
+  return about({name.text}, error("E6010", name.span, fmt::format("`{}` is not a fit", name.text),
+                                  words::task_kind(verb) == TaskKind::predict ? "`predict` needs the name of a fit or a selection"
+                                                                              : "`search = near(...)` needs the name of a fit"));
 }
 
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration) {
