@@ -60,7 +60,7 @@ std::vector<StoredPrediction> predictions_of(Session const& session, int source,
 /// Under another name they are a copy, and what lies beside it was predicted from the task's own folder.
 bool renamed(StoredResult const& stored, InferenceData& data) {
   if (stored.folder.filename() == stored.task()) return false;
-  data.omitted.push_back(fmt::format("predictions: those beside `{}` were made from the folder `{}`",
+  data.omitted.push_back(fmt::format("predictions: `{}` is a copy, and the predictions stored beside it were made from `{}`",
                                      stored.folder.filename().string(), stored.task()));
   return true;
 }

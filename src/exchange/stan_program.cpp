@@ -17,8 +17,8 @@ namespace {
 std::string head(Session const& session, StanFit const& fit) {
   return fmt::format(
       "// {0}: {1} fitted to {2}\n// Written by sysid {3}. Equations are in SI units.\n"
-      "// target, without the adjustment for transforms, is log_prior__ + log_likelihood__ of the draws: the log density,\n"
-      "// with all constants, of the parameters in their declared units.\n",
+      "// Without Stan's adjustment for transforms, target is log_prior__ + log_likelihood__ as in the files of draws:\n"
+      "// the log density, with all constants, of the parameters in their declared units.\n",
       fit.task.name, fit.model().name, data_names(session.file, fit.what.experiments), SYSID_VERSION);
 }
 

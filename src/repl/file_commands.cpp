@@ -90,7 +90,7 @@ bool take_file(Context& context, std::filesystem::path const& path) {
 namespace command {
 
 bool load(Context& context, std::string const& path) {
-  if (path.empty()) return context.output.refuse("load what?", "`load FILE.sysid`");
+  if (path.empty()) return context.output.refuse("`load` needs the name of a file", "`load FILE.sysid`");
   return take_file(context, path_of(path));
 }
 

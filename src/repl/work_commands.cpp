@@ -115,7 +115,7 @@ bool drop(Context& context, std::string const& name) {
   std::size_t const place = draft.find(name);
   std::size_t const model = draft.find(ItemKind::model, context.work.model);
   if (name.empty())
-    return context.output.refuse("drop what?",
+    return context.output.refuse("`drop` needs a name",
                                  "`drop NAME` removes a statement of the session, or a declaration of the current model");
   if (place < draft.items.size()) {
     draft.items.erase(draft.items.begin() + static_cast<std::ptrdiff_t>(place));

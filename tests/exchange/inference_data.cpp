@@ -183,5 +183,6 @@ TEST_CASE("predictions of a folder that was renamed are left out with the reason
   std::string const said = run.export_all(30, "kept");
   CHECK(said.find("kept/posterior.nc: posterior, sample_stats, observed_data, constant_data, log_likelihood, posterior_predictive, "
                   "prior, prior_predictive\n") != std::string::npos);
-  CHECK(said.find("left out: predictions: those beside `kept` were made from the folder `posterior`\n") != std::string::npos);
+  CHECK(said.find("left out: predictions: `kept` is a copy, and the predictions stored beside it were made from `posterior`\n") !=
+        std::string::npos);
 }

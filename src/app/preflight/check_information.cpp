@@ -86,7 +86,8 @@ class Description {
     for (NullDirection const& direction : space.directions) {
       std::string const text = direction_words(direction, asked_, channels_);
       if (prior_separates(direction)) {
-        page_.information->ridges.push_back(fmt::format("{}: only the prior of the standardised members distinguishes them", text));
+        page_.information->ridges.push_back(
+            fmt::format("{}: only the standard normal prior in each experiment distinguishes them", text));
         continue;
       }
       page_.information->null_directions.push_back(text);
@@ -180,7 +181,7 @@ class Description {
                                          *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
     if (standardised_[static_cast<std::size_t>(i)] != standardised_[static_cast<std::size_t>(j)]) {
       page_.information->ridges.push_back(
-          fmt::format("{}, and only the prior of the standardised members distinguishes them: {}", pair, size));
+          fmt::format("{}, and only the standard normal prior in each experiment distinguishes them: {}", pair, size));
       return;
     }
     if (widest < still_unknown) {

@@ -25,7 +25,7 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
     return {FindingCode::step_not_settled,
             Severity::error,
             {},
-            fmt::format("with {} the simulation of the result needs more steps between two samples than {}",
+            fmt::format("with {}, the simulation at the result needs more than {} steps between two samples",
                         refined.solver.finer_words(), refined.solver.steps),
             solver_advice(refined.solver, ledger)};
   if (refined.widths_alone)

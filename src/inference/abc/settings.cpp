@@ -16,16 +16,16 @@ constexpr SettingRow rows[] = {
     {"first_threshold", SettingKind::real, "0", 0, infinity, "",
      "threshold of population 1; 0: every prior draw that can be simulated is accepted"},
     {"kernel", SettingKind::word, "gaussian", 0, 0, "gaussian component_gaussian uniform nearest_neighbours",
-     "proposal of a particle: normal with the population's covariance, normal with its diagonal, uniform over its range, or normal "
-     "with the covariance of the nearest neighbours"},
+     "how a particle moves; gaussian: normal with the population's covariance; component_gaussian: normal with its diagonal; "
+     "uniform: uniform over its range; nearest_neighbours: normal with the covariance of the nearest neighbours"},
     {"kernel_scale", SettingKind::real, "0", 0, 1e12, "",
      "factor on the covariance or range of the kernel; 0: 2 for the population's covariance, else 1", 1e-6},
     {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "number of neighbours in the kernel `nearest_neighbours`"},
     {"coordinates", SettingKind::word, "natural", 0, 0, "natural declared unconstrained",
-     "coordinates of the kernel: logarithms where the prior spans decades and declared values elsewhere, declared values, or "
-     "unconstrained coordinates, which stay in the prior's support"},
+     "what the kernel moves; natural: logarithms where the prior spans decades, declared values elsewhere; declared: declared "
+     "values; unconstrained: coordinates that stay in the prior's support"},
     {"model_kernel", SettingKind::word, "prior", 0, 0, "prior previous",
-     "models are drawn from their prior, or from the last population and then changed at random"},
+     "prior: models are drawn from their prior; previous: from the last population, then changed at random"},
     {"stay", SettingKind::real, "0.7", 0, 1, "", "probability that `model_kernel = previous` keeps the model"},
     {"threshold_change", SettingKind::real, "0", 0, infinity, "", "stop when the threshold decreases by no more than this"},
     {"relative_change", SettingKind::real, "0.01", 0, 1, "",

@@ -28,12 +28,12 @@ constexpr SettingRow rows[] = {
     {"thin", SettingKind::integer, "10", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "4", 1, 65536, "", "number of independent chains"},
     {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive walk spherical",
-     "independence moves and a random walk, both adapted during burn-in; the adaptive random walk alone; or a random walk with "
-     "covariance `variance` times the identity"},
+     "adaptive: independence moves around the modes and a random walk, both adapted during burn-in; walk: the random walk alone; "
+     "spherical: a random walk with covariance `variance` times the identity"},
     {"variance", SettingKind::real, "0.1", 1e-300, infinity, "",
      "variance of the spherical proposal, in unconstrained coordinates"},
     {"start", SettingKind::word, "global", 0, 0, "global prior",
-     "start the chains around the modes of a global search, or at draws from the prior"},
+     "where the chains start; global: around the modes of a search over the prior; prior: at draws from it"},
 };
 
 /// Unthinned draws are kept for the diagnostics while they fit into this many numbers (160 MB).

@@ -31,7 +31,7 @@ constexpr SettingRow rows[] = {
     {"chains", SettingKind::integer, "4", 1, 4096, "", "number of independent ensembles"},
     {"temperatures", SettingKind::integer, "16", 2, 512, "", "replicas of each ensemble, from the posterior to the prior"},
     {"start", SettingKind::word, "global", 0, 0, "global prior",
-     "start around the modes of a global search, or at draws from the prior"},
+     "where the replicas start; global: around the modes of a search over the prior; prior: at draws from it"},
 };
 
 constexpr std::int64_t most_kept = 10'000'000;

@@ -166,7 +166,7 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
   for (Experiment const& experiment : experiments)
     if (!uniform_step(experiment)) {
       Concern concern{.kind = Concern::Kind::unequal_steps};
-      concern.clause = fmt::format("the time steps of `{}` are not equal to one in a million", experiment.name);
+      concern.clause = fmt::format("the time steps of `{}` differ by more than one part in a million", experiment.name);
       concerns.push_back(std::move(concern));
     }
   for (int const channel : used) {
@@ -191,7 +191,7 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
     } else if (dictionary.channels[c].order == 0 && !dictionary.channels[c].noise_sd && nothing_but_noise(experiments, c)) {
       Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
       concern.clause =
-          fmt::format("`{}` is noise on the whole record: its samples are as far from their neighbours as from any other", name);
+          fmt::format("`{}` is noise on the whole record: neighbouring samples differ as much as any two samples", name);
       concerns.push_back(std::move(concern));
     }
   }
