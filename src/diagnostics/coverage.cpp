@@ -72,7 +72,7 @@ bool add_coverage(Report& report, bool fed_back) {
            Severity::warning,
            {line.channel, line.experiment},
            fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
-           fed_back ? "a free run does not propagate the noise of earlier samples: its bands include only the uncertainty of the "
+           fed_back ? "look for disturbances that act on the system: the bands of a free run include only the uncertainty of the "
                       "parameters and the noise of each sample"
                     : "the model or its noise does not describe these data: check the residuals, and inputs outside the range "
                       "that was fitted"});

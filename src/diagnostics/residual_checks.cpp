@@ -207,8 +207,8 @@ void check_memory(ScoredChannel const& of, std::vector<double> const& residuals,
     findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
                         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
                                     white.outside, white.correlation.size()),
-                        "a force or part of the dynamics is missing, or the noise is coloured: the errors of the estimates can be "
-                        "several times their sds"});
+                        "look for a force or dynamics that the model lacks, or for coloured noise: the errors of the estimates can "
+                        "be several times their sds"});
   std::vector<Quantity> const& inputs = of.model().inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     std::vector<double> input;
@@ -223,7 +223,7 @@ void check_memory(ScoredChannel const& of, std::vector<double> const& residuals,
            {inputs[i].name, of.described().name, of.data().name},
            fmt::format("past values of input {} are correlated with the residuals of {} ({} of {} lags outside the 99 % band)",
                        inputs[i].name, of.name(), crossed.outside, crossed.correlation.size()),
-           "the model misses part of the response to the input"});
+           "look for a part of the response to the input that the model misses"});
   }
 }
 

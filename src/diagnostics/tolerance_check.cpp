@@ -280,7 +280,7 @@ Findings tolerance_findings(SolverCheck const& check, SolverSettings const& solv
   if (solver.as_model)
     return {{FindingCode::integration_step, Severity::note, std::move(names),
              fmt::format("{} is part of the model: with {} {}", solver.text(), solver.finer_words(), what_happens(check, true)),
-             "the estimates are valid only with this integrator; for another integrator, fit again"}};
+             "use the estimates only with this integrator; for another one, fit again"}};
   return {{FindingCode::integration_step, Severity::error, std::move(names),
            fmt::format("the integration {} changes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
                        solver.finer_words(), what_happens(check, false)),

@@ -73,7 +73,7 @@ std::optional<Finding> lost_free_run(ValidationReport const& validation) {
                    Severity::note,
                    {validation.held_out},
                    std::move(message),
-                   "expected for a chaotic motion, which can be predicted for a short time only"};
+                   "nothing, if the motion is chaotic: it can be predicted for a short time only"};
   return Finding{FindingCode::free_run_lost,
                  Severity::warning,
                  {validation.held_out},
@@ -121,7 +121,7 @@ Findings validation_findings(ValidationReport const& validation) {
                     regression->failure.empty()
                         ? fmt::format("has a probability of {} by the simulated motion", probability_text(regression->probability))
                         : "could not be checked by simulation: " + regression->failure),
-        "`found.sysid` contains the model that simulation ranks first; a record of another amplitude may decide");
+        "use the model that simulation ranks first, which `found.sysid` contains; a record of another amplitude may decide");
   auto const costly = given_up(validation);
   if (costly) findings.push_back(*costly);
   if (!best.failure.empty()) {
@@ -136,7 +136,7 @@ Findings validation_findings(ValidationReport const& validation) {
     add(FindingCode::followed_in_parts, Severity::note, {},
         fmt::format("the simulation follows the record for {} at a time, from a new start each time",
                     significant(validation.longest, 3) + " s"),
-        "expected for a chaotic motion; otherwise a term or an input is missing");
+        "nothing, if the motion is chaotic; otherwise look for a missing term or input");
   if (best.residual_over_noise > tolerable_residual)
     add(FindingCode::motion_unexplained, Severity::warning, {},
         fmt::format("the residual of the simulated motion is {} times the measurement noise",

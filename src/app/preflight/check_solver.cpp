@@ -108,11 +108,12 @@ void confirm(Preflight const& preflight, PriorDraws const& prior, double suggest
   std::optional<SolverCheck> const found = found_from_draws(preflight, prior);
   if (!found) {
     std::string const sds = suggested > 5 ? "many sds" : fmt::format("{:.2g} sd", suggested);
-    preflight.add(FindingCode::integration_step, Severity::note, {},
-                  fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by up to {} with {}, but no "
-                              "mode was found to confirm this",
-                              solver.text(), sds, solver.finer_words()),
-                  solver.as_model ? "the solver is part of the model" : "the fit checks its own result");
+    preflight.add(
+        FindingCode::integration_step, Severity::note, {},
+        fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by up to {} with {}, but no "
+                    "mode was found to confirm this",
+                    solver.text(), sds, solver.finer_words()),
+        solver.as_model ? "nothing, if the solver is meant to be part of the model" : "nothing now: the fit checks its own result");
     return;
   }
   if (found->outcome != SolverCheck::Outcome::fails) information.found_move = found->largest();

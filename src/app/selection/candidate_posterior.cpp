@@ -168,7 +168,8 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
                                       "the posterior that the likelihood gives",
                                       candidates[k].what->name, stated.text(),
                                       *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
-                          stated.as_model ? "the solver is part of the model" : fmt::format("select again with `{}`", finer)});
+                          stated.as_model ? "nothing, if the solver is meant to be part of the model"
+                                          : fmt::format("select again with `{}`", finer)});
     }
     if (posterior.converged) continue;
     std::string const what =

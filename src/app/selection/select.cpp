@@ -282,16 +282,18 @@ class Select {
     if (interrupted)
       report.findings.push_back(interrupted_finding("these are the particles of the last complete population"));
     else if (!selection.result.ran_out)
-      report.findings.push_back({FindingCode::selection_ended, Severity::note, {}, selection.result.stopped_by, ""});
+      report.findings.push_back(
+          {FindingCode::selection_ended, Severity::note, {}, "the run ended: " + selection.result.stopped_by, ""});
     bool const spread = std::any_of(selection.result.models.begin(), selection.result.models.end(),
                                     [](SelectedModel const& each) { return each.died_in == 0 && !each.parameters.empty(); });
     if (spread)
-      report.findings.push_back({FindingCode::width_of_threshold,
-                                 Severity::note,
-                                 {},
-                                 "the sds of the particles depend on the final threshold and are not posterior sds: they are "
-                                 "larger if the run stops early, and smaller if it stops late",
-                                 refined ? "" : "`polish = yes` continues with chains on the likelihood and prints both sds"});
+      report.findings.push_back(
+          {FindingCode::width_of_threshold,
+           Severity::note,
+           {},
+           "the sds of the particles depend on the final threshold and are not posterior sds: they are "
+           "larger if the run stops early, and smaller if it stops late",
+           refined ? "" : "use `polish = yes`, which continues with chains on the likelihood and prints both sds"});
   }
 
   void add_settings(SelectionReport const& selection, Report& report) const {

@@ -35,7 +35,7 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
         {},
         fmt::format("with {} the modes stay where they are, but the curvature around them has not converged: {} are not reliable",
                     accuracy(refined.solver), optimum ? "the Laplace sds" : "the Laplace evidence and the weights of modes"),
-        optimum ? "use mh, whose draws do not depend on the curvature" : "the draws do not depend on it"};
+        optimum ? "use mh, whose draws do not depend on the curvature" : "use the draws, which do not depend on the curvature"};
   if (!refined.given_up)
     return {FindingCode::step_not_settled,
             Severity::error,
