@@ -172,7 +172,8 @@ std::vector<ChainWords> chain_words(Report const& report) {
       out.push_back(
           {name,
            fmt::format("{:.0f} at least ({}): the draws are equivalent to this many independent draws for {}, {}.", ess->value,
-                       ess->name, what, good ? "enough" : fmt::format("fewer than the {} that are needed", ess_threshold)),
+                       ess->name, what,
+                       good ? "which is enough" : fmt::format("which is fewer than the {} that are needed", ess_threshold)),
            good});
     }
   if (auto const error = extreme(
@@ -196,8 +197,9 @@ std::vector<ChainWords> chain_words(Report const& report) {
          fmt::format("The mean acceptance probability of the moves that led to the kept draws is {} %: {}.", number(100 * rate, 2),
                      !good        ? "the chains hardly moved"
                      : rate < 0.1 ? "low, but the effective sample sizes above decide"
-                     : rate > 0.6 ? "high, as is usual for short steps, but the effective sample sizes above decide"
-                                  : "as expected for a random walk"),
+                     : rate > 0.6 ? "high, as is usual for independence moves that fit the posterior, and for short steps; the "
+                                    "effective sample sizes above decide"
+                                  : "in the usual range"),
          good});
   }
   return out;
