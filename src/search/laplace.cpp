@@ -14,10 +14,8 @@
 namespace sysid {
 namespace {
 
-constexpr int most_parameters = 40;     // with a full second-difference curvature
 constexpr double curvature_step = 0.3;  // conditional sds: log density falls by 0.045, far above its rounding
 constexpr double close_enough = 1e-8;   // Newton decrement: 1e-4 sd from the optimum
-constexpr int most_steps = 30;
 
 /// Value, gradient and minus the second derivatives of the log density, in units of the columns of `steps` [P x P].
 struct Local {
@@ -105,7 +103,7 @@ Eigen::VectorXd widths_from(Eigen::MatrixXd const& curvature, Eigen::VectorXd co
 
 /// Where a shape is measured: along the parameters, or, where they are strongly correlated, along the axes of the ellipsoid. There
 /// a step along a parameter sees little but the narrow direction, and what rounding or a rough solver leaves in the log density
-/// drowns the wide one.
+/// drowns the wide one. A shape that is not measured in full is, along these axes, nearly what is measured of it.
 struct Steps {
   Eigen::MatrixXd columns;
   bool along_parameters;
@@ -114,7 +112,7 @@ struct Steps {
 Steps steps_from(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& scale, bool full) {
   constexpr double strongly = 1e-2;  // smallest eigenvalue of the scaled curvature: a correlation of 0.99
   Spectrum const spectrum = spectrum_of(curvature, scale);
-  if (!full || !curvature.allFinite() || spectrum.values.minCoeff() > strongly)
+  if (!curvature.allFinite() || (full && spectrum.values.minCoeff() > strongly))
     return {Eigen::MatrixXd(widths_from(curvature, scale).asDiagonal()), true};
   Steps steps{spectrum.unit.asDiagonal() * spectrum.vectors, false};
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
@@ -190,9 +188,9 @@ double distance(Mode const& a, Mode const& b) {
   return std::sqrt(std::max(0.0, gap.dot(solve_symmetric(covariance_of(a) + covariance_of(b), gap))));
 }
 
-Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger) {
+Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger, int most_steps) {
   Eigen::VectorXd const& scale = objective.scale;
-  bool const full = objective.dimension() <= most_parameters;
+  bool const full = objective.dimension() <= most_measured_in_full;
   Steps steps = steps_from(guess, scale, full);
   Eigen::MatrixXd curvature = guess;
   double value = 0, gain = infinity;
@@ -206,12 +204,12 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
     Eigen::MatrixXd const back =
         steps.along_parameters ? Eigen::MatrixXd(steps.columns.diagonal().cwiseInverse().asDiagonal()) : inverse(steps.columns);
     Eigen::VectorXd const gradient = back.transpose() * local.gradient;
-    if (full) curvature = back.transpose() * local.curvature * back;
+    curvature = back.transpose() * local.curvature * back;
     Eigen::MatrixXd const covariance = covariance_from(spectrum_of(curvature, scale));
     Eigen::VectorXd const move = covariance * gradient;
     Steps const former = std::exchange(steps, steps_from(curvature, scale, full));
     // Steps far from what the curvature here asks for would blur it: measure again before believing.
-    bool const believed = !full || fitting(former, local, steps);
+    bool const believed = fitting(former, local, steps);
     gain = 0.5 * gradient.dot(move);
     if (gradient.dot(move) < close_enough && (believed || step + 1 == most_steps)) break;
     std::vector<Eigen::VectorXd> trials;

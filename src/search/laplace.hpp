@@ -10,16 +10,21 @@ namespace sysid {
 /// Prior widths: no direction of a mode is taken for longer.
 constexpr double longest_width = 10;
 
+constexpr int most_laplace_steps = 30;
+constexpr int most_measured_in_full = 24;  // parameters
+
 /// Climbs the last step from `theta` and returns the mode with
 ///
 ///   log mass = log density + P/2 log 2 pi - 1/2 log det H,   H = -second derivatives of the log density          MacKay 2003, ch.
 ///   27
 ///
 /// over the sampler's coordinates, or for an objective that is a density of the declared parameters over those. `guess` is a
-/// curvature to choose difference widths by (Gauss-Newton); above 40 parameters it is also the curvature used, as P^2 simulations
-/// cost more than they tell. Directions along which the curvature leaves more than ten prior widths get those, and are listed in
-/// `flat`. Declared sds: first order, through the derivative of the declared values.
-Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger);
+/// curvature to choose difference widths by (Gauss-Newton). Above 24 parameters second differences are taken along its axes alone,
+/// as P^2 simulations cost more than they tell: what is left out is how the axes turn, not how long they are. Directions along
+/// which the curvature leaves more than ten prior widths get those, and are listed in `flat`. Declared sds: first order, through
+/// the derivative of the declared values. most_steps: of Newton's method, at most.
+Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger,
+                  int most_steps = most_laplace_steps);
 
 /// Distance of two modes in units of their widths: sqrt((a - b)' (A + B)^-1 (a - b)), A and B the covariances.
 double distance(Mode const& a, Mode const& b);

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
 #include "core/numeric/elementary.hpp"
-#include "search/laplace.hpp"
 #include "search/search_step.hpp"
 #include "search/settle.hpp"
 
@@ -20,7 +20,8 @@ constexpr std::size_t most_modes = 12;
 constexpr double same_mode = 0.5;  // of the two modes' widths
 
 constexpr int most_rounds = 60;
-constexpr int rounds_apart = 3;  // between two looks at which have met
+constexpr int patient_rounds = 300;    // along a curved valley, of searches that may end highest
+constexpr double may_end_highest = 3;  // nats below the highest
 constexpr std::uint64_t scale_step = 2;
 
 double gap(Objective const& objective, Eigen::VectorXd const& a, Eigen::VectorXd const& b) {
@@ -45,16 +46,6 @@ double most_log_volume(Objective const& objective) {
   for (double const scale : objective.scale)
     sum += elementary::log(scale * longest_width) + 0.5 * elementary::log(2 * std::numbers::pi);
   return sum;
-}
-
-/// Without those that would not come near the best.
-std::vector<Climber> within_reach(std::vector<Climber> climbers, std::vector<double> const& reach) {
-  double best = -std::numeric_limits<double>::infinity();
-  for (Climber const& each : climbers) best = std::max(best, each.log_density);
-  std::vector<Climber> left;
-  for (std::size_t k = 0; k < climbers.size(); ++k)
-    if (reach[k] >= best - hopeless) left.push_back(std::move(climbers[k]));
-  return left;
 }
 
 }  // namespace
@@ -86,6 +77,64 @@ std::vector<Climber> distinct(Objective const& objective, std::vector<Climber> c
   return apart;
 }
 
+namespace {
+
+/// Where each would come to at the rate of its last rounds.
+std::vector<double> reach_of(std::vector<Climber> const& climbers, std::vector<double> const& before, int as_many_again) {
+  std::vector<double> reach;
+  for (std::size_t k = 0; k < climbers.size(); ++k)
+    reach.push_back(climbers[k].log_density + (climbers[k].done ? 0 : as_many_again * (climbers[k].log_density - before[k])));
+  return reach;
+}
+
+}  // namespace
+
+std::vector<Climber> within_reach(std::vector<Climber> climbers, std::vector<double> const& before, int as_many_again) {
+  std::vector<double> const reach = reach_of(climbers, before, as_many_again);
+  double best = -std::numeric_limits<double>::infinity();
+  for (Climber const& each : climbers) best = std::max(best, each.log_density);
+  std::vector<Climber> left;
+  for (std::size_t k = 0; k < climbers.size(); ++k)
+    if (reach[k] >= best - hopeless) left.push_back(std::move(climbers[k]));
+  return left;
+}
+
+ClimbedTogether climb_together(Objective const& objective, std::vector<Climber> climbers, int rounds, int as_many_again,
+                               Ledger& ledger, std::function<bool()> const& stop, Journal* journal) {
+  std::vector<double> before;
+  for (Climber const& each : climbers) before.push_back(each.log_density);
+  climb(objective, climbers, rounds, ledger, stop, journal);
+  std::vector<double> const reach = reach_of(climbers, before, as_many_again);
+  double const highest = *std::max_element(reach.begin(), reach.end());
+  return {distinct(objective, within_reach(std::move(climbers), before, as_many_again)), highest};
+}
+
+void settle_all(Objective const& objective, std::vector<Climber>& climbers,
+                std::function<int(std::size_t searches)> const& affordable, Ledger& ledger, std::function<bool()> const& stop,
+                Journal* journal) {
+  settle(objective, climbers, std::min(settling_rounds, affordable(climbers.size())), ledger, stop, journal);
+  sort_best_first(climbers);
+  auto const low = std::find_if(climbers.begin(), climbers.end(), [&](Climber const& each) {
+    return each.log_density < climbers.front().log_density - may_end_highest;
+  });
+  std::vector<Climber> highest(std::make_move_iterator(climbers.begin()), std::make_move_iterator(low));
+  settle(objective, highest, std::min(patient_rounds, affordable(highest.size())), ledger, stop, journal);
+  std::move(highest.begin(), highest.end(), climbers.begin());
+}
+
+bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
+  constexpr double tolerable = 0.03, as_high = 0.01;
+  constexpr int usual = 2;  // places, of a search of any size
+  int places = 1, hits = modes.front().hits;
+  for (std::size_t m = 1; m < modes.size(); ++m) {
+    double const below = modes[m - 1].log_density - modes[m].log_density;
+    if (std::fabs(below) > as_high) ++places;
+    if (modes.front().log_density - modes[m].log_density < as_high) hits += modes[m].hits;
+  }
+  auto const w = static_cast<double>(places), n = static_cast<double>(searches);
+  return hits < 2 || (places > usual && w * (w + 1) > tolerable * n * (n - 1));
+}
+
 void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes) {
   // What is asked for is the highest point, except by chains; how much lies around it is another question.
   auto const height = [&](Mode const& m) { return objective_kind == ObjectiveKind::posterior ? m.log_mass : m.log_density; };
@@ -94,14 +143,15 @@ void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes) {
 }
 
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
-                           std::function<bool()> const& stop, Journal* journal) {
+                           std::function<bool()> const& stop, Journal* journal, int laplace_steps) {
   std::vector<Mode> modes;
   for (Climber const& climber : distinct(objective, std::move(climbers))) {
     if ((stop && stop()) || modes.size() >= most_modes || !std::isfinite(climber.log_density)) break;
     if (!modes.empty() && climber.log_density < modes.front().log_density - hopeless) break;
     Eigen::MatrixXd const guess =
         climber.curvature.size() > 0 ? climber.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
-    Mode mode = kept_mode(journal, ledger, stop, [&] { return laplace_mode(objective, climber.theta, guess, ledger); });
+    Mode mode =
+        kept_mode(journal, ledger, stop, [&] { return laplace_mode(objective, climber.theta, guess, ledger, laplace_steps); });
     mode.hits = climber.hits;
     mode.stalled = climber.stalled;
     // Widths say little where the density is flat up to a bound.
@@ -132,17 +182,12 @@ LocalSearches modes_from(Target const& target, ObjectiveKind objective_kind, Con
     if (std::isfinite(density[static_cast<std::size_t>(w)]))
       climbers.push_back(climber_at(column(starts, w), density[static_cast<std::size_t>(w)]));
   LocalSearches result;
-  for (int round = 0; round < most_rounds && !climbers.empty() && !result.given_up; round += rounds_apart) {
-    std::vector<double> reach;  // where each would come to at the rate of these rounds
-    for (Climber const& each : climbers) reach.push_back(each.log_density);
-    climb(objective, climbers, rounds_apart, ledger, stop, journal);
-    int const as_many_again = (most_rounds - round - rounds_apart) / rounds_apart;
-    for (std::size_t k = 0; k < climbers.size(); ++k)
-      reach[k] = climbers[k].log_density + (climbers[k].done ? 0 : as_many_again * (climbers[k].log_density - reach[k]));
-    double const highest = *std::max_element(reach.begin(), reach.end());
-    climbers = distinct(objective, within_reach(std::move(climbers), reach));
+  for (int round = 0; round < most_rounds && !climbers.empty() && !result.given_up; round += rounds_together) {
+    int const as_many_again = (most_rounds - round - rounds_together) / rounds_together;
+    ClimbedTogether climbed = climb_together(objective, std::move(climbers), rounds_together, as_many_again, ledger, stop, journal);
+    climbers = std::move(climbed.climbers);
     if (std::all_of(climbers.begin(), climbers.end(), [](Climber const& each) { return each.done; })) break;
-    result.given_up = highest + most_log_volume(objective) < least_log_mass;
+    result.given_up = climbed.reach + most_log_volume(objective) < least_log_mass;
   }
   if (result.given_up)
     climbers.resize(1, climbers.front());

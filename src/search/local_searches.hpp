@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "search/descent.hpp"
+#include "search/laplace.hpp"
 #include "search/objective.hpp"
 #include "search/run_context.hpp"
 
@@ -19,13 +20,41 @@ bool in_one_basin(Objective const& objective, Climber const& a, Climber const& b
 /// may be far too wide where the likelihood is no sum of squares. Best first, `hits` summed.
 std::vector<Climber> distinct(Objective const& objective, std::vector<Climber> climbers);
 
+constexpr int rounds_together = 3;  // between two looks at which have met
+
+/// Without those that at the rate of their last rounds would not come within 30 nats of the best in `as_many_again` times as many.
+/// before: their log densities before these rounds.
+std::vector<Climber> within_reach(std::vector<Climber> climbers, std::vector<double> const& before, int as_many_again);
+
+struct ClimbedTogether {
+  std::vector<Climber> climbers;  // apart, best first
+  double reach;                   // log density that the best comes to at the rate of these rounds, in all that remain
+};
+
+/// So many rounds of each; those that meet go on as one, and a search is left where at this rate `as_many_again` times as many
+/// would not bring it within 30 nats of the best. climbers: one at least.
+ClimbedTogether climb_together(Objective const& objective, std::vector<Climber> climbers, int rounds, int as_many_again,
+                               Ledger& ledger, std::function<bool()> const& stop, Journal* journal);
+
+/// Local searches from near their ends to these, with more patience for those that may end highest. Best first. affordable: rounds
+/// of so many searches that may be made.
+void settle_all(Objective const& objective, std::vector<Climber>& climbers,
+                std::function<int(std::size_t searches)> const& affordable, Ledger& ledger, std::function<bool()> const& stop,
+                Journal* journal);
+
+/// Whether the best mode was met once, which may have a better neighbour that was not met, or modes are so many that others may
+/// well be missing: of the places where searches can end, those not seen hold w (w + 1) / (n (n - 1)) for w modes after n searches
+/// (Boender and Rinnooy Kan 1987).
+bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches);
+
 /// By falling mass for a posterior, else by falling density, with their shares of it.
 void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes);
 
 /// The modes that searches have ended in: of a finite density not more than 30 nats below the best, and at most 12. Ranked.
-/// `stop` ends it early: the modes so far.
+/// `stop` ends it early: the modes so far. laplace_steps: of each at most.
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
-                           std::function<bool()> const& stop = {}, Journal* journal = nullptr);
+                           std::function<bool()> const& stop = {}, Journal* journal = nullptr,
+                           int laplace_steps = most_laplace_steps);
 
 struct LocalSearches {
   std::vector<Mode> modes;

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
@@ -19,7 +21,7 @@
 #include "search/laplace.hpp"
 #include "search/local_searches.hpp"
 #include "search/mode_findings.hpp"
-#include "search/settle.hpp"
+#include "search/starts.hpp"
 #include "search/work_left.hpp"
 
 namespace sysid {
@@ -27,44 +29,10 @@ namespace {
 
 constexpr int draws_per_pass = 2048;
 constexpr int early_rounds = 6, usual_rounds = 15, most_rounds_inside = 100;
-constexpr int patient_rounds = 300;    // along a curved valley, of searches that may end highest
-constexpr double may_end_highest = 3;  // nats below the highest
 constexpr int most_passes = 4;
-
-/// How much a search looks at: of which draws it asks the density, and how many of them it climbs from.
-struct Breadth {
-  int draws;
-  std::size_t likeliest, others, finalists;
-  int rounds;  // of the finalists, before they are settled; of a target that has a gradient, evaluations
-};
-constexpr Breadth broad{draws_per_pass, 96, 32, 16, 30};
-/// Of a likelihood that takes a matrix decomposition each time, and tells its gradient.
-constexpr Breadth narrow{64, 6, 2, 4, 100};
-/// Of an equation with an unknown function in it: what is not linear are the few other parameters, and every round asks for the
-/// slopes of all coefficients.
-constexpr Breadth few{draws_per_pass, 12, 4, 3, 100};
 
 // Steps of Purpose::start: streams of different uses never meet.
 constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_step = 1'000'000;
-
-/// The draws worth a local search: the likeliest, and the first of the rest.
-std::vector<Climber> choose_starts(Objective const& objective, ConstLanes draws, Breadth const& breadth, Ledger& ledger,
-                                   std::function<bool()> const& stop, Journal* journal) {
-  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger, stop, journal);
-  std::vector<int> order;
-  for (int w = 0; w < draws.width(); ++w)
-    if (std::isfinite(density[static_cast<std::size_t>(w)])) order.push_back(w);
-  std::size_t const best = std::min(breadth.likeliest, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(best), order.end(), [&](int a, int b) {
-    double const fa = density[static_cast<std::size_t>(a)], fb = density[static_cast<std::size_t>(b)];
-    return fa > fb || (fa == fb && a < b);
-  });
-  std::sort(order.begin() + static_cast<std::ptrdiff_t>(best), order.end());
-  order.resize(std::min(order.size(), best + breadth.others));
-  std::vector<Climber> starts;
-  for (int const w : order) starts.push_back(climber_at(column(draws, w), density[static_cast<std::size_t>(w)]));
-  return starts;
-}
 
 /// The best of `climbers` that lie apart, filled up with the next best.
 std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Climber> climbers, std::size_t finalists) {
@@ -80,62 +48,44 @@ std::vector<Climber> choose_finalists(Objective const& objective, std::vector<Cl
   return chosen;
 }
 
-bool has_coefficients(Target const& target) {
-  return std::any_of(target.parameters().begin(), target.parameters().end(),
-                     [](ParameterInfo const& each) { return each.coefficient; });
-}
-
-/// Whether the best mode was met once, which may have a better neighbour that was not met, or modes are so many that others may
-/// well be missing: of the places where searches can end, those not seen hold w (w + 1) / (n (n - 1)) for w modes after n searches
-/// (Boender and Rinnooy Kan 1987).
-bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
-  constexpr double tolerable = 0.03, as_high = 0.01;
-  constexpr int usual = 2;  // places, of a search of any size
-  int places = 1, hits = modes.front().hits;
-  for (std::size_t m = 1; m < modes.size(); ++m) {
-    double const below = modes[m - 1].log_density - modes[m].log_density;
-    if (std::fabs(below) > as_high) ++places;
-    if (modes.front().log_density - modes[m].log_density < as_high) hits += modes[m].hits;
-  }
-  auto const w = static_cast<double>(places), n = static_cast<double>(searches);
-  return hits < 2 || (places > usual && w * (w + 1) > tolerable * n * (n - 1));
-}
-
 /// Local searches to their ends.
 void finish(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
             std::function<bool()> const& stop, Journal* journal) {
   climb(objective, climbers, rounds, ledger, stop, journal);
-  settle(objective, climbers, settling_rounds, ledger, stop, journal);
-  sort_best_first(climbers);
-  auto const low = std::find_if(climbers.begin(), climbers.end(), [&](Climber const& each) {
-    return each.log_density < climbers.front().log_density - may_end_highest;
-  });
-  std::vector<Climber> highest(std::make_move_iterator(climbers.begin()), std::make_move_iterator(low));
-  settle(objective, highest, patient_rounds, ledger, stop, journal);
-  std::move(highest.begin(), highest.end(), climbers.begin());
+  settle_all(
+      objective, climbers, [](std::size_t) { return std::numeric_limits<int>::max(); }, ledger, stop, journal);
 }
 
-LaneArray draw_prior(Target const& target, StreamKey key, int count) {
-  LaneArray draws(target.dimension(), count);
-  target.sample_prior(key, draws);
-  return draws;
-}
-
-/// Coefficients of unknown functions at zero, where a model is what it is without them.
-void begin_without_functions(Target const& target, LaneArray& draws) {
-  for (int p = 0; p < target.dimension(); ++p)
-    if (target.parameters()[static_cast<std::size_t>(p)].coefficient)
-      for (int w = 0; w < draws.width(); ++w) draws(p, w) = 0;
-}
-
-}  // namespace
-
-SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context) {
+/// Of modes that a search has found, if it has. begun: a draw had a finite density.
+SearchResult conclude(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> modes, bool begun, std::uint64_t draws,
+                      RunContext const& context) {
   SearchResult result;
-  Breadth const& breadth = target.is_expensive() ? narrow : has_coefficients(target) ? few : broad;
-  auto const dimension = static_cast<std::uint64_t>(target.dimension());
-  std::uint64_t const round = target.is_expensive() ? 1 : 2 * dimension + 1 + 4,
-                      of_draws = static_cast<std::uint64_t>(breadth.draws),
+  if (context.stop_requested()) {
+    result.interrupted = true;
+    return result;
+  }
+  result.modes = std::move(modes);
+  if (!result.modes.empty()) {
+    result.findings = mode_findings(target, objective_kind, result.modes);
+    return result;
+  }
+  result.failure = no_finite_start(context.ledger, draws);
+  if (begun) {  // draws are finite, but all climbs from them end where the likelihood does
+    std::string const places = failed_places(context.ledger);
+    result.failure->message = fmt::format("all local searches from prior draws end where the model cannot be simulated{}{}",
+                                          places.empty() ? "" : ": ", places);
+    result.failure->help =
+        "check the units of the data and the priors: the data move the parameters out of the range in which the model has a "
+        "solution";
+  }
+  return result;
+}
+
+/// Every search on the whole record.
+SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, RunContext& context) {
+  std::vector<Mode> modes;
+  Breadth const& breadth = breadth_of(target);
+  std::uint64_t const round = simulations_per_round(target), of_draws = static_cast<std::uint64_t>(breadth.draws),
                       early = (breadth.likeliest + breadth.others) * early_rounds * round,
                       last_part = breadth.finalists * usual_rounds * round;
   int const passes = has_coefficients(target) ? 1 : most_passes;
@@ -161,38 +111,29 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
     finish(*objective, last, rounds, context.ledger, stop, context.journal);
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
-    if (!ended.empty()) result.modes = modes_of(*objective, ended, context.ledger, stop, context.journal);
-    if (!result.modes.empty() && (ended.size() == 1 || !may_be_missed(result.modes, ended.size()))) break;
+    if (!ended.empty()) modes = modes_of(*objective, ended, context.ledger, stop, context.journal);
+    if (!modes.empty() && (ended.size() == 1 || !may_be_missed(modes, ended.size()))) break;
     if (pass + 1 < passes)
       work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part);
   }
-  bool const stopped = stop();
-  context.progress.end(!stopped);
-  if (stopped) {
-    result.interrupted = true;
-    result.modes.clear();
-    return result;
-  }
-  if (result.modes.empty()) {
-    result.failure = no_finite_start(context.ledger, static_cast<std::uint64_t>(most_passes * breadth.draws));
-    if (begun) {  // draws are finite, but all climbs from them end where the likelihood does
-      std::string const places = failed_places(context.ledger);
-      result.failure->message = fmt::format("all local searches from prior draws end where the model cannot be simulated{}{}",
-                                            places.empty() ? "" : ": ", places);
-      result.failure->help =
-          "check the units of the data and the priors: the data move the parameters out of the range in which the model has a "
-          "solution";
-    }
-    return result;
-  }
-  result.findings = mode_findings(target, objective_kind, result.modes);
+  context.progress.end(!stop());
+  return conclude(target, objective_kind, std::move(modes), begun, of_draws * most_passes, context);
+}
+
+}  // namespace
+
+SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context, ShorterRecords const& records) {
+  if (!worth_growing(target, records)) return search_whole(target, objective_kind, context);
+  GrownModes found = search_growing(target, objective_kind, records, context);
+  SearchResult result = conclude(target, objective_kind, std::move(found.modes), found.begun, found.draws, context);
+  result.finer = found.finer;
   return result;
 }
 
 SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context) {
   SearchResult result;
-  auto const round = static_cast<std::uint64_t>(target.is_expensive() ? 1 : 2 * target.dimension() + 1 + 4);
-  WorkLeft work(context, "searching near an earlier fit", static_cast<std::uint64_t>(starts.width()) * round * usual_rounds);
+  WorkLeft work(context, "searching near an earlier fit",
+                static_cast<std::uint64_t>(starts.width()) * simulations_per_round(target) * usual_rounds);
   auto const stop = work.stop();
   result.modes = modes_from(target, objective_kind, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger,
                             stop, context.journal)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "likelihood/target.hpp"
+#include "search/growing_search.hpp"
 #include "search/objective.hpp"
 #include "search/objective_kind.hpp"
 #include "search/run_context.hpp"
@@ -19,6 +20,7 @@ struct SearchResult {
   Findings findings;
   std::optional<Finding> failure;  // the likelihood is finite at no prior draw
   bool interrupted = false;
+  int finer = 0;  // refinements of the solver that the search has made, because it followed the record with no coarser one
 };
 
 /// 2048 prior draws; a few Levenberg-Marquardt rounds from the likeliest 96 and from 32 others, since far from the optimum a noise
@@ -26,8 +28,9 @@ struct SearchResult {
 /// a single one of them reaches the best mode the search is repeated on further draws, up to four times in all: a mode met once may
 /// have a better neighbour that was not met. Where the target has a gradient, fewer: 64 draws, 8 of them climbed from, 4 to the
 /// end; where an equation holds an unknown function, 16 are climbed from, its coefficients at zero, 3 to the end, in one pass.
-/// Progress counts simulations against those of a typical search.
-SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context);
+/// Progress counts simulations against those of a typical search. Long records that can be cut are searched as `search_growing`
+/// says.
+SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context, ShorterRecords const& records = {});
 
 /// Local searches from `starts` [P x N] alone, which need not have a finite density: a search that somebody has aimed. What lies
 /// elsewhere is not looked for, and a note says so.

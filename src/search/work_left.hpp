@@ -1,4 +1,4 @@
-// How far a search is that does not know how long it takes: shown against what is left at a guess that grows with the work.
+// How far a search is: against a guess that grows with the work, or against a budget that is kept.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -28,6 +28,30 @@ class WorkLeft {
 
   RunContext& context_;
   std::uint64_t before_, begun_ = 0, usual_, later_ = 0;  // begun_: solves before the part
+};
+
+/// What a search may use, in simulations of the whole record: announced at its beginning.
+class SearchBudget {
+ public:
+  SearchBudget(RunContext& context, std::string const& what, std::uint64_t announced);
+
+  /// Counts the solves of `part`, each as `share` of one, beside those of the context; null: the context's alone.
+  void count(Ledger const* part, double share);
+  /// What is being done, and about how much follows it.
+  void plan(std::string note, double later);
+  double spent() const;
+  double left() const { return static_cast<double>(announced_) - spent(); }
+  /// Shows how far it is, and asks the context.
+  std::function<bool()> stop();
+  void end(bool finished) { context_.progress.end(finished); }
+
+ private:
+  RunContext& context_;
+  std::uint64_t before_, announced_;
+  double expected_;  // in all
+  std::string note_;
+  Ledger const* part_ = nullptr;
+  double share_ = 1;
 };
 
 }  // namespace sysid

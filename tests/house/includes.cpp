@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"native/llvm", {"expression", "program/bytecode", "native"}},
     {"program", {"core", "expression", "solver", "program/bytecode", "program/interpreter", "native"}},
     {"simulate", {"core", "data", "expression", "solver", "program/interpreter", "native", "program"}},
-    {"likelihood", {"core", "linear_algebra", "result", "model", "solver", "program", "simulate"}},
+    {"likelihood", {"core", "linear_algebra", "result", "data", "model", "solver", "program", "simulate"}},
     {"likelihood/process", {"core", "gaussian_process", "model", "simulate", "likelihood"}},
     {"likelihood/segments", {"core", "linear_algebra", "simulate", "likelihood"}},
     {"likelihood/selection", {"core", "simulate", "likelihood"}},

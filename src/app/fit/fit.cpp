@@ -10,6 +10,7 @@
 #include "app/fit/fit_checks.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/session/fit_end.hpp"
+#include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
 #include "app/session/preparation.hpp"
 #include "app/session/provenance.hpp"
@@ -26,6 +27,7 @@
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence.hpp"
 #include "inference/table.hpp"
+#include "likelihood/first_rows.hpp"
 #include "search/journal.hpp"
 #include "search/search.hpp"
 
@@ -113,6 +115,35 @@ class Fit {
     return likelihood_->make_target(experiments_of(data_), solver, session_.interruptible());
   }
 
+  // What a search of a long record begins with.
+  ShorterRecords shorter_records() const {
+    std::vector<Experiment> const whole = experiments_of(data_);
+    int const least = 4 * start_rows(what_.start);  // an estimated start is not all that a part is for
+    constexpr int most_refinements = 4;
+    return {most_scored_rows(whole), what_.refine_solver && model_.integrated() ? most_refinements : 0,
+            [this, whole, least](double share, int finer) {
+              FirstRows part = first_rows(whole, share, least);
+              return FirstPart{likelihood_->make_target(std::move(part.experiments), refined(preparation_.solver, finer),
+                                                        session_.interruptible()),
+                               part.share};
+            }};
+  }
+
+  static SolverSettings refined(SolverSettings solver, int times) {
+    for (; times > 0; --times) solver = solver.finer();
+    return solver;
+  }
+
+  // Where the search has followed the record with a finer solver than it began with, that is the coarsest to be tried.
+  SolverSettings coarsest(SearchResult const& found) {
+    if (found.finer == 0) return what_.solver;
+    SolverSettings const finer = refined(preparation_.solver, found.finer);
+    session_.notices << fmt::format("{}: searching with {}: with {}, what fits the first rows is lost on later ones\n", task_.name,
+                                    accuracy(finer), accuracy(preparation_.solver));
+    preparation_.solver = finer;
+    return finer;
+  }
+
   // Whether a finer solver moves the draws.
   void check_draws_of(FitResult const& result) {
     accuracy_.reset();
@@ -198,20 +229,21 @@ class Fit {
     }
     auto const target = make(preparation_.solver);
     SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.objective_kind, context)
-                                    : search(*target, backend_.objective_kind, context);
+                                    : search(*target, backend_.objective_kind, context, shorter_records());
     if (found.interrupted) return false;
     if (found.failure) {
       advise(situation(solver), *found.failure);
       checkpoint_.drop();
       throw UserError(no_result(task_, *found.failure));
     }
+    SolverSettings const from = coarsest(found);
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     preparation_.findings.insert(preparation_.findings.end(), ahead.begin(), ahead.end());
     if (solver)
       for (Finding& each : stiff_prior(*solver)) preparation_.findings.push_back(std::move(each));
     print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
-    if (what_.refine_solver && !refine_solver(session_, task_, make, backend_.objective_kind, what_.solver, preparation_, context))
+    if (what_.refine_solver && !refine_solver(session_, task_, make, backend_.objective_kind, from, preparation_, context))
       return false;
     for (Finding& each : preparation_.findings) advise(situation(solver), each);
     return true;

@@ -53,20 +53,6 @@ std::vector<Segment> cut_into_segments(std::span<Experiment const> experiments, 
   return segments;
 }
 
-Experiment rows_of(Experiment const& experiment, int first, int count) {
-  Experiment part = experiment;
-  auto const cut = [&](auto& values) {
-    if (!values.empty()) values = std::decay_t<decltype(values)>(values.begin() + first, values.begin() + first + count);
-  };
-  cut(part.time);
-  cut(part.scored);
-  for (auto& channel : part.measured) cut(channel);
-  for (auto& lagged : part.has_lags) cut(lagged);
-  for (InputSignal& input : part.inputs) input = input.view(first, count);
-  part.first_row += first;
-  return part;
-}
-
 SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compiled, std::span<Experiment const> experiments,
                                      std::vector<Segment> segments, Settings settings)
     : compiled_(std::move(compiled)), segments_(std::move(segments)), settings_(std::move(settings)) {

@@ -8,6 +8,7 @@
 
 #include "core/numeric/lanes.hpp"
 #include "likelihood/compiled_model.hpp"
+#include "likelihood/first_rows.hpp"
 #include "simulate/simulator.hpp"
 
 namespace sysid {
@@ -23,8 +24,6 @@ int halvings(int rows, int least);
 /// Each experiment in 2^h equal parts (to a row), h = halvings(its rows, least) but at most `most`. Parts of fewer halvings are
 /// unions of those of more, and begin where these begin.
 std::vector<Segment> cut_into_segments(std::span<Experiment const> experiments, int least, int most);
-/// An experiment of some rows; inputs are shaped by the whole record as before.
-Experiment rows_of(Experiment const& experiment, int first, int count);
 
 /// Where a simulation in segments stands: coefficients [k] and start states [states x segments], SI.
 struct ShootingPoint {

@@ -1,0 +1,56 @@
+// Laplace's approximation of many parameters, whose curvature is not measured in full.
+#include "search/laplace.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+
+#include "inference/targets.hpp"
+#include "search/search.hpp"
+
+using namespace sysid;
+using namespace sysid::testing;
+
+namespace {
+
+/// Rows of a regression on neighbours that are alike, correlations of 0.9.
+Eigen::MatrixXd correlated_columns(int rows, int columns) {
+  Stream stream({5, Purpose::test, 0, 0});
+  Eigen::MatrixXd x(rows, columns);
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) x(r, c) = (c > 0 ? 0.9 * x(r, c - 1) : 0) + stream.normal();
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("sds of many parameters are exact, that of the noise too, which Gauss-Newton's rows show by half") {
+  constexpr int coefficients = 29, rows = 400;
+  Eigen::MatrixXd const x = correlated_columns(rows, coefficients);
+  Stream stream({6, Purpose::test, 0, 0});
+  Eigen::VectorXd y(rows);
+  for (double& each : y) each = 0.3 * stream.normal();
+  std::vector<std::string> names;
+  std::vector<Prior> priors;
+  for (int c = 0; c < coefficients; ++c) {
+    names.push_back("b" + std::to_string(c));
+    priors.push_back({Prior::normal, 0, 100});
+  }
+  names.emplace_back("sigma");
+  priors.push_back({Prior::log_uniform, 1e-3, 1e3});
+  TestTarget const target(names, priors, rows + 1, 0, [&](std::vector<double> const& w, std::vector<double>& r) {
+    Eigen::VectorXd const misfit = y - x * Eigen::Map<Eigen::VectorXd const>(w.data(), coefficients);
+    double const sigma = w.back();
+    for (int i = 0; i < rows; ++i) r[static_cast<std::size_t>(i)] = misfit(i) / sigma;
+    r[rows] = std::sqrt(2 * (1e5 + rows * std::log(sigma)));
+  });
+  Bench bench;
+  Mode const mode = search(target, ObjectiveKind::likelihood, bench.context).modes.front();
+  Eigen::VectorXd const best = x.colPivHouseholderQr().solve(y);
+  double const sigma = std::sqrt((y - x * best).squaredNorm() / rows);
+  CHECK(mode.declared.back() == doctest::Approx(sigma).epsilon(1e-3));
+  CHECK(mode.sd.back() == doctest::Approx(sigma / std::sqrt(2.0 * rows)).epsilon(0.01));
+  Eigen::MatrixXd const covariance = sigma * sigma * (x.transpose() * x).inverse();
+  for (int c = 0; c < coefficients; ++c)
+    CHECK(mode.sd[static_cast<std::size_t>(c)] == doctest::Approx(std::sqrt(covariance(c, c))).epsilon(0.01));
+}
