@@ -7,8 +7,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 
+#include "core/numeric/statistics.hpp"
 #include "core/text/words.hpp"
 
 namespace sysid {
@@ -81,6 +84,63 @@ void check_motion(ChainReport const& report, Findings& findings) {
   }
 }
 
+/// Chains of one side, and the range of their values but for the outermost tenth of each.
+struct Side {
+  std::vector<std::size_t> chains;
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+};
+
+/// Where the chains of a parameter lie in two places with nothing between them: the side below and the one above.
+std::optional<std::pair<Side, Side>> sides_of(Draws const& draws, std::string const& name) {
+  auto const column = std::find(draws.names.begin(), draws.names.end(), name);
+  if (column == draws.names.end() || draws.chains.size() < 2) return std::nullopt;
+  auto const p = static_cast<std::size_t>(column - draws.names.begin());
+  std::vector<Side> chains;
+  for (std::size_t c = 0; c < draws.chains.size(); ++c) {
+    std::vector<double> values;
+    for (std::vector<double> const& row : draws.chains[c].values) values.push_back(row[p]);
+    if (values.empty()) return std::nullopt;
+    std::sort(values.begin(), values.end());
+    chains.push_back({{c}, sorted_quantile(values, 0.05), sorted_quantile(values, 0.95)});
+  }
+  std::sort(chains.begin(), chains.end(), [](Side const& a, Side const& b) { return a.low < b.low; });
+  std::size_t widest = 0;
+  double gap = 0, reach = chains.front().high;
+  for (std::size_t c = 1; c < chains.size(); ++c) {
+    if (chains[c].low - reach > gap) {
+      gap = chains[c].low - reach;
+      widest = c;
+    }
+    reach = std::max(reach, chains[c].high);
+  }
+  if (widest == 0) return std::nullopt;
+  std::pair<Side, Side> sides;
+  for (std::size_t c = 0; c < chains.size(); ++c) {
+    Side& side = c < widest ? sides.first : sides.second;
+    side.chains.push_back(chains[c].chains.front());
+    side.low = std::min(side.low, chains[c].low);
+    side.high = std::max(side.high, chains[c].high);
+  }
+  std::sort(sides.first.chains.begin(), sides.first.chains.end());
+  std::sort(sides.second.chains.begin(), sides.second.chains.end());
+  return sides;
+}
+
+/// What to do about chains that disagree by far. apart: they stay in different places.
+std::string instead_of_disagreement(bool apart, bool exchanges) {
+  std::string const start = "do not use the means and sds; ";
+  if (exchanges)
+    return start +
+           "run longer chains or more temperatures, and check for a second mode or for parameters that the data cannot separate";
+  if (apart)
+    return start +
+           "there may be several modes: sample with tempering, whose chains cross between them, or narrow the priors to the "
+           "mode that is possible";
+  return start +
+         "run longer chains, or sample with tempering, which moves along ridges where the data cannot separate parameters, and "
+         "check for a second mode";
+}
+
 void check_agreement(ChainReport const& report, Findings& findings) {
   auto const rhat_of = [](Summary const& s) { return s.rhat; };
   auto const show = [](Summary const& s) { return fmt::format("{:.3f}", s.rhat); };
@@ -89,14 +149,19 @@ void check_agreement(ChainReport const& report, Findings& findings) {
   Worst const far = worst(report.summaries, rhat_of, show, rhat_far_above),
               near = worst(report.summaries, rhat_of, show, rhat_threshold, rhat_far_above);
   bool const far_above = !far.empty();
-  findings.push_back(
-      {far_above ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
-       far_above ? fmt::format("the chains disagree: R-hat of {} is far above {}{}", far.text, rhat_threshold,
-                               near.empty() ? "" : fmt::format(", and R-hat of {} is also above it", near.text))
-                 : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_threshold),
-       far_above ? "do not use the means and sds; run longer chains, and check for a second mode or for parameters that "
-                   "the data cannot separate"
-                 : "run longer chains (samples)"});
+  std::optional<std::pair<Side, Side>> sides;
+  if (far_above && report.draws != nullptr) sides = sides_of(*report.draws, far.names.front());
+  std::string const places =
+      sides ? fmt::format("; {} lies between {:.4g} and {:.4g} in {}, between {:.4g} and {:.4g} in {}", far.names.front(),
+                          sides->first.low, sides->first.high, chain_list(sides->first.chains), sides->second.low,
+                          sides->second.high, chain_list(sides->second.chains))
+            : std::string();
+  findings.push_back({far_above ? FindingCode::chains_disagree : FindingCode::chains_not_quite_agreed, Severity::error, bad.names,
+                      far_above
+                          ? fmt::format("the chains disagree: R-hat of {} is far above {}{}{}", far.text, rhat_threshold,
+                                        near.empty() ? "" : fmt::format(", and R-hat of {} is also above it", near.text), places)
+                          : fmt::format("the chains have not converged yet: R-hat of {} is above {}", bad.text, rhat_threshold),
+                      far_above ? instead_of_disagreement(sides.has_value(), report.exchanges) : "run longer chains (samples)"});
 }
 
 void check_size(ChainReport const& report, Findings& findings) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "result/draws.hpp"
 #include "result/finding.hpp"
 #include "result/summary.hpp"
 
@@ -20,6 +21,8 @@ struct ChainReport {
   std::vector<double> acceptance_rate;         // [chains]
   std::vector<std::uint64_t> distinct_states;  // [chains]
   bool adaptive = true;                        // the proposal fits itself; else the help says that it should
+  Draws const* draws = nullptr;                // of the same parameters: whether chains that disagree lie apart
+  bool exchanges = false;                      // replica exchange: it is not advised where it is in use
 };
 
 /// By the bars above; where R-hat is above the loud one, in louder words.

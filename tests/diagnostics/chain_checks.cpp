@@ -68,6 +68,38 @@ TEST_CASE("chains that disagree a little fail quietly, a lot loudly") {
   CHECK(much[0].message.find("k (") != std::string::npos);
 }
 
+TEST_CASE("chains that lie apart are placed, and replica exchange is advised where it is not in use") {
+  auto const with_draws = [](ChainValues const& values, Draws& draws) {
+    ChainReport out = report(values);
+    draws.names = {"k"};
+    draws.parameter_count = 1;
+    for (std::vector<double> const& chain : values) {
+      draws.chains.emplace_back();
+      for (double const each : chain) draws.chains.back().values.push_back({each});
+    }
+    out.draws = &draws;
+    return out;
+  };
+  Draws apart, drifting;
+  ChainReport modes = with_draws(chains(4, 2000, 0, 20), apart);
+  Findings const two = check_chains(modes);
+  REQUIRE(two.size() == 1);
+  CHECK(two[0].message.find("in chains 1, 2, 3, between ") != std::string::npos);
+  CHECK(two[0].message.ends_with("in chain 4"));
+  CHECK(two[0].help.find("sample with tempering") != std::string::npos);
+  CHECK(two[0].help.find("several modes") != std::string::npos);
+  modes.exchanges = true;
+  CHECK(check_chains(modes)[0].help.find("tempering") == std::string::npos);
+  // On a ridge chains overlap: nothing is said to lie apart.
+  ChainReport const ridge = with_draws(chains(4, 2000, 0.999), drifting);
+  Findings const slow = check_chains(ridge);
+  REQUIRE_FALSE(slow.empty());
+  REQUIRE(slow[0].code == FindingCode::chains_disagree);
+  CHECK(slow[0].message.find("lies between") == std::string::npos);
+  CHECK(slow[0].help.find("ridges") != std::string::npos);
+  CHECK(slow[0].help.find("tempering") != std::string::npos);
+}
+
 TEST_CASE("only what is far above the limit is said to be far above it") {
   ChainReport mixed = report(chains(4, 2000, 0, 3));
   Summary near = mixed.summaries[0];

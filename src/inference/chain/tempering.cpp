@@ -315,7 +315,8 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
   if (result.draws.total() > 0) {
     result.summaries = summarise(result);
     for (Finding& finding : check_exchange(plan, state->ladder)) result.findings.push_back(std::move(finding));
-    for (Finding& finding : check_chains({result.summaries, result.acceptance_rate, result.distinct_states, true}))
+    for (Finding& finding :
+         check_chains({result.summaries, result.acceptance_rate, result.distinct_states, true, &result.draws, true}))
       result.findings.push_back(std::move(finding));
   }
   return result;
