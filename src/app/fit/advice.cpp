@@ -45,10 +45,9 @@ void add_sticking(FitSituation const& fit, Finding& finding) { finding.help = st
 
 // Each that applies is added, in this order: the surest last.
 constexpr AdviceRow reasons[] = {
-    {FindingCode::no_finite_start, &integrated, &add_other_solver},
-    {FindingCode::no_finite_start, &stiff, &add_stiffness},
-    {FindingCode::no_finite_start, &runs_out_of_steps, &add_sticking},
-    {FindingCode::step_not_settled, &sticks, &add_sticking},
+    {FindingCode::no_finite_start, &integrated, &add_other_solver},        {FindingCode::no_finite_start, &stiff, &add_stiffness},
+    {FindingCode::no_finite_start, &runs_out_of_steps, &add_sticking},     {FindingCode::step_not_settled, &sticks, &add_sticking},
+    {FindingCode::optimum_not_reached, &runs_out_of_steps, &add_sticking},
 };
 
 }  // namespace

@@ -108,6 +108,7 @@ class Fit {
       advise({model_, data_, preparation_.solver, ledger_}, *result.failure);
       throw UserError(no_result(task_, *result.failure));
     }
+    for (Finding& each : result.findings) advise({model_, data_, preparation_.solver, preparation_.ledger}, each);
     return result;
   }
 

@@ -66,4 +66,8 @@ TEST_CASE("a result that no step settles is sent to smooth friction where the mo
   CHECK(advised(FindingCode::step_not_settled, dry, {}, {}).help.find("`tanh(y'/vs)`") != std::string::npos);
   CHECK(advised(FindingCode::step_not_settled, smooth, {}, {}).help == "look");
   CHECK(advised(FindingCode::at_bound, dry, {}, out_of_steps()).help == "look");
+  // A search that stalls among simulations that run out of steps is not sent to a more accurate solver.
+  CHECK(advised(FindingCode::optimum_not_reached, dry, {}, out_of_steps()).help.find("`tanh(y'/vs)`") != std::string::npos);
+  CHECK(advised(FindingCode::optimum_not_reached, smooth, {}, out_of_steps()).help == "look");
+  CHECK(advised(FindingCode::optimum_not_reached, dry, {}, {}).help == "look");
 }
