@@ -109,6 +109,14 @@ TEST_CASE("terms that are nearly one are named") {
   CHECK(near.exit == 0);
 }
 
+TEST_CASE("terms of a large condition index that are needed and known are not called hard to distinguish") {
+  // The same record: every term has probability 1 and an sd of a thousandth.
+  DiscoveryAnswer const known =
+      run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, y^3, 1", "seed = 1, refit = no"), Made(900, {.offset = 20}).csv());
+  CHECK(known.kept().size() == 5);
+  CHECK(known.finding("terms_nearly_collinear").is_null());
+}
+
 TEST_CASE("a term that is always zero is named, by its text or on the record") {
   DiscoveryAnswer const text = run(file(oscillator + ", y - y"));
   CHECK(text.exit == 0);
