@@ -4,8 +4,8 @@
 #include <boost/spirit/home/x3.hpp>
 #include <string>
 
-#include "grammar/explain.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/explain.hpp"
+#include "grammar/message/layout.hpp"
 
 namespace sysid::grammar {
 

@@ -1,7 +1,7 @@
 // Statements by the layout's own rules about newlines.
 #include "syntax/entry.hpp"
 
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 
 namespace sysid {
 namespace {

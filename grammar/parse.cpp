@@ -8,7 +8,7 @@
 #include "grammar/candidates.hpp"
 #include "grammar/data.hpp"
 #include "grammar/dictionary.hpp"
-#include "grammar/errors.hpp"
+#include "grammar/message/errors.hpp"
 #include "grammar/model.hpp"
 #include "grammar/task.hpp"
 #include "syntax/other_file.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 
 namespace sysid::grammar {
 

@@ -108,6 +108,8 @@ class Walk {
     if (token().is("(") && previous().kind == TokenKind::word) return !calls();
     if (token().is("[")) return opens_unit();
     if (is_symbol(token(), "*/") || is_symbol(previous(), "*/")) return false;
+    // Two signs side by side are refused.
+    if (is_symbol(token(), "+-") && is_symbol(previous(), "+-")) return true;
     return here() != Inside::exponent || !(is_symbol(token(), "+-") || is_symbol(previous(), "+-"));
   }
 

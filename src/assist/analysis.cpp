@@ -6,7 +6,7 @@
 #include "app/session/preconditions.hpp"
 #include "app/session/session.hpp"
 #include "assist/resolve.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 #include "load/load.hpp"
 #include "syntax/parse.hpp"
 

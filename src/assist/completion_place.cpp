@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::assist {

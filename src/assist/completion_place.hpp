@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "grammar/scan.hpp"
+#include "grammar/message/scan.hpp"
 
 namespace sysid::assist {
 

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "answer.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;

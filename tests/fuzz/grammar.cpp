@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "fuzz/stages.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 #include "syntax/ebnf.hpp"
 #include "syntax/random_tree.hpp"
 

@@ -9,7 +9,7 @@
 #include "assist/analysis.hpp"
 #include "assist/vocabulary.hpp"
 #include "client.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;

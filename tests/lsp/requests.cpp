@@ -36,7 +36,7 @@ data bench {
   time t [s]
   input x = force [N] hold zero_order
   measure displacement = y [mm]
-  split train = rows 1..3, test = rows 3..4
+  split train = rows 1..3, test = rows 4..4
 }
 
 posterior = fit oscillator to bench.train with mh(samples = 10000, chains = 2), seed = 1

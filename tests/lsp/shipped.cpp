@@ -9,7 +9,7 @@
 #include "assist/analysis.hpp"
 #include "assist/rename.hpp"
 #include "client.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 #include "load/load.hpp"
 #include "syntax/format.hpp"
 #include "syntax/words.hpp"

@@ -225,7 +225,7 @@ TEST_CASE("draws of different fits, and samples of different records, are not pa
   // Two predictions of one record go together; those of as many rows of another one do not.
   CHECK(d.enter("rms(predicted(a.displacement) - predicted(b.displacement))"));
   CHECK(d.enter("corr(residual(a.displacement), residual(b.displacement))"));
-  REQUIRE(d.enter("split train = rows 1..200, later = rows 101..300"));
+  REQUIRE(d.enter("split train = rows 1..150, later = rows 151..300"));
   REQUIRE(d.enter("forecast = predict a on bench.train with draws(20)"));
   REQUIRE(d.enter("other = predict a on bench.later with draws(20)"));
   for (char const* entry : {"corr(residual(forecast.displacement), residual(other.displacement))",

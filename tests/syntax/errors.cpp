@@ -58,7 +58,7 @@ TEST_CASE("an example shows its own code first, and every code has an example") 
   }
   codes.insert("E1123");  // its example would hold thousands of operators; tested below
   codes.insert("E1126");  // a million bytes
-  std::string const wording = read_file(std::filesystem::path(SYSID_SOURCE_DIR) / "grammar/errors.cpp");
+  std::string const wording = read_file(std::filesystem::path(SYSID_SOURCE_DIR) / "grammar/message/errors.cpp");
   for (std::size_t at = wording.find("\"E1"); at != std::string::npos; at = wording.find("\"E1", at + 1))
     CHECK_MESSAGE(codes.contains(wording.substr(at + 1, 5)), wording.substr(at + 1, 5));
 }
@@ -145,4 +145,36 @@ TEST_CASE("a line that is no text is not shown, its place is; a line of text is 
   CHECK(binary.find(" | ") == std::string::npos);
   CHECK(binary.find("ELF") == std::string::npos);
   CHECK(messages("model m {\n\tstate ?\r\n}\n").find("   2 |     state ?\n") != std::string::npos);
+}
+
+TEST_CASE("two signs behind a value need a blank between them") {
+  auto const model = [](std::string const& value) { return messages("model m {\n  let a = " + value + "\n}\n"); };
+  for (char const* const sound : {"1 - -2", "1 + -2", "-(-1)", "2^-1", "(--1)", "1*-2", "1 -\n  -2"}) {
+    CAPTURE(sound);
+    CHECK(model(sound).empty());
+  }
+  CHECK(model("20 +- 5").find("error[E1117]: `+-` is not an operator") != std::string::npos);
+  CHECK(model("20 +- 5").find("`~ normal(20, sd = 5)`") != std::string::npos);
+  CHECK(model("a--b").find("a negative number is subtracted with a blank between") != std::string::npos);
+  CHECK(model("a -- a comment").find("a comment begins with `#` or `//`") != std::string::npos);
+  CHECK(count(model("a ++ b"), "error[") == 1);
+}
+
+TEST_CASE("braces inside a statement are told once, blocks on one line are none") {
+  CHECK(messages("model m { state y; y' = 1 }\ndata d { file \"d.csv\"; rate 10 [Hz] }\n").empty());
+  std::string const power = messages("model m {\n  state y\n  y' = 1 - y^{2} + 3\n}\n");
+  CHECK(power.starts_with("test.sysid:3:14: error[E1115]: `{` has no meaning here"));
+  CHECK(count(power, "error[") == 1);
+  CHECK(count(messages("p = fit m to d with mh{samples = 100, chains = 4}, seed = 1\n"), "error[") == 1);
+  CHECK(messages("model m {\n  state {\n}\n").find("E1115") == std::string::npos);
+}
+
+TEST_CASE("raised digits and commands of LaTeX are one mistake with what they stand for") {
+  auto const model = [](std::string const& value) { return messages("model m {\n  let a = " + value + "\n}\n"); };
+  CHECK(model("10⁻¹²").find("the character `⁻¹²` is not part of the language\n") != std::string::npos);
+  CHECK(model("10⁻¹²").find("help: write `^-12`") != std::string::npos);
+  CHECK(model("y₁ + σ").empty());  // names
+  CHECK(model("\\frac{a}{b}").find("the command `\\frac` of LaTeX has no meaning here") != std::string::npos);
+  CHECK(model("\\alpha").find("write `alpha` without `\\`") != std::string::npos);
+  CHECK(count(model("\\frac{a}{b} + 1"), "error[") == 1);
 }

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "core/system/files.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 #include "parsing.hpp"
 #include "random_tree.hpp"
 
@@ -104,6 +104,7 @@ TEST_CASE("blanks stand around sums, comparisons and signs of equality, not arou
 
 TEST_CASE("units stand one blank behind what they are of, without blanks but for products") {
   CHECK(body("parameter k[ N / m ]=1[N*s / m^( 1 - n )]") == "  parameter k [N/m] = 1 [N*s/m^(1-n)]");
+  CHECK(body("parameter k = 1 [N^(1 - -n)]") == "  parameter k = 1 [N^(1- -n)]");
   CHECK(body("state q( 3 )[m]") == "  state q(3) [m]");
   CHECK(body("parameter k per experiment[kg m (s^ - 2)]") == "  parameter k per experiment [kg m (s^-2)]");
   CHECK(layout_of("data d {\nmeasure y=\"a b\"[mm]\ninput x=u[V]hold linear\n}\n") ==

@@ -9,6 +9,7 @@
 
 #include "check/expression/scope.hpp"
 #include "check/message/errors.hpp"
+#include "check/message/errors_numbers.hpp"
 #include "check/units/units.hpp"
 #include "data/file_errors.hpp"
 
@@ -104,8 +105,9 @@ class DataChecker {
     auto const value = scope_.expression(tree.value);
     if (!value) return;
     auto const constant = graph_.constant_value(value->node);
-    if (!constant) {
-      diagnostics_.add(errors::constant_needed(tree.value.span, {"a constant of an experiment"}));
+    if (!constant || !std::isfinite(*constant)) {
+      errors::Subject const what{"a constant of an experiment"};
+      diagnostics_.add(constant ? errors::value_not_finite(tree.value.span, what) : errors::constant_needed(tree.value.span, what));
       return;
     }
     block_.constants.push_back({tree.parameter.text, *constant,
@@ -121,7 +123,22 @@ class DataChecker {
         diagnostics_.add(errors::bad_rows(cover(part.first.span, part.last.span)));
         continue;
       }
-      block_.parts.push_back({part.name.text, static_cast<int>(*first), static_cast<int>(*last), part.span});
+      DataPart const whole{part.name.text, static_cast<int>(*first), static_cast<int>(*last), part.span};
+      overlaps(whole);
+      block_.parts.push_back(whole);
+    }
+  }
+
+  /// A part may lie inside another, or be outside it; ends that cross are a slip, and so is a second name for the same rows.
+  void overlaps(DataPart const& part) {
+    for (DataPart const& other : block_.parts) {
+      int const from = std::max(part.first, other.first), to = std::min(part.last, other.last);
+      bool const inside =
+          (part.first >= other.first && part.last <= other.last) || (other.first >= part.first && other.last <= part.last);
+      bool const same = part.first == other.first && part.last == other.last;
+      if (from > to || (inside && !same)) continue;
+      diagnostics_.add(errors::parts_overlap(part.span, other.span, part.name, other.name, from, to));
+      return;
     }
   }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors_numbers.hpp"
 #include "check/message/errors_reuse.hpp"
 
 namespace sysid {
@@ -80,7 +81,9 @@ std::optional<Shape> FrameBuilder::shape_of(Frame const& frame, ast::Declared co
   for (std::size_t i = 0; i < declared.sizes.size(); ++i) {
     auto const size = whole_number(declared.sizes[i], frame.instance.arguments);
     if (!size) {
-      diagnostics_.add(errors::whole_number_needed(declared.sizes[i].span, errors::named("a size of", declared.name.text)));
+      Diagnostic needed = errors::whole_number_needed(declared.sizes[i].span, errors::named("a size of", declared.name.text));
+      if (std::string meant = errors::instead_of_size(declared); i == 0 && !meant.empty()) needed.help = std::move(meant);
+      diagnostics_.add(std::move(needed));
       return std::nullopt;
     }
     if (*size < 1 || *size > most_elements || sizes[0] * *size > most_elements) {

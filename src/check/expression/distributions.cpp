@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "check/message/errors.hpp"
+#include "check/message/errors_numbers.hpp"
 #include "check/message/unit_words.hpp"
 #include "function/primitive.hpp"
 
@@ -96,7 +97,8 @@ class DistributionChecker {
       return take(key == "lower" ? lower_ : upper_, nullptr, argument, key);
     }
     std::vector<std::string> known = signature_;
-    if (row_.cumulative != nullptr) known.insert(known.end(), {"lower", "upper"});
+    for (char const* const limit : {"lower", "upper"})
+      if (row_.cumulative != nullptr && std::find(known.begin(), known.end(), limit) == known.end()) known.emplace_back(limit);
     fail(errors::unknown_argument(*argument.name, name_, known));
   }
 
@@ -178,6 +180,9 @@ class DistributionChecker {
   // Where they are numbers.
   bool arguments_fit() {
     std::vector<double> numbers;
+    for (std::size_t i = 0; i < use_.arguments.size(); ++i)
+      if (auto const number = graph_.constant_value(use_.arguments[i]); number && std::isinf(*number) && given_[i].value != nullptr)
+        return refused(errors::argument_not_finite(given_[i].span, std::string(given_[i].spelling->name), name_));
     for (NodeId const argument : use_.arguments)
       if (auto const number = graph_.constant_value(argument)) numbers.push_back(*number);
     if (numbers.size() != use_.arguments.size() || row_.refuse == nullptr) return true;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "check/message/error_words.hpp"
+#include "syntax/foreign_words.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -43,7 +44,8 @@ Diagnostic rule_missing(Span span, std::string const& input, Names const& rules)
 
 Diagnostic unknown_rule(ast::Name const& rule, Names const& known) {
   std::string help = guess_or(rule.text, known, fmt::format("rules: {}", quoted(known)));
-  if (rule.text == "zoh") help = "did you mean `zero_order`?";
+  if (std::string_view const ours = words::translated(words::foreign_input_rules(), rule.text); !ours.empty())
+    help = fmt::format("did you mean `{}`?", ours);
   return about({rule.text}, error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help)));
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "check/message/error_words.hpp"
 #include "syntax/unparse.hpp"
@@ -10,9 +11,25 @@ namespace sysid::errors {
 namespace {
 
 constexpr Synonym distribution_synonyms[] = {
-    {"gaussian", "normal"},        {"gauss", "normal"},         {"loguniform", "log_uniform"}, {"reciprocal", "log_uniform"},
-    {"lognormal", "log_normal"},   {"jeffreys", "log_uniform"}, {"invgamma", "inverse_gamma"}, {"halfnormal", "half_normal"},
-    {"halfcauchy", "half_cauchy"}, {"t", "student_t"},          {"cauchy", "student_t"},
+    {"gaussian", "normal"},
+    {"gauss", "normal"},
+    {"loguniform", "log_uniform"},
+    {"reciprocal", "log_uniform"},
+    {"lognormal", "log_normal"},
+    {"jeffreys", "log_uniform"},
+    {"invgamma", "inverse_gamma"},
+    {"halfnormal", "half_normal"},
+    {"halfcauchy", "half_cauchy"},
+    {"t", "student_t"},
+    {"cauchy", "student_t"},
+    {"n", "normal"},
+    {"norm", "normal"},
+    {"u", "uniform"},
+    {"unif", "uniform"},
+    {"exp", "log_normal"},
+    {"expon", "exponential"},
+    {"studentt", "student_t"},
+    {"inversegamma", "inverse_gamma"},
 };
 
 constexpr Synonym argument_synonyms[] = {
@@ -37,12 +54,20 @@ constexpr Synonym argument_synonyms[] = {
     {"high", "upper"},
     {"nu", "degrees_of_freedom"},
     {"df", "degrees_of_freedom"},
+    {"noise", "sd"},
+    {"loc", "mean"},
+    {"loc", "location"},
+    {"scale", "sd"},
+    {"lb", "lower"},
+    {"ub", "upper"},
+    {"alpha", "shape"},
+    {"beta", "rate"},
 };
 
 /// The digits of a whole number without a sign or a unit, zeros in front kept; empty for all else.
 std::string digits_of(ast::Argument const& argument) {
   auto const* number = std::get_if<ast::Number>(&argument.value.node);
-  if (argument.name || number == nullptr || number->unit) return {};
+  if (number == nullptr || number->unit) return {};
   std::string const text = fmt::format("{:0{}.0f}", number->value, number->span.end - number->span.begin);
   return text.size() == number->span.end - number->span.begin ? text : std::string();
 }
@@ -51,16 +76,29 @@ std::string digits_of(ast::Argument const& argument) {
 std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
   for (std::size_t i = 1; i < call.arguments.size() && &call.arguments[i - 1] != &last; ++i) {
     ast::Argument const &left = call.arguments[i - 1], &right = call.arguments[i];
-    std::string const whole = digits_of(left), fraction = digits_of(right);
-    if (!whole.empty() && !fraction.empty() && left.span.end + 1 == right.span.begin)
-      return fmt::format("write the number with a decimal point: `{}.{}`", whole, fraction);
+    std::string const whole = digits_of(left), fraction = right.name ? std::string() : digits_of(right);
+    if (whole.empty() || fraction.empty() || left.span.end + 1 != right.span.begin) continue;
+    std::string const decimal = fmt::format("write the number with a decimal point: `{}.{}`", whole, fraction);
+    return fraction.size() == 3 ? fmt::format("digits are not grouped: write `{}{}`; {}", whole, fraction, decimal) : decimal;
   }
   return {};
 }
 
+constexpr std::array<std::string_view, 6> start_words{"start", "init", "initval", "initial", "testval", "value"};
+constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",        "trunc",
+                                                      "truncnorm", "truncatednormal", "truncated_normal"};
+
 }  // namespace
 
 Diagnostic unknown_distribution(ast::Name const& name, Names const& known) {
+  std::string small = name.text;
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (std::find(truncations.begin(), truncations.end(), small) != truncations.end())
+    return about({name.text},
+                 error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
+                       "bounds are arguments of a distribution: `normal(0, sd = 1, lower = 0, upper = 2)`"),
+                 "distribution");
   return about({name.text},
                error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
                      guess_or(distribution_synonyms, name.text, known, fmt::format("distributions: {}", quoted(known)))),
@@ -68,6 +106,10 @@ Diagnostic unknown_distribution(ast::Name const& name, Names const& known) {
 }
 
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
+  if (std::find(start_words.begin(), start_words.end(), argument.text) != start_words.end())
+    return about({distribution, argument.text},
+                 error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
+                       "remove it: a parameter has no start value, the search begins at draws of the prior"));
   // A mean where a median or the mean of the logarithm can be given: neither is it.
   bool const logarithmic = std::find(known.begin(), known.end(), "log_mean") != known.end();
   if (logarithmic && argument.text == "mean")

@@ -1,8 +1,11 @@
 // The checker's wording about names, calls, units and numbers.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "check/message/error_words.hpp"
 #include "distribution/distribution.hpp"
+#include "function/table.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -22,28 +25,81 @@ constexpr Synonym name_synonyms[] = {
     {"π", "write `pi`"},
     {"PI", "write `pi`"},
     {"Pi", "write `pi`"},
+    {"e", "the exponential function is written `exp(x)`"},
+    {"g", "declare it: `constant g = 9.81 [m/s^2]`"},
+    {"unknown", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"free", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"estimate", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"NA", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"NaN", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"nan", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"Inf", "write `inf`"},
+    {"infinity", "write `inf`"},
     {"ẏ", "a derivative is written with primes: `y'`"},
     {"ÿ", "a derivative is written with primes: `y''`"},
     {"ẋ", "a derivative is written with primes: `x'`"},
     {"ẍ", "a derivative is written with primes: `x''`"},
 };
 
+/// Lowered digits, as paper has them, and how they are typed.
+constexpr Synonym lowered_digits[] = {{"₀", "0"}, {"₁", "1"}, {"₂", "2"}, {"₃", "3"}, {"₄", "4"},
+                                      {"₅", "5"}, {"₆", "6"}, {"₇", "7"}, {"₈", "8"}, {"₉", "9"}};
+
+std::string typed(std::string name) {
+  for (Synonym const& each : lowered_digits)
+    for (std::size_t at = 0; (at = name.find(each.foreign, at)) != std::string::npos;)
+      name.replace(at, each.foreign.size(), each.ours);
+  return name;
+}
+
+/// `y0`, `y_0`, `y_init` of a y that there is: its initial value as a parameter.
+std::string start_value(std::string const& name, Names const& known) {
+  for (std::string const& each : known)
+    for (char const* const ending : {"0", "_0", "_init", "_initial"})
+      if (name == each + ending)
+        return fmt::format("declare it, `parameter {} ~ normal(0, sd = 1)`, or write a number in its place", name);
+  return {};
+}
+
+constexpr Synonym number_words[] = {{"one", "1"}, {"two", "2"},   {"three", "3"}, {"four", "4"}, {"five", "5"},
+                                    {"six", "6"}, {"seven", "7"}, {"eight", "8"}, {"nine", "9"}, {"ten", "10"}};
+constexpr char const* no_unit[] = {"none", "unitless", "dimensionless", "pure", "adim", "nondim", "na", "N/A", "count", "counts"};
+
+/// Where no names can stand, in options and data blocks.
+Diagnostic name_for_number(ast::Name const& name) {
+  std::string help = "write a number";
+  for (Synonym const& each : number_words)
+    if (name.text == each.foreign) help = fmt::format("write `{}`", each.ours);
+  if (name.text == "end" || name.text == "last") help = "write the number of the last row";
+  return about({name.text},
+               error("E2001", name.span, fmt::format("`{}` is not a number, and no names are known here", name.text), help));
+}
+
 }  // namespace
 
 Diagnostic unknown_name(ast::Name const& name, Names const& known) {
+  if (known.empty()) return name_for_number(name);
   for (Synonym const& each : name_synonyms)
     if (name.text == each.foreign)
       return about({name.text},
                    error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text), std::string(each.ours)));
   // ydot, dydt, dy of a y that there is.
   for (std::string const& each : known)
-    for (char const* pattern : {"{}dot", "{}_dot", "d{}", "d{}dt", "{}ddot", "d2{}", "{}dotdot"})
+    for (char const* pattern : {"{}dot", "{}_dot", "d{}", "d{}dt", "{}ddot", "{}_ddot", "d2{}", "{}dotdot", "{}_dotdot"})
       if (name.text == fmt::format(fmt::runtime(pattern), each))
         return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
                                         fmt::format("a derivative is written with primes: `{0}'`, `{0}''`", each)));
+  std::string const plain = typed(name.text);
+  if (plain != name.text && std::find(known.begin(), known.end(), plain) != known.end())
+    return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
+                                    fmt::format("did you mean `{}`?", plain)));
+  std::string const start = start_value(name.text, known);
+  if (!start.empty() || find_function(name.text) != nullptr)
+    return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
+                                    start.empty() ? fmt::format("`{0}` is a function: `{0}(...)`", name.text) : start));
   Diagnostic result = about(
       {name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
-                         guess_or(name.text, known, "declare it as state, input, parameter, constant or local definition (let)")));
+                         guess_or(plain, known, "declare it as state, input, parameter, constant or local definition (let)")));
   result.suggested = nearest(name.text, known);
   return result;
 }
@@ -56,7 +112,9 @@ Diagnostic duplicate_name(ast::Name const& name, Span first) {
 Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity) {
   if (is_quantity)
     return about({name.text}, error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
-                                    fmt::format("multiplication is written with *: `{}*(...)`", name.text)));
+                                    fmt::format("multiplication is written with *: `{0}*(...)`; a quantity is written without its "
+                                                "time, `{0}`, and an initial value as `initial {0} = ...`",
+                                                name.text)));
   for (std::string_view const derivative : {"der", "diff", "d", "ddt", "dt", "derivative", "D", "dot", "ddot", "Dt"})
     if (name.text == derivative)
       return about({name.text},
@@ -66,6 +124,13 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
   if (find_distribution(name.text) != nullptr)
     return about({name.text}, error("E2003", name.span, fmt::format("`{}` is a distribution, not a function", name.text),
                                     fmt::format("a prior is written with `~`: `parameter k ~ {}(...)`", name.text)));
+  constexpr Synonym of_arrays[] = {{"diag", "diagonal"}, {"eye", "identity"}, {"trans", "transpose"}};
+  for (Synonym const& each : of_arrays)
+    if (name.text == each.foreign)
+      return about({name.text},
+                   error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
+                         fmt::format("did you mean `{}`?", each.ours)),
+                   "function");
   if (name.text == "pow" || name.text == "power")
     return about({name.text},
                  error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`"),
@@ -149,6 +214,8 @@ Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& me
   if (name.text == "per")
     return about({name.text}, error("E2011", name.span, "`per` is not a unit", "division is written with `/`: [N s/m]"));
   std::string const message = fmt::format("`{}` is not a known unit", name.text);
+  if (std::find(std::begin(no_unit), std::end(no_unit), name.text) != std::end(no_unit))
+    return about({name.text}, error("E2011", name.span, message, "a pure number is written `[-]`, or without brackets"));
   if (name.text == "dB" || name.text == "db")
     return about({name.text}, error("E2011", name.span, message,
                                     "a level is a logarithm: convert it to the quantity, `10^(level/20)` for an amplitude"));

@@ -56,6 +56,11 @@ Diagnostic initial_moves(Span span) {
 }
 
 Diagnostic not_a_state(ast::Name const& name, Names const& states) {
+  for (std::string const& each : states)
+    for (char const* pattern : {"d{}", "{}dot", "{}_dot", "d{}dt", "v{}", "{}p"})
+      if (name.text == fmt::format(fmt::runtime(pattern), each))
+        return about({name.text}, error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
+                                        fmt::format("a derivative is written with primes: `{}'`", each)));
   Diagnostic result = about({name.text}, error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
                                                guess_or(name.text, states, choose(states, "state"))));
   result.suggested = nearest(name.text, states);

@@ -2,9 +2,144 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <span>
+
 #include "check/message/error_words.hpp"
 
 namespace sysid::errors {
+namespace {
+
+constexpr Synonym option_synonyms[] = {
+    {"iter", "samples"},
+    {"iterations", "samples"},
+    {"niter", "samples"},
+    {"n_iter", "samples"},
+    {"num_samples", "samples"},
+    {"n_samples", "samples"},
+    {"nsamples", "samples"},
+    {"draws", "samples"},
+    {"n", "samples"},
+    {"warmup", "burn_in"},
+    {"tune", "burn_in"},
+    {"burn", "burn_in"},
+    {"burnin", "burn_in"},
+    {"discard", "burn_in"},
+    {"num_warmup", "burn_in"},
+    {"n_warmup", "burn_in"},
+    {"nchains", "chains"},
+    {"n_chains", "chains"},
+    {"num_chains", "chains"},
+    {"walkers", "chains"},
+    {"nwalkers", "chains"},
+    {"thinning", "thin"},
+    {"fs", "rate"},
+    {"sampling_rate", "rate"},
+    {"frequency", "rate"},
+    {"sample_rate", "rate"},
+    {"dt", "step"},
+    {"ts", "step"},
+    {"integrator", "solver"},
+    {"ode_solver", "solver"},
+    {"random_seed", "seed"},
+    {"rng", "seed"},
+    {"random_state", "seed"},
+    {"parameters", "values"},
+    {"params", "values"},
+    {"theta", "values"},
+    {"init", "start"},
+    {"initial", "start"},
+    {"inits", "start"},
+    {"x0", "start"},
+    {"n_draws", "draws"},
+    {"samples", "draws"},
+    {"population", "particles"},
+    {"metric", "distance"},
+};
+
+constexpr std::string_view of_threads = "threads are an option of the command: `sysid run FILE --threads 4`",
+                           of_folder = "the folder of results is an option of the command: `sysid run FILE -o DIR`",
+                           of_backend = "a back end has no name before it: `with mh`",
+                           of_tolerance = "tolerances are settings of a solver: `solver = dopri5(relative = 1e-8)`",
+                           of_step = "the step of the solver is a part of that between samples: `substeps = 10`",
+                           of_duration = "write the number of rows: `samples` is the duration times the rate";
+/// What is no option of a task, and where it is written.
+constexpr Synonym option_places[] = {
+    {"threads", of_threads},
+    {"cores", of_threads},
+    {"jobs", of_threads},
+    {"n_jobs", of_threads},
+    {"parallel", of_threads},
+    {"output", of_folder},
+    {"out", of_folder},
+    {"folder", of_folder},
+    {"rtol", of_tolerance},
+    {"reltol", of_tolerance},
+    {"atol", of_tolerance},
+    {"abstol", of_tolerance},
+    {"dt", of_step},
+    {"timestep", of_step},
+    {"method", of_backend},
+    {"algorithm", of_backend},
+    {"backend", of_backend},
+    {"sampler", of_backend},
+    {"duration", of_duration},
+    {"time", of_duration},
+    {"snr", "noise is a share of the signal: `noise = 1 [percent]`"},
+    {"input", "an input is named: `input x = gaussian(sd = 10)`"},
+};
+constexpr std::string_view of_backends[] = {"samples", "burn_in", "thin", "chains", "proposal", "particles", "variance"};
+constexpr std::string_view of_tasks[] = {"seed", "solver", "substeps", "search", "prediction"};
+
+constexpr Synonym backend_synonyms[] = {
+    {"nuts", "mh"},
+    {"hmc", "mh"},
+    {"mcmc", "mh"},
+    {"metropolis", "mh"},
+    {"emcee", "mh"},
+    {"dream", "mh"},
+    {"gibbs", "mh"},
+    {"slice", "mh"},
+    {"stan", "mh"},
+    {"metropolis_hastings", "mh"},
+    {"lsq", "ml"},
+    {"least_squares", "ml"},
+    {"leastsq", "ml"},
+    {"mle", "ml"},
+    {"optimize", "ml"},
+    {"newton", "ml"},
+    {"lm", "ml"},
+    {"bfgs", "ml"},
+    {"nlls", "ml"},
+    {"vb", "map"},
+    {"advi", "map"},
+    {"laplace", "map"},
+    {"vi", "map"},
+    {"smc", "tempering"},
+    {"pt", "tempering"},
+    {"abc", "abc_smc"},
+    {"sindy", "spike_slab"},
+    {"rvm", "ard"},
+    {"parallel_tempering", "tempering"},
+    {"horseshoe", "spike_slab"},
+};
+
+bool among(std::span<std::string_view const> words, std::string const& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// Help about an option that is written elsewhere, or empty.
+std::string place_of_option(std::string const& option) {
+  if (among(of_tasks, option))
+    return fmt::format("`{0}` is an option of the task: write `{0} = ...` behind the parentheses", option);
+  if (among(of_backends, option))
+    return fmt::format("`{0}` is a setting of the back end: write it in its parentheses, `mh({0} = ...)`", option);
+  for (Synonym const& each : option_places)
+    if (option == each.foreign) return std::string(each.ours);
+  return {};
+}
+
+}  // namespace
 
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known) {
   return about({name.text},
@@ -27,10 +162,9 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
 }
 
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
-  return about({task, option},
-               error("E6002", span, fmt::format("`{}` has no option `{}`", task, option),
-                     guess_or(option, known,
-                              known.empty() ? std::string("it has none") : fmt::format("its options are {}", quoted(known)))));
+  std::string help = guess_or(option_synonyms, option, known, known.empty() ? std::string() : place_of_option(option));
+  if (help.empty()) help = known.empty() ? std::string("it has none") : fmt::format("its options are {}", quoted(known));
+  return about({task, option}, error("E6002", span, fmt::format("`{}` has no option `{}`", task, option), std::move(help)));
 }
 
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example) {
@@ -76,7 +210,7 @@ Diagnostic backend_missing(ast::Task const& task, Names const& known) {
 
 Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
   return about({name.text}, error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
-                                  guess_or(name.text, known, fmt::format("back ends: {}", quoted(known)))));
+                                  guess_or(backend_synonyms, name.text, known, fmt::format("back ends: {}", quoted(known)))));
 }
 
 Diagnostic data_missing(ast::Task const& task, std::string const& preposition) {

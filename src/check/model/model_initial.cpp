@@ -49,10 +49,12 @@ void ModelChecker::initial_values() {
     return;
   }
   std::map<int, Span> given;
+  bool misnamed = false;  // what is missing then may be meant by the wrong name
   each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
     for (ast::InitialValue const& initial : declaration.values) {
       StateInfo const* info = find_state(initial.state.name.text);
       if (info == nullptr) {
+        misnamed = true;
         diagnostics_.add(errors::not_a_state(initial.state.name, state_names()));
         continue;
       }
@@ -86,7 +88,7 @@ void ModelChecker::initial_values() {
     std::vector<std::string> missing;
     for (; i < model_.states.size() && model_.states[i].span == declaration; ++i)
       if (!given.contains(static_cast<int>(i))) missing.push_back(model_.states[i].name);
-    if (!missing.empty()) diagnostics_.add(errors::initial_missing(declaration, missing));
+    if (!missing.empty() && !misnamed) diagnostics_.add(errors::initial_missing(declaration, missing));
   }
 }
 

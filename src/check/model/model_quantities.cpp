@@ -2,9 +2,11 @@
 #include "check/model/model_checker.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "check/expression/distributions.hpp"
 #include "check/message/errors.hpp"
+#include "check/message/errors_numbers.hpp"
 
 namespace sysid {
 
@@ -17,8 +19,11 @@ void ModelChecker::parameters() {
           scope_.expression_in(parameter.unit, parameter.span, *tree.value, {Occasion::Kind::declared, parameter.name});
       if (!value) continue;
       NodeId const node = adapt(model_.graph, *value, parameter.unit);
-      if (!model_.graph.constant_value(node)) {
-        diagnostics_.add(errors::constant_needed(tree.value->span, {"the value of a parameter"}));
+      auto const number = model_.graph.constant_value(node);
+      if (!number || !std::isfinite(*number)) {
+        errors::Subject const what{"the value of a parameter"};
+        diagnostics_.add(number ? errors::value_not_finite(tree.value->span, what)
+                                : errors::constant_needed(tree.value->span, what));
         continue;
       }
       parameter.value = node;

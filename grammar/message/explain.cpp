@@ -1,10 +1,11 @@
 // Detection of the usual mistakes from the tokens around a failure. The wording is in errors.cpp.
-#include "grammar/explain.hpp"
+#include "grammar/message/explain.hpp"
 
 #include <fmt/format.h>
 
-#include "grammar/errors.hpp"
-#include "grammar/hints.hpp"
+#include "grammar/message/errors.hpp"
+#include "grammar/message/hints.hpp"
+#include "syntax/foreign_words.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar {
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::array<std::string_view, 6> comparisons{"<", "<=", ">", ">=", "==", "!="};
 /// Messages of many causes, whose help a hint may replace.
-constexpr std::array<std::string_view, 3> general{"E1105", "E1113", "E1121"};
+constexpr std::array<std::string_view, 5> general{"E1105", "E1113", "E1114", "E1118", "E1121"};
 constexpr std::array<std::string_view, 9> unfinished{"+", "-", "*", "/", "^", ",", "=", "~", ".."};
 
 bool is_symbol(Token const& token, std::span<std::string_view const> table) {
@@ -122,6 +123,7 @@ class Failure {
   /// `... +` and on the next line `parameter c ~ ...`: the rules see `+ parameter c`.
   std::optional<Diagnostic> unfinished_line() const {
     if (at_end_ || !is_word(found()) || found().newline_before) return std::nullopt;
+    if (auto task = comma_before_task()) return task;
     Token const* const keyword = previous();
     Token const* const last = previous(2);
     if (keyword == nullptr || last == nullptr || !keyword->newline_before || !is_symbol(*last, unfinished)) return std::nullopt;
@@ -129,6 +131,14 @@ class Failure {
         !words::contains(words::items, keyword->text))
       return std::nullopt;
     return errors::statement_incomplete(*last, *keyword);
+  }
+
+  /// `seed = 1,` and on the next line `forecast = predict ...`.
+  std::optional<Diagnostic> comma_before_task() const {
+    Token const *verb = previous(), *sign = previous(2), *name = previous(3), *comma = previous(4);
+    bool const task = comma != nullptr && comma->is(",") && name->newline_before && is_word(*name) && sign->is("=") &&
+                      words::contains(words::verbs, verb->text);
+    return task ? std::optional(errors::statement_incomplete(*comma, *name)) : std::nullopt;
   }
 
   std::optional<Diagnostic> at_end() const {
@@ -147,7 +157,8 @@ class Failure {
     bool const value_before = previous() != nullptr && ends_value(*previous());
     bool const wants_name = wanted_ == wanted::name || wanted_ == wanted::column;
     if (found().is("'")) return errors::prime_apart(found().span);
-    if (found().is("[") && previous() != nullptr && is_word(*previous()) && found_ == first_ + 1 && has("~"))
+    bool const keyword = first() != nullptr && words::contains(words::model_statements, first()->text);
+    if (found().is("[") && previous() != nullptr && is_word(*previous()) && found_ == first_ + 1 && has("~") && !keyword)
       return errors::tilde_without_keyword(found().span);
     bool const column = found().is("[") && wanted_ == wanted::equals && (begins_with("measure") || begins_with("input"));
     if (found().is("[") && value_before && !wanted_.starts_with("a ") && !column) return errors::bracket_out_of_place(found().span);
@@ -159,21 +170,61 @@ class Failure {
     if (wanted_ == wanted::operator_between && previous() != nullptr) return side_by_side();
     if (found().is("=") && wanted_ == wanted::end_of_statement) return second_equals();
     if (begins_with("observe") && wanted_ == wanted::tilde) return errors::tilde_missing(span(), "observe", with_tilde());
-    if (begins_with("parameter") && wanted_ == wanted::end_of_statement && is_word(found()) && value_before && unit_here().empty())
+    bool const prior_missing = begins_with("parameter") && !has("~") && wanted_ == wanted::end_of_statement;
+    if (prior_missing && is_word(found()) && value_before && unit_here().empty())
       return errors::tilde_missing(span(), "parameter", with_tilde());
     if (found().is("~") && value_before && !begins_with("parameter") &&
         (wanted_ == wanted::equals || wanted_ == wanted::end_of_statement))
       return errors::tilde_without_keyword(found().span);
     if ((found().is("+") || found().is("-")) && wanted_ == wanted::model_statement) return errors::begins_with_sign(found());
     if (!is_word(found())) return std::nullopt;
-    if (wanted_ == wanted::data_statement) return errors::unknown_statement(found(), "a data block", words::data_statements);
+    if (wanted_ == wanted::data_statement) return unknown_data_statement();
     if (wanted_ == wanted::dictionary_statement)
       return errors::unknown_statement(found(), "a dictionary", words::dictionary_statements);
     if (wanted_ == wanted::item && words::contains(words::items, found().text) && next() != nullptr)
       return errors::expected(next()->span, wanted::name, fmt::format("`{}`", next()->text), hint(name_missing()));
-    if (wanted_ == wanted::item) return errors::unknown_item(found());
-    if (wanted_ == wanted::verb) return errors::unknown_verb(found());
+    if (wanted_ == wanted::item) return unknown_item();
+    if (wanted_ == wanted::verb) return unknown_verb();
     return std::nullopt;
+  }
+
+  Diagnostic unknown_model_statement(Token const& word) const {
+    Diagnostic diagnostic = errors::unknown_statement(word, "a model", words::model_statements);
+    bool const typed = words::translated(words::foreign_model_statements(), word.text) == "let";
+    if (typed && has("~")) diagnostic.help = "did you mean `parameter`?";
+    return diagnostic;
+  }
+
+  Diagnostic unknown_data_statement() const {
+    Diagnostic diagnostic = errors::unknown_statement(found(), "a data block", words::data_statements);
+    if (found().is("hold")) diagnostic.help = "the rule stands behind the column of its input: `input x = force [N] hold linear`";
+    if (has("..")) diagnostic.help = fmt::format("a part of the rows is written `split {}`", gap().rest());
+    return diagnostic;
+  }
+
+  Diagnostic unknown_item() const {
+    Diagnostic diagnostic = errors::unknown_item(found());
+    Token const* const sign = next();
+    Token const* const verb = next_but_one();
+    if (sign != nullptr && verb != nullptr && sign->is("~") && words::contains(words::verbs, verb->text))
+      diagnostic.help = fmt::format("the name of a task is followed by `=`: `{} = {}`", found().text, verb->text);
+    if (verb != nullptr && verb->is("=") && words::contains(words::model_statements, found().text))
+      diagnostic.help = fmt::format("outside of blocks a task is written `NAME = fit ...`: remove `{}`", found().text);
+    bool const module = words::translated(words::foreign_items(), found().text) == "use";
+    if (module && sign != nullptr && is_word(*sign)) diagnostic.help = fmt::format("write `use {}`", sign->text);
+    return diagnostic;
+  }
+
+  Diagnostic unknown_verb() const {
+    Diagnostic diagnostic = errors::unknown_verb(found());
+    bool const behind_semicolon =
+        first_ > 1 && tokens_[first_ - 1].is(";") && found_ == first_ + 2 && !tokens_[first_].newline_before;
+    if (behind_semicolon) diagnostic.help = "options of a task are separated by commas: write `,` in place of `;`";
+    return diagnostic;
+  }
+
+  Token const* next_but_one() const {
+    return found_ + 2 < tokens_.size() && tokens_[found_ + 2].statement == statement_ ? &tokens_[found_ + 2] : nullptr;
   }
 
   bool has(std::string_view symbol) const {
@@ -222,10 +273,17 @@ class Failure {
       bool equation = false;
       for (std::size_t i = found_; i < tokens_.size() && tokens_[i].statement == statement_; ++i) equation |= tokens_[i].is("=");
       bool const declares = next() != nullptr && (next()->is("[") || next()->is("~"));
-      if (!equation || declares || !nearest(word.text, words::list(words::model_statements)).empty())
-        return errors::unknown_statement(word, "a model", words::model_statements);
+      bool const foreign = !words::translated(words::foreign_model_statements(), word.text).empty();
+      if (word.is("equation") || word.is("eq") || word.is("ode")) return errors::equation_with_keyword(word);
+      if (!equation || declares || foreign || !nearest(word.text, words::list(words::model_statements)).empty())
+        return unknown_model_statement(word);
     }
-    if (names_argument()) return errors::comma_missing(word, found());
+    if (names_argument()) {
+      Diagnostic missing = errors::comma_missing(word, found());
+      std::string const settings = previous(2) != nullptr && previous(2)->is("with") ? hint(gap()) : std::string();
+      if (!settings.empty()) missing.help = settings;
+      return missing;
+    }
     return errors::no_operator_between(word, found(), instead_of_product(gap()));
   }
 
@@ -257,46 +315,12 @@ class Failure {
   int statement_ = 0;
 };
 
-std::uint32_t end_of(Layout const& layout, std::size_t token) { return token == 0 ? 0 : layout.tokens[token - 1].span.end; }
-
 }  // namespace
 
 std::optional<Diagnostic> explain(Layout const& layout, std::uint32_t where, std::string const& wanted) {
   Failure const failure(layout, where, wanted);
   if (layout.reported.contains(failure.statement()) || (failure.at_end_of_file() && layout.reported_at_end)) return std::nullopt;
   return failure.diagnostic();
-}
-
-std::uint32_t behind_statement(Layout const& layout, std::uint32_t where) {
-  if (layout.ends_line(where)) return where;
-  std::size_t const first = layout.token_at(where);
-  int depth = 0;
-  std::size_t i = first;
-  for (; i < layout.tokens.size(); ++i) {
-    Token const& token = layout.tokens[i];
-    if (depth == 0 && (token.is(";") || token.is("}"))) break;
-    if (depth == 0 && i > first && token.statement != layout.tokens[i - 1].statement) break;
-    depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
-  }
-  return std::max(where, end_of(layout, i));
-}
-
-std::uint32_t behind_item(Layout const& layout, std::uint32_t where, std::string const& wanted) {
-  std::size_t const found = layout.token_at(where);
-  if (wanted == wanted::opening_brace) {
-    // The body that follows the incomplete head goes with it, unless another block begins first.
-    int depth = 0;
-    for (std::size_t i = found; i < layout.tokens.size(); ++i) {
-      Token const& token = layout.tokens[i];
-      bool const next_block = depth == 0 && token.newline_before && words::contains(words::blocks, token.text);
-      if (next_block) break;
-      depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
-      if (token.is("}") && depth <= 0) return token.span.end;
-    }
-  }
-  std::uint32_t const end = behind_statement(layout, where);
-  bool const stray_brace = end == where && found < layout.tokens.size() && layout.tokens[found].is("}") && !layout.ends_line(where);
-  return stray_brace ? layout.tokens[found].span.end : end;
 }
 
 }  // namespace sysid::grammar

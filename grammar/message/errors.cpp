@@ -1,8 +1,9 @@
 // The wording of the syntax stage.
-#include "grammar/errors.hpp"
+#include "grammar/message/errors.hpp"
 
 #include <fmt/format.h>
 
+#include "syntax/foreign_words.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar::errors {
@@ -26,8 +27,10 @@ std::string choice(std::span<std::string_view const> words) {
   return out;
 }
 
-/// A guess when one is near, else everything there is.
-std::string guess_or(std::string_view word, std::vector<std::string> const& known, std::string all) {
+/// A guess when the word is a foreign one or near one of ours, else everything there is.
+std::string guess_or(std::string_view word, std::span<words::ForeignWord const> foreign, std::vector<std::string> const& known,
+                     std::string all) {
+  if (std::string_view const ours = words::translated(foreign, word); !ours.empty()) return fmt::format("did you mean `{}`?", ours);
   std::string guess = did_you_mean(word, known);
   return guess.empty() ? std::move(all) : guess;
 }
@@ -105,7 +108,16 @@ Diagnostic number_out_of_range(Span number, std::string_view text) {
 
 Diagnostic unknown_statement(Token const& word, std::string_view place, std::span<std::string_view const> known) {
   return error("E1109", word.span, fmt::format("no statement of {} begins with `{}`", place, word.text),
-               guess_or(word.text, words::list(known), fmt::format("a statement begins with {}", choice(known))));
+               guess_or(word.text,
+                        place == "a model"        ? words::foreign_model_statements()
+                        : place == "a data block" ? words::foreign_data_statements()
+                                                  : std::span<words::ForeignWord const>(),
+                        words::list(known), fmt::format("a statement begins with {}", choice(known))));
+}
+
+Diagnostic equation_with_keyword(Token const& word) {
+  return error("E1109", word.span, fmt::format("no statement of a model begins with `{}`", word.text),
+               fmt::format("an equation has no keyword: remove `{}`", word.text));
 }
 
 Diagnostic unknown_item(Token const& word) {
@@ -113,13 +125,14 @@ Diagnostic unknown_item(Token const& word) {
   for (std::string_view const verb : words::verbs) known.emplace_back(verb);
   return error(
       "E1110", word.span, fmt::format("no declaration or task begins with `{}`", word.text),
-      guess_or(word.text, known,
+      guess_or(word.text, words::foreign_items(), known,
                fmt::format("a declaration begins with {}; a task begins with {}", choice(words::items), choice(words::verbs))));
 }
 
 Diagnostic unknown_verb(Token const& word) {
   return error("E1111", word.span, fmt::format("`{}` is not a task", word.text),
-               guess_or(word.text, words::list(words::verbs), fmt::format("a task begins with {}", choice(words::verbs))));
+               guess_or(word.text, words::foreign_verbs(), words::list(words::verbs),
+                        fmt::format("a task begins with {}", choice(words::verbs))));
 }
 
 Diagnostic double_equals(Span where) {
@@ -152,10 +165,14 @@ Diagnostic stray_byte(Span where, unsigned char byte) {
   std::string_view const help = byte == '|' ? "an absolute value is written `abs(y)`; arguments are separated by commas"
                                 : byte == '?'
                                     ? "a value that depends on a condition is written `if condition then value else value`"
-                                : byte == ':'  ? "a range is written `1..500`, a value `parameter m = 1`, a definition `let a = b`"
-                                : byte == '\\' ? "formulas are plain text: `y''` for a second derivative, `sqrt(a)` for a root"
-                                               : "remove it";
+                                : byte == '@' ? "a function is written `function f(y) = k*y`, a product `A*B`"
+                                : byte == '`' ? "a derivative is written with primes: `y''`"
+                                              : "remove it";
   return error("E1115", where, fmt::format("the character {} has no meaning here", name), std::string(help));
+}
+
+Diagnostic no_meaning(Span where, std::string_view found, std::string help) {
+  return error("E1115", where, fmt::format("{} {} no meaning here", found, found.ends_with('s') ? "have" : "has"), std::move(help));
 }
 
 Diagnostic look_alike(Span where, std::string_view found, std::string_view meant) {
@@ -169,8 +186,15 @@ Diagnostic foreign_operator(Span where, std::string_view found, std::string_view
 
 Diagnostic left_arrow(Span where) { return foreign_operator(where, "<-", "an equation or a definition is written with `=`"); }
 
-Diagnostic list_in_brackets(Span where) {
-  return error("E1118", where, "a list is not written in brackets", "write it in parentheses: `(1, 2)`");
+Diagnostic list_in_brackets(Span where, bool prior) {
+  return error("E1118", where, "a list is not written in brackets",
+               prior ? "a range of values is a prior: `~ uniform(1, 2)`; a list is written in parentheses: `(1, 2)`"
+                     : "write it in parentheses: `(1, 2)`");
+}
+
+Diagnostic bounds_in_brackets(Span where) {
+  return error("E1118", where, "bounds are not written in brackets",
+               "bounds are arguments of the prior: `normal(0, sd = 1, lower = 0, upper = 1)`");
 }
 
 Diagnostic bracket_out_of_place(Span where) {

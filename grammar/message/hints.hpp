@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "grammar/scan.hpp"
+#include "grammar/message/scan.hpp"
 
 namespace sysid::grammar {
 
@@ -19,10 +19,29 @@ struct Gap {
     return at >= steps && at - steps < statement.size() ? &statement[at - steps] : nullptr;
   }
   bool begins_with(std::string_view word) const { return !statement.empty() && statement[0].is(word); }
+  bool found_is(std::string_view text) const { return found != nullptr && found->is(text); }
+  bool found_word() const { return found != nullptr && found->kind == TokenKind::word; }
+  Token const* next(std::size_t steps = 1) const {
+    return found != nullptr && at + steps < statement.size() ? &statement[at + steps] : nullptr;
+  }
+  /// Index of the first such symbol from `from` on, or the size of the statement.
+  std::size_t find(std::string_view symbol, std::size_t from = 0) const;
+  /// What the user wrote from one token up to another, exclusively; empty where there is nothing.
+  std::string_view text(std::size_t from, std::size_t end) const;
+  std::string_view rest() const { return text(at, statement.size()); }
+  /// The bracket that closes the one at `opener`, or the size of the statement.
+  std::size_t closing(std::size_t opener) const;
 };
 
 /// What the user wrote from one token to a later one.
 std::string_view written(Token const& first, Token const& last);
+
+/// One past the last of the tokens from `from` on that are a unit on paper, `N s/m^2`; `from` where there is none.
+std::size_t end_of_unit(std::span<Token const> statement, std::size_t from);
+
+/// Help about statements of a model, and about those of the other blocks and tasks; empty where nothing is known.
+std::string hint_in_model(Gap const& gap);
+std::string hint_in_block(Gap const& gap);
 
 /// `[N/mm]` where the words of a unit were found without brackets, or empty.
 std::string unit_without_brackets(Gap const& gap);

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/text/diagnostic.hpp"
-#include "grammar/scan.hpp"
+#include "grammar/message/scan.hpp"
 
 namespace sysid::grammar::errors {
 
@@ -34,6 +34,8 @@ Diagnostic fortran_exponent(Span number, std::string_view digits, std::string_vi
 Diagnostic number_out_of_range(Span number, std::string_view text);
 /// E1109: `paramter m ~ ...` in a model, `fiel "a.csv"` in a data block. place: "a model".
 Diagnostic unknown_statement(Token const& word, std::string_view place, std::span<std::string_view const> known);
+/// E1109: `equation m*y'' = x`.
+Diagnostic equation_with_keyword(Token const& word);
 /// E1110: neither an item nor a task begins so.
 Diagnostic unknown_item(Token const& word);
 /// E1111: `posterior = fitt duffing`.
@@ -49,6 +51,8 @@ Diagnostic tilde_without_keyword(Span where);
 /// begin: of its first line; kind: as `other_kind` has it.
 Diagnostic other_file(Span begin, std::string const& name, std::string_view kind);
 Diagnostic stray_byte(Span where, unsigned char byte);
+/// E1115: `:`, a command of LaTeX, or braces inside a statement; `help` says what is written in their place.
+Diagnostic no_meaning(Span where, std::string_view found, std::string help);
 /// E1116: `×` where `*` is meant.
 Diagnostic look_alike(Span where, std::string_view found, std::string_view meant);
 /// E1117: `**`, `:=`, `&&`: operators of other languages.
@@ -57,8 +61,10 @@ Diagnostic foreign_operator(Span where, std::string_view found, std::string_view
 Diagnostic left_arrow(Span where);
 /// E1118: `[` where no unit may stand.
 Diagnostic bracket_out_of_place(Span where);
-/// E1118: `[1, 2]` where a value may stand.
-Diagnostic list_in_brackets(Span where);
+/// E1118: `[1, 2]` where a value may stand; prior: as the value of a parameter, which may mean a range.
+Diagnostic list_in_brackets(Span where, bool prior);
+/// E1118: `normal(0, sd = 1) [0, 1]`.
+Diagnostic bounds_in_brackets(Span where);
 /// E1119: `if` as a name.
 Diagnostic reserved_word(Token const& word);
 /// E1120: a statement that begins with + or -.

@@ -1,10 +1,12 @@
 // Three passes over the tokens: match brackets, decide newlines, number statements.
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "grammar/errors.hpp"
+#include "grammar/message/errors.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar {
@@ -22,6 +24,9 @@ bool is_binary_operator(Token const& token) {
   return token.kind != TokenKind::text && words::contains(binary_operators, token.text);
 }
 
+/// Words of statements behind which a value begins.
+constexpr std::array<std::string_view, 5> before_values{"probability", "rows", "rate", "step", "with"};
+
 char closer_of(char opener) { return opener == '(' ? ')' : opener == '[' ? ']' : '}'; }
 
 class LayoutPass {
@@ -29,6 +34,7 @@ class LayoutPass {
   LayoutPass(Source const& source, Scan scan) : source_(source), scan_(std::move(scan)), tokens_(scan_.tokens) {}
 
   Layout run(Diagnostics& diagnostics, std::size_t limit) {
+    refuse_double_signs();
     match_brackets();
     decide_newlines();
     refuse_long_statements();
@@ -113,6 +119,77 @@ class LayoutPass {
            !(verb == i && tokens_[verb + 1].is("probability"));  // of a candidate with such a name
   }
 
+  bool has_tilde(std::size_t before) const {
+    for (std::size_t i = line_; i < before; ++i)
+      if (tokens_[i].is("~")) return true;
+    return false;
+  }
+
+  /// The `}` of the same line and not far away, or the number of tokens.
+  std::size_t closing_brace(std::size_t opener) const {
+    constexpr std::size_t far = 100;
+    int depth = 0;
+    for (std::size_t i = opener; i < std::min(tokens_.size(), opener + far) && (i == opener || !tokens_[i].newline_before); ++i) {
+      depth += tokens_[i].is("{") ? 1 : tokens_[i].is("}") ? -1 : 0;
+      if (depth == 0) return i;
+      if (tokens_[i].is(";")) break;  // statements: a block
+    }
+    return tokens_.size();
+  }
+
+  /// Braces within one line that begins no block: `y^{3}`, `mh{samples = 100}`.
+  bool stands_inside(std::size_t i) const {
+    auto const begins = [&](std::size_t at) {
+      if (at == 0 || tokens_[at].newline_before || tokens_[at - 1].is(";")) return true;
+      return (tokens_[at - 1].is("{") || tokens_[at - 1].is("}")) && !inner_.contains(at - 1);
+    };
+    std::size_t first = i;
+    while (!begins(first)) --first;
+    bool const in_block = std::any_of(open_.begin(), open_.end(), [&](std::size_t each) { return tokens_[each].is("{"); });
+    bool const task = words::contains(words::verbs, tokens_[first].text) || tokens_[first + 1].is("=");
+    return first < i && (in_block || task) && !words::contains(words::blocks, tokens_[first].text) &&
+           closing_brace(i) < tokens_.size();
+  }
+
+  std::string instead_of_brace(std::size_t i) const {
+    std::size_t const close = closing_brace(i);
+    std::string_view const inside =
+        i + 1 < close
+            ? std::string_view(tokens_[i + 1].text.data(), tokens_[close - 1].text.data() + tokens_[close - 1].text.size())
+            : std::string_view();
+    Token const &before = tokens_[i - 1], &first = tokens_[line_];
+    bool const declares =
+        first.is("parameter") || first.is("state") || first.is("input") || first.is("measure") || first.is("time");
+    if (declares && !before.is("^")) return fmt::format("a unit is written in brackets: `{} [{}]`", before.text, inside);
+    if (first.is("function")) return fmt::format("a function is written with `=`: `= {}`", inside);
+    if (before.is("=") || before.is("initial")) return fmt::format("write it without braces: `{}`", inside);
+    bool const calls = before.kind == TokenKind::word;
+    return calls ? fmt::format("arguments stand in parentheses: `{}({})`", before.text, inside)
+                 : fmt::format("write parentheses: `({})`", inside);
+  }
+
+  /// `20 +- 5`, `k*y -- a comment`: two signs behind a value that no blank holds apart.
+  void refuse_double_signs() {
+    for (std::size_t i = 1; i + 1 < tokens_.size(); ++i) {
+      bool const signs = (tokens_[i].is("+") || tokens_[i].is("-")) && (tokens_[i + 1].is("+") || tokens_[i + 1].is("-"));
+      Token const& before = tokens_[i - 1];
+      bool const word = words::contains(words::reserved, before.text) || words::contains(before_values, before.text);
+      bool const value = (before.kind != TokenKind::symbol && !word) || before.is(")") || before.is("]") || before.is("'");
+      if (!signs || !value || tokens_[i].span.end != tokens_[i + 1].span.begin) continue;
+      Span const both = cover(tokens_[i].span, tokens_[i + 1].span);
+      std::string_view const written(tokens_[i].text.data(), 2);
+      bool const numbers = before.kind == TokenKind::number && i + 2 < tokens_.size() && tokens_[i + 2].kind == TokenKind::number;
+      mistake(
+          i,
+          errors::foreign_operator(
+              both, written,
+              written == "--" ? "a comment begins with `#` or `//`; a negative number is subtracted with a blank between: `a - -b`"
+              : written == "++" ? "write a single `+`"
+              : numbers ? fmt::format("an uncertain value is a prior: `~ normal({}, sd = {})`", before.text, tokens_[i + 2].text)
+                        : "an uncertain value is a prior, `~ normal(value, sd = 1)`; else write one sign"));
+    }
+  }
+
   void match_bracket(std::size_t i) {
     Token const& token = tokens_[i];
     if (is_opener(i)) {
@@ -122,8 +199,16 @@ class LayoutPass {
       // None of these stands in a unit.
       std::size_t const opener = open_.back();
       bool const list = token.is(",") && opener > 0 && (is_opener(opener - 1) || continues_after(tokens_[opener - 1], true));
-      mistake(opener, list ? errors::list_in_brackets(tokens_[opener].span) : errors::unclosed(tokens_[opener], token.span));
+      bool const behind_prior = token.is(",") && opener > line_ + 2 && tokens_[line_].is("parameter") && !list && has_tilde(opener);
+      mistake(opener, list           ? errors::list_in_brackets(tokens_[opener].span, tokens_[line_].is("parameter"))
+                      : behind_prior ? errors::bounds_in_brackets(tokens_[opener].span)
+                                     : errors::unclosed(tokens_[opener], token.span));
       open_.pop_back();
+    } else if (token.is("{") && stands_inside(i)) {
+      mistake(i, errors::no_meaning(token.span, "`{`", instead_of_brace(i)));
+      inner_.insert({i, closing_brace(i)});
+    } else if (inner_.contains(i)) {
+      return;  // closes one of these
     } else if (token.is("{")) {
       close_unclosed(i);
       // Blocks do not nest: a block that begins while another is open means that the other was never closed.
@@ -176,7 +261,7 @@ class LayoutPass {
       bool const both = i > 0 && i < tokens_.size();
       bool const separator = both && tokens_[i - 1].kind == TokenKind::symbol &&
                              std::string_view(";{}").find(tokens_[i - 1].text) != std::string_view::npos &&
-                             !ends_within_brackets(i - 1);
+                             !ends_within_brackets(i - 1) && !inner_.contains(i - 1);
       bool const joined = both && !separator && joins(i - 1, i, in_block);
       // Between tokens stand blanks and newlines only, once comments are gone.
       for (std::uint32_t at = end; at < begin; ++at)
@@ -184,11 +269,11 @@ class LayoutPass {
       if (i == tokens_.size()) break;
       Token& token = tokens_[i];
       if (ends_within_brackets(i)) mistake(i, errors::semicolon_in_brackets(token.span));
-      if (separator || (token.newline_before && !joined) || token.is("}")) ++statement;
+      if (separator || (token.newline_before && !joined) || (token.is("}") && !inner_.contains(i))) ++statement;
       token.statement = statement;
       token.joins_before =
           before > 0 && !tokens_[before - 1].is("{") && !tokens_[before - 1].is("}") && joins(before - 1, i, in_block);
-      if (token.is("{") || token.is("}")) in_block = token.is("{");
+      if ((token.is("{") || token.is("}")) && !inner_.contains(i)) in_block = token.is("{");
       end = token.span.end;
       if (!token.is(";")) before = i + 1;
     }
@@ -224,6 +309,7 @@ class LayoutPass {
   Scan scan_;
   std::vector<Token>& tokens_;
   std::vector<std::size_t> open_, spoilt_;
+  std::set<std::size_t> inner_;  // braces inside a statement, which are refused
   std::size_t all_spoilt_from_ = std::numeric_limits<std::size_t>::max();
   std::size_t line_ = 0;  // the first token of the line
   std::vector<int> inside_;

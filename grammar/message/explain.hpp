@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/text/diagnostic.hpp"
-#include "grammar/layout.hpp"
+#include "grammar/message/layout.hpp"
 
 namespace sysid::grammar {
 

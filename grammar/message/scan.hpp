@@ -1,6 +1,7 @@
 // A light scan of the text into tokens, for two purposes only: to decide which newlines end a statement, and to word messages.
 // The language itself is parsed by the X3 rules. Mistakes that concern single characters are found here.
 #pragma once
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,5 +39,33 @@ struct Scan {
 
 /// Total: any bytes give tokens that cover everything but blanks, newlines and comments.
 Scan scan(std::string_view text);
+
+/// Signs of word processors, formulas and other languages, and what stands for them here.
+namespace notation {
+
+/// A character, or a command, and what the language writes.
+struct LookAlike {
+  std::string_view bytes, meant;
+};
+/// An operator of another language.
+struct Operator {
+  std::string_view symbol, help;
+};
+
+/// The row that `text` begins with, or null.
+LookAlike const* look_alike_at(std::string_view text);
+/// A raised digit or sign, with the one that it stands for.
+LookAlike const* superscript_at(std::string_view text);
+Operator const* operator_at(std::string_view text);
+
+/// Whether it is a command of LaTeX with something in its place here.
+bool is_command(std::string_view name);
+/// Help about a command of LaTeX, without its `\\`.
+std::string instead_of_command(std::string_view command);
+/// Help about a colon from `begin` to `end` of the text, by the tokens before it. first: nothing stands before it on its line.
+std::string instead_of_colon(std::string_view text, std::size_t begin, std::size_t end, bool first,
+                             std::vector<Token> const& tokens);
+
+}  // namespace notation
 
 }  // namespace sysid::grammar

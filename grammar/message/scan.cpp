@@ -1,51 +1,20 @@
 // Tokens by longest match, with the lexical mistakes met on the way.
-#include "grammar/scan.hpp"
+#include "grammar/message/scan.hpp"
+
+#include <fmt/format.h>
 
 #include <array>
 #include <charconv>
+#include <span>
 
 #include "core/text/utf8.hpp"
-#include "grammar/errors.hpp"
+#include "grammar/message/errors.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar {
 
 namespace {
 
-/// Characters that a word processor or a formula puts in the place of an operator, and what the language writes.
-struct LookAlike {
-  std::string_view bytes, meant;
-};
-constexpr std::array<LookAlike, 26> look_alikes{{
-    {"−", "`-`"},          {"–", "`-`"},          {"—", "`-`"},  {"×", "`*`"},  {"·", "`*`"},          {"⋅", "`*`"},
-    {"÷", "`/`"},          {"²", "`^2`"},         {"³", "`^3`"}, {"≤", "`<=`"}, {"≥", "`>=`"},         {"≠", "`!=`"},
-    {"′", "`'`"},          {"’", "`'`"},          {"‘", "`'`"},  {"“", "`\"`"}, {"”", "`\"`"},         {"″", "`''`"},
-    {"√", "`sqrt(...)`"},  {"∞", "`inf`"},        {"∙", "`*`"},  {"∗", "`*`"},  {"\u00a0", "a blank"}, {"\u202f", "a blank"},
-    {"\u2009", "a blank"}, {"\u200b", "nothing"},
-}};
-
-/// Operators of other languages.
-struct Foreign {
-  std::string_view symbol, help;
-};
-constexpr std::array<Foreign, 16> foreign_operators{{
-    {"...", "remove it: a line continues after an operator or a comma, and inside parentheses"},
-    {"**", "a power is written with `^`"},
-    {".^", "powers are written with `^`"},
-    {".*", "products are written with `*`"},
-    {"./", "quotients are written with `/`"},
-    {"~=", "write `!=`"},
-    {"<>", "write `!=`"},
-    {"+=", "a name cannot be given a second value: use another name"},
-    {"-=", "a name cannot be given a second value: use another name"},
-    {"*=", "a name cannot be given a second value: use another name"},
-    {"/*", "a comment begins with `#` or `//` and ends with its line"},
-    {"->", "an equation or a definition is written with `=`"},
-    {":=", "an equation or a definition is written with `=`"},
-    {"&&", "write `and`"},
-    {"||", "write `or`"},
-    {"!", "write `not`"},
-}};
 /// Names of elements are made of it by the thousand, and primes make a state of each.
 constexpr std::ptrdiff_t longest_word = 200;
 
@@ -110,9 +79,11 @@ class Scanner {
     } else if (words::is_digit(peek())) {
       kind = TokenKind::number;
       number_token();
-    } else if (LookAlike const* look_alike = find_look_alike()) {
+    } else if (notation::LookAlike const* look_alike = find_look_alike()) {
       at_ += look_alike->bytes.size();
       mistake(errors::look_alike(from(begin), look_alike->bytes, look_alike->meant));
+    } else if (is_superscript()) {
+      superscript_token();
     } else if (words::begins_name(peek())) {
       kind = TokenKind::word;
       word_token();
@@ -123,11 +94,22 @@ class Scanner {
     out_.tokens.push_back({kind, span, text_.substr(span.begin, span.end - span.begin), newline_before_});
   }
 
-  LookAlike const* find_look_alike() const {
-    if (static_cast<unsigned char>(peek()) < 0x80U) return nullptr;
-    for (LookAlike const& candidate : look_alikes)
-      if (follows(candidate.bytes)) return &candidate;
-    return nullptr;
+  notation::LookAlike const* find_look_alike() const { return notation::look_alike_at(text_.substr(at_)); }
+
+  bool is_superscript() const { return notation::superscript_at(text_.substr(at_)) != nullptr; }
+
+  /// `⁻³` as a power; `²` of `d²y/dt²` as that of a derivative.
+  void superscript_token() {
+    std::size_t const begin = at_;
+    std::string power;
+    while (notation::LookAlike const* row = notation::superscript_at(text_.substr(at_))) {
+      power += row->meant;
+      at_ += row->bytes.size();
+    }
+    bool const derivative =
+        begin > 0 && text_[begin - 1] == 'd' && words::begins_name(peek()) && !out_.tokens.empty() && out_.tokens.back().is("d");
+    mistake(errors::look_alike(from(begin), text_.substr(begin, at_ - begin),
+                               derivative ? "derivatives with primes, `y''`" : fmt::format("`^{}`", power)));
   }
 
   void text_token() {
@@ -217,7 +199,7 @@ class Scanner {
 
   void word_characters() {
     while (at_ < text_.size() && words::continues_name(peek())) {
-      if (find_look_alike() != nullptr) return;
+      if (find_look_alike() != nullptr || is_superscript()) return;
       std::size_t const character = at_;
       std::size_t const length = character_length(text_.substr(at_));
       at_ += length == 0 ? 1 : length;
@@ -228,11 +210,16 @@ class Scanner {
 
   void symbol_token() {
     std::size_t const begin = at_;
-    for (Foreign const& foreign : foreign_operators) {
-      if (follows(foreign.symbol) && !(foreign.symbol == "!" && follows("!="))) {
-        at_ += foreign.symbol.size();
-        return mistake(errors::foreign_operator(from(begin), foreign.symbol, foreign.help));
-      }
+    if (peek() == '\\') return latex_command();
+    if (peek() == ':' && peek(1) != '=') return colon();
+    if (follows("...") && ends_number() && words::is_digit(peek(3))) return three_dots();
+    if (peek() == '!' && peek(1) != '=' && ends_value()) {
+      ++at_;
+      return mistake(errors::foreign_operator(from(begin), "!", "a comment begins with `#` or `//`"));
+    }
+    if (notation::Operator const* const foreign = notation::operator_at(text_.substr(at_))) {
+      at_ += foreign->symbol.size();
+      return mistake(errors::foreign_operator(from(begin), foreign->symbol, foreign->help));
     }
     for (std::string_view const symbol : two_character_operators) {
       if (follows(symbol)) {
@@ -248,6 +235,46 @@ class Scanner {
     } else if (one_character_operators.find(symbol) == std::string_view::npos) {
       mistake(errors::stray_byte(from(begin), static_cast<unsigned char>(symbol)));
     }
+  }
+
+  bool ends_number() const { return !out_.tokens.empty() && !newline_before_ && out_.tokens.back().kind == TokenKind::number; }
+  bool ends_value() const {
+    return !out_.tokens.empty() && !newline_before_ &&
+           (out_.tokens.back().kind != TokenKind::symbol || out_.tokens.back().is(")") || out_.tokens.back().is("]"));
+  }
+
+  void three_dots() {
+    std::size_t const begin = at_, digits_from = at_ + 3;
+    std::size_t end = digits_from;
+    while (end < text_.size() && words::is_digit(text_[end])) ++end;
+    at_ += 3;
+    mistake(errors::foreign_operator(from(begin), "...",
+                                     fmt::format("a range is written with two dots: `{}..{}`", out_.tokens.back().text,
+                                                 text_.substr(digits_from, end - digits_from))));
+  }
+
+  /// `\ddot{y}`: with its name it is one character without meaning.
+  void latex_command() {
+    std::size_t const begin = at_++;
+    std::size_t const name = at_;
+    while ((peek() >= 'a' && peek() <= 'z') || (peek() >= 'A' && peek() <= 'Z')) ++at_;
+    std::string_view const command = text_.substr(name, at_ - name);
+    bool const behind_name = begin > 0 && words::continues_name(text_[begin - 1]);
+    if (command.empty() || (behind_name && !notation::is_command(command))) {
+      at_ = name;  // `N\m`
+      return mistake(errors::no_meaning(from(begin), "the character `\\`", "a quotient is written with `/`"));
+    }
+    mistake(errors::no_meaning(from(begin), fmt::format("the command `{}` of LaTeX", text_.substr(begin, at_ - begin)),
+                               notation::instead_of_command(command)));
+  }
+
+  /// A colon, by what stands before it.
+  void colon() {
+    std::size_t const begin = at_;
+    ++at_;
+    if (peek() == ':') ++at_;
+    mistake(errors::no_meaning(from(begin), fmt::format("the character `{}`", text_.substr(begin, at_ - begin)),
+                               notation::instead_of_colon(text_, begin, at_, newline_before_, out_.tokens)));
   }
 
   std::string_view text_;

@@ -1,5 +1,5 @@
 // A table of situations, first match wins.
-#include "grammar/hints.hpp"
+#include "grammar/message/hints.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 
 #include "core/numeric/unit.hpp"
-#include "grammar/explain.hpp"
+#include "grammar/message/explain.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar {
@@ -141,38 +141,25 @@ std::string options_without_with(Gap const& gap) {
                      behind_comma ? " in place of the comma" : "");
 }
 
-/// `2,5`: the comma between two whole numbers that no blank holds apart.
+/// Of whole digits only.
+bool is_whole(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
+
+/// `2,5`, `1,234.5`, `1.000,5`: the comma between two numbers that no blank holds apart.
 std::string decimal_comma(Gap const& gap) {
   Token const* const left = gap.before();
-  if (!found(gap, ",") || left == nullptr || gap.at + 1 >= gap.statement.size()) return {};
-  Token const& right = gap.statement[gap.at + 1];
-  bool const digits = left->kind == TokenKind::number && right.kind == TokenKind::number &&
-                      right.text.find_first_not_of("0123456789") == std::string_view::npos &&
-                      left->text.find_first_not_of("0123456789") == std::string_view::npos;
-  bool const close = left->span.end == gap.found->span.begin && gap.found->span.end == right.span.begin;
-  return digits && close ? fmt::format("write the number with a decimal point: `{}.{}`", left->text, right.text) : std::string();
-}
-
-/// The tokens from `from` on that are a unit on paper, `N s/m^2`: one past the last; `from` where there is none.
-std::size_t end_of_unit(std::span<Token const> statement, std::size_t from) {
-  std::size_t end = from;
-  bool factor = true;  // one may come next
-  for (std::size_t i = from; i < statement.size(); ++i) {
-    Token const& token = statement[i];
-    bool const power = i > from && statement[i - 1].is("^");
-    if (token.kind == TokenKind::word && !power && unit_atom(token.text)) {
-      if (i + 1 < statement.size() && statement[i + 1].is("(")) break;
-      end = i + 1;
-      factor = false;
-    } else if (token.kind == TokenKind::number && power) {
-      end = i + 1;
-    } else if (factor || !(token.is("/") || token.is("*") || token.is("^"))) {
-      break;
-    } else {
-      factor = !token.is("^");
-    }
-  }
-  return end;
+  Token const* const right = gap.next();
+  if (!found(gap, ",") || left == nullptr || right == nullptr || left->kind != TokenKind::number ||
+      right->kind != TokenKind::number)
+    return {};
+  if (left->span.end != gap.found->span.begin || gap.found->span.end != right->span.begin) return {};
+  std::size_t const point = right->text.find('.'), thousands = left->text.find('.');
+  if (is_whole(left->text) && point == 3) return fmt::format("digits are not grouped: write `{}{}`", left->text, right->text);
+  if (thousands != std::string_view::npos && left->text.size() == thousands + 4 && is_whole(right->text))
+    return fmt::format("digits are not grouped, and a decimal point is `.`: write `{}{}.{}`", left->text.substr(0, thousands),
+                       left->text.substr(thousands + 1), right->text);
+  if (!is_whole(left->text) || !is_whole(right->text)) return {};
+  std::string const decimal = fmt::format("write the number with a decimal point: `{}.{}`", left->text, right->text);
+  return right->text.size() == 3 ? fmt::format("{}; digits are not grouped: `{}{}`", decimal, left->text, right->text) : decimal;
 }
 
 /// What lacks one sign: the statement with it.
@@ -209,6 +196,46 @@ std::string repaired_statement(Gap const& gap) {
 
 std::string_view written(Token const& first, Token const& last) {
   return {first.text.data(), static_cast<std::size_t>(last.text.data() + last.text.size() - first.text.data())};
+}
+
+std::size_t end_of_unit(std::span<Token const> statement, std::size_t from) {
+  std::size_t end = from;
+  bool factor = true;  // one may come next
+  for (std::size_t i = from; i < statement.size(); ++i) {
+    Token const& token = statement[i];
+    bool const power = i > from && statement[i - 1].is("^");
+    if (token.kind == TokenKind::word && !power && unit_atom(token.text)) {
+      if (i + 1 < statement.size() && statement[i + 1].is("(")) break;
+      end = i + 1;
+      factor = false;
+    } else if (token.kind == TokenKind::number && power) {
+      end = i + 1;
+    } else if (factor || !(token.is("/") || token.is("*") || token.is("^"))) {
+      break;
+    } else {
+      factor = !token.is("^");
+    }
+  }
+  return end;
+}
+
+std::size_t Gap::find(std::string_view symbol, std::size_t from) const {
+  while (from < statement.size() && !statement[from].is(symbol)) ++from;
+  return std::min(from, statement.size());
+}
+
+std::string_view Gap::text(std::size_t from, std::size_t end) const {
+  return from < std::min(end, statement.size()) ? written(statement[from], statement[std::min(end, statement.size()) - 1])
+                                                : std::string_view();
+}
+
+std::size_t Gap::closing(std::size_t opener) const {
+  int depth = 0;
+  for (std::size_t i = opener; i < statement.size(); ++i) {
+    depth += statement[i].is("(") || statement[i].is("[") ? 1 : statement[i].is(")") || statement[i].is("]") ? -1 : 0;
+    if (depth == 0) return i;
+  }
+  return statement.size();
 }
 
 std::string unit_without_brackets(Gap const& gap) {
@@ -248,6 +275,8 @@ std::string instead_of_product(Gap const& gap) {
 }
 
 std::string hint(Gap const& gap) {
+  if (std::string here = hint_in_model(gap); !here.empty()) return here;
+  if (std::string here = hint_in_block(gap); !here.empty()) return here;
   if (std::string options = options_without_with(gap); !options.empty()) return options;
   if (std::string point = decimal_comma(gap); !point.empty()) return point;
   if (std::string repaired = repaired_statement(gap); !repaired.empty()) return repaired;

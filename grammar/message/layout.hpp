@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "grammar/scan.hpp"
+#include "grammar/message/scan.hpp"
 
 namespace sysid::grammar {
 

@@ -1,0 +1,265 @@
+// What stands behind a prior, a declared name or a definition and does not belong there; products, signs and words of paper.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "grammar/message/explain.hpp"
+#include "grammar/message/hints.hpp"
+#include "syntax/words.hpp"
+
+namespace sysid::grammar {
+
+namespace {
+
+constexpr std::array<std::string_view, 13> truncations{"T",       "I",           "trunc",  "truncated", "truncate",
+                                                       "bounded", "bounds",      "limits", "limited",   "restricted",
+                                                       "between", "constrained", "clipped"};
+constexpr std::array<std::string_view, 8> start_words{"start", "init", "initial", "initially", "at", "from", "guess", "value"};
+constexpr std::array<std::string_view, 3> definitions{"let", "derive", "constant"};
+
+std::string no_start(std::string_view rest) {
+  return fmt::format("remove `{}`: a parameter has no start value, the search begins at draws of the prior", rest);
+}
+
+/// The words of a unit, with or without quotes around them, as it is written; empty where they are none.
+std::string bracketed_unit(Gap const& gap, std::size_t from, std::size_t end) {
+  if (from >= end) return {};
+  if (gap.statement[from].kind == TokenKind::text) {
+    std::string_view const quoted = gap.statement[from].text;
+    return quoted.size() > 2 ? fmt::format("[{}]", quoted.substr(1, quoted.size() - 2)) : std::string();
+  }
+  return end_of_unit(gap.statement, from) == end ? fmt::format("[{}]", gap.text(from, end)) : std::string();
+}
+
+/// `normal(20, sd = 5)T(0, 100)`: the prior with its bounds inside.
+std::string truncation(Gap const& gap, std::size_t tilde) {
+  if (!gap.found_word() || gap.next() == nullptr || !(gap.next()->is("(") || gap.next()->is("["))) return {};
+  if (!words::contains(truncations, gap.found->text)) return {};
+  std::size_t const opener = gap.at + 1, close = gap.closing(opener), comma = gap.find(",", opener);
+  if (gap.statement[tilde + 1].is("uniform") || gap.statement[tilde + 1].is("log_uniform"))
+    return fmt::format("remove `{}`: the arguments of `{}` are its bounds", gap.rest(), gap.statement[tilde + 1].text);
+  std::string_view const lower = gap.text(opener + 1, std::min(comma, close)),
+                         upper = comma < close ? gap.text(comma + 1, close) : std::string_view();
+  return fmt::format("bounds are arguments of the prior: `{}{}{}{}{})`", gap.text(tilde + 1, gap.at - 1),
+                     lower.empty() ? "" : ", lower = ", lower, upper.empty() ? "" : ", upper = ", upper);
+}
+
+/// Behind the distribution of a prior or of a channel.
+std::string behind_distribution(Gap const& gap) {
+  std::size_t const tilde = gap.find("~");
+  bool const parameter = gap.begins_with("parameter");
+  if (gap.wanted != wanted::end_of_statement || gap.found == nullptr || tilde + 2 >= gap.at || tilde < 2) return {};
+  if (!parameter && !gap.begins_with("observe")) return {};
+  std::string_view const head = gap.text(0, tilde), prior = gap.text(tilde + 1, gap.at);
+  std::size_t const unit = gap.find("[");
+  if (gap.found->is("[") && gap.closing(gap.at) < gap.statement.size()) {
+    std::string_view const written_unit = gap.text(gap.at, gap.closing(gap.at) + 1);
+    return unit < tilde ? fmt::format("remove `{}`: numbers here are in the unit of `{}`", written_unit, gap.statement[1].text)
+                        : fmt::format("the unit stands behind the name: `{} {} ~ {}`", head, written_unit, prior);
+  }
+  if (parameter && gap.found->is("per")) {
+    std::size_t const name_end = std::min(unit, tilde);
+    return fmt::format("`per experiment` stands behind the name: `{} per experiment{}{} ~ {}`", gap.text(0, name_end),
+                       name_end < tilde ? " " : "", gap.text(name_end, tilde), prior);
+  }
+  if (!parameter) return fmt::format("remove `{}`", gap.rest());
+  if (std::string bounds = truncation(gap, tilde); !bounds.empty()) return bounds;
+  if (gap.found->is("=")) return fmt::format("a parameter has a prior or a value: remove `{}`", gap.rest());
+  if (gap.found->is(",") && gap.next() != nullptr && gap.next()->newline_before) return "remove the comma";
+  Token const* const sign = gap.next(2);
+  bool const bound = gap.found->is(",") && sign != nullptr && (sign->is("<") || sign->is(">") || sign->is("<=") || sign->is(">="));
+  if (bound && gap.next(3) != nullptr)
+    return fmt::format("bounds are arguments of the prior: `{}, {} = {})`", gap.text(tilde + 1, gap.at - 1),
+                       sign->text.front() == '>' ? "lower" : "upper", gap.text(gap.at + 3, gap.statement.size()));
+  return gap.found->is(",") || gap.found_word() ? no_start(gap.rest()) : std::string();
+}
+
+/// `~ pm.Normal(0, 1)`, `~ flat`: a distribution with a module before it, or without parentheses.
+std::string at_distribution(Gap const& gap) {
+  if (!gap.wanted.starts_with("a distribution") || !gap.found_word()) return {};
+  if (gap.next() != nullptr && gap.next()->is(".")) return fmt::format("write the distribution without `{}.`", gap.found->text);
+  return gap.next() == nullptr && gap.found->is("flat") ? "write `flat()`" : "";
+}
+
+/// The name that was declared last before the gap, without what follows it.
+std::string_view declared_name(Gap const& gap) {
+  std::size_t name = 1;
+  for (std::size_t i = 1; i < gap.at; ++i)
+    if (gap.statement[i].is(",")) name = i + 1;
+  return name < gap.statement.size() ? gap.statement[name].text : std::string_view();
+}
+
+/// The number among the tokens from the gap on: of `start 0`, `(start = 0)`, `= -1`.
+std::string number_in_rest(Gap const& gap) {
+  for (std::size_t i = gap.at; i < gap.statement.size(); ++i)
+    if (gap.statement[i].kind == TokenKind::number)
+      return fmt::format("{}{}", gap.statement[i - 1].is("-") ? "-" : "", gap.statement[i].text);
+  return {};
+}
+
+/// Behind a declared name, before a `=` or a `~`.
+std::string behind_declared(Gap const& gap) {
+  bool const state = gap.begins_with("state"), input = gap.begins_with("input"), parameter = gap.begins_with("parameter");
+  bool const at_end = gap.wanted == wanted::end_of_statement;
+  if (gap.found == nullptr || !at_end || !(state || input || parameter) || gap.at < 2) return {};
+  if (gap.find("=") < gap.at || gap.find("~") < gap.at) return {};
+  std::string_view const name = declared_name(gap), rest = gap.rest();
+  std::string const number = number_in_rest(gap);
+  bool const starts = gap.found->is("=") || gap.found->is("(") || words::contains(start_words, gap.found->text);
+  if (state && starts && !number.empty())
+    return fmt::format("an initial value is a statement of its own: remove `{}` and write `initial {} = {}`", rest, name, number);
+  if (state && gap.found->is("="))
+    return fmt::format("what measures a state is an observation: remove `{}` and write `observe {} ~ normal({}, sd = 1)`", rest,
+                       gap.next() == nullptr ? "channel" : gap.next()->text, name);
+  if (state && gap.found->is("~"))
+    return fmt::format("a start to be found is a parameter: `parameter {0}0 ~ ...` and `initial {0} = {0}0`", name);
+  if (input && gap.found->is("=")) return fmt::format("the column of an input stands in the data block: remove `{}` here", rest);
+  if (input && gap.found->is("hold"))
+    return fmt::format("the rule between samples stands in the data block: remove `{}` here", rest);
+  if ((state || input) && gap.found_word() && gap.found->text.ends_with('\'')) {
+    std::string_view const bare = gap.found->text.substr(0, gap.found->text.find('\''));
+    std::size_t const end = std::min(gap.find(",", gap.at), gap.statement.size());
+    return gap.at == 1
+               ? fmt::format("declare it without primes: `{} {}`", gap.statement[0].text, bare)
+               : fmt::format("derivatives are not declared, they follow from `{}`: remove `{}`", bare, gap.text(gap.at - 1, end));
+  }
+  if (gap.found->is("in") && gap.next() != nullptr && gap.next()->is("[")) return "remove `in`";
+  if (parameter && gap.found->is("per") && gap.before()->is("]"))
+    return fmt::format("`per experiment` stands before the unit: `{} per experiment {}`", gap.text(0, gap.find("[")),
+                       gap.text(gap.find("["), gap.at));
+  if (gap.found->is("<")) {
+    std::size_t const end = gap.find(">", gap.at);
+    if (std::string const unit = bracketed_unit(gap, gap.at + 1, end); !unit.empty() && end < gap.statement.size())
+      return fmt::format("a unit is written in brackets: `{} {}`", name, unit);
+    if (parameter && end < gap.statement.size())
+      return fmt::format("bounds are arguments of the prior, `normal(0, sd = 1, lower = 0)`: remove `{}`",
+                         gap.text(gap.statement[1].is("real") ? 1 : gap.at, end + 1));
+  }
+  if (parameter && (gap.found->is(">") || gap.found->is("<") || gap.found->is(">=") || gap.found->is("<=")))
+    return fmt::format("bounds are arguments of a prior: `{} ~ normal(0, sd = 1, {} = {})`", gap.text(0, gap.at),
+                       gap.found->text.front() == '>' ? "lower" : "upper", gap.text(gap.at + 1, gap.statement.size()));
+  if (gap.found->kind == TokenKind::text)
+    return fmt::format("a unit is written in brackets: `{} {}`", name, bracketed_unit(gap, gap.at, gap.at + 1));
+  if (gap.found->is("'")) {
+    std::string_view quoted = gap.text(gap.at + 1, std::min(gap.find("~"), gap.find("=")));
+    if (quoted.ends_with('\'')) quoted.remove_suffix(1);
+    return fmt::format("a unit is written in brackets: `{} [{}]`", name, quoted);
+  }
+  return {};
+}
+
+/// Inside the brackets of a unit.
+std::string in_unit(Gap const& gap) {
+  if (gap.wanted != "a unit" || gap.found == nullptr) return {};
+  if (gap.found->kind == TokenKind::text)
+    return fmt::format("a unit is written without quotes: `{}`", bracketed_unit(gap, gap.at, gap.at + 1));
+  if (gap.found->is("]")) return "write the unit in the brackets, `[N s/m]`, or `[-]` for a pure number";
+  if (gap.found->is("[")) return "write one pair of brackets";
+  return {};
+}
+
+/// `fn = sqrt(k/m) [Hz]`, `derive [Hz] fn`, `spring [N] = k*y`, `q[n] [m]`: a unit, or a size, in another place.
+std::string at_bracket(Gap const& gap) {
+  if (!gap.found_is("[") || gap.closing(gap.at) >= gap.statement.size() || gap.wanted.starts_with("a ")) return {};
+  std::size_t const close = gap.closing(gap.at), equals = gap.find("=");
+  std::string_view const unit = gap.text(gap.at, close + 1);
+  bool const definition = words::contains(definitions, gap.statement[0].text), parameter = gap.begins_with("parameter");
+  bool const keyword = words::contains(words::model_statements, gap.statement[0].text);
+  if (gap.at == 1 && keyword && close + 1 < gap.statement.size())
+    return fmt::format("the unit stands behind the name: `{} {} {}`", gap.statement[0].text, gap.statement[close + 1].text, unit);
+  if (gap.at == 1 && !keyword && equals == close + 1 && equals < gap.statement.size())
+    return fmt::format("a definition begins with `let`: `let {}`", gap.text(0, gap.statement.size()));
+  if (gap.at == 1 && !keyword && close + 1 == gap.statement.size())
+    return fmt::format("a declaration begins with its keyword: `state {0}`, `parameter {0} ~ ...`, `let {0} = ...`",
+                       gap.text(0, close + 1));
+  if ((definition || parameter) && equals < gap.at)
+    return gap.find("[") < equals ? fmt::format("remove `{}`: the value has the unit of `{}`", unit, gap.statement[1].text)
+                                  : fmt::format("the unit stands behind the name: `{} {} = {}`", gap.text(0, equals), unit,
+                                                gap.text(equals + 1, gap.at));
+  bool const declares = keyword && gap.wanted == wanted::end_of_statement && gap.at >= 2;
+  if (declares && gap.before()->is("]") && gap.at >= 4)
+    return fmt::format("the size of a vector is written in parentheses: `{}({})`", declared_name(gap),
+                       gap.text(gap.find("[") + 1, gap.at - 1));
+  return {};
+}
+
+/// Behind `let name`, where `=` is missing.
+std::string in_definition(Gap const& gap) {
+  if (!words::contains(definitions, gap.statement[0].text) || gap.found == nullptr) return {};
+  if (gap.wanted == wanted::name && gap.found->kind == TokenKind::number) return "a name begins with a letter or `_`";
+  if (gap.wanted != wanted::equals || gap.at < 2) return {};
+  bool const one = gap.found_word() && gap.next() != nullptr && (gap.next()->is("=") || gap.next()->is("["));
+  bool const other = gap.found->is("-") && gap.next(2) != nullptr && gap.next()->kind == TokenKind::word && gap.next(2)->is("=");
+  if (one || other) return fmt::format("a name is one word: `{}_{}`", gap.before()->text, one ? gap.found->text : gap.next()->text);
+  if (gap.found_word() || gap.found->kind == TokenKind::number)
+    return fmt::format("write `{} = {}`", gap.text(0, gap.at), gap.rest());
+  return {};
+}
+
+std::string in_initial(Gap const& gap) {
+  if (!gap.begins_with("initial") || gap.found == nullptr) return {};
+  if (std::size_t const both = gap.find("and"); gap.found->is("=") && both < gap.at)
+    return fmt::format("separate initial values by commas: `{}, {}`", gap.text(0, both), gap.text(both + 1, gap.statement.size()));
+  if (gap.found->is("~") && gap.before() != nullptr && gap.before()->kind == TokenKind::word) {
+    std::string const state(gap.before()->text);
+    return fmt::format("an initial value to be found is a parameter: `parameter {0}0 ~ ...` and `initial {1} = {0}0`",
+                       state.substr(0, state.find('\'')), state);
+  }
+  if (gap.wanted == wanted::name && gap.found->kind == TokenKind::number)
+    return "an initial value names its state: `initial y = 0`";
+  return {};
+}
+
+/// Values side by side, signs and points of paper.
+std::string in_expression(Gap const& gap) {
+  Token const *left = gap.before(), *right = gap.found;
+  if (right == nullptr || left == nullptr) return {};
+  bool const number = left->kind == TokenKind::number;
+  bool const side_by_side = gap.wanted == wanted::operator_between;
+  if (side_by_side && number && (right->is("pi") || right->is("π")))
+    return gap.before(2) != nullptr && gap.before(2)->is("/")
+               ? fmt::format("a product below a fraction bar is in parentheses: `/({}*pi)`", left->text)
+               : fmt::format("multiplication is written with `*`: `{}*pi`", left->text);
+  if (side_by_side && number && right->is("x") && gap.next(2) != nullptr && gap.next()->is("10") && gap.next(2)->is("^"))
+    return fmt::format("a power of ten is written `{}e{}`", left->text,
+                       gap.text(gap.at + 3, std::min(gap.at + 4, gap.statement.size())));
+  if (side_by_side && right->is("end")) return "remove `end`";
+  if (side_by_side && left->is("return")) return "remove `return`";
+  if (side_by_side && right->is("(") && left->text.ends_with('\'')) {
+    Token const *inside = gap.next(), *close = gap.next(2), *sign = gap.next(3);
+    if (inside != nullptr && close != nullptr && close->is(")"))
+      return sign != nullptr && sign->is("=") && inside->kind == TokenKind::number
+                 ? fmt::format("an initial value is written `initial {} = {}`", left->text,
+                               gap.text(gap.at + 4, gap.statement.size()))
+                 : fmt::format("write `{}` without `({})`: a quantity is written without its time", left->text, inside->text);
+  }
+  bool const conditional = side_by_side && left->is(")") && gap.find("if") < gap.at && gap.find("then") > gap.at;
+  if (conditional) return "a value that depends on a condition is written `if condition then value else value`";
+  if (side_by_side && gap.begins_with("parameter") && gap.find("=") < gap.at && number &&
+      ((gap.found_word() && right->text.front() != '_') || right->is("(")) && end_of_unit(gap.statement, gap.at) == gap.at)
+    return fmt::format("remove `{}`, or write an uncertain value as a prior: `{} ~ normal({}, sd = 1)`", gap.rest(),
+                       gap.text(0, gap.find("=")), left->text);
+  if (gap.begins_with("parameter") && right->is("..") && number && gap.next() != nullptr)
+    return fmt::format("a range of values is a prior: `{} ~ uniform({}, {})`", gap.text(0, gap.find("=")), left->text,
+                       gap.text(gap.at + 1, gap.statement.size()));
+  if (gap.begins_with("parameter") && right->is("~") && gap.find("=") < gap.at)
+    return fmt::format("a parameter has a prior or a value: `{} {}`", gap.text(0, gap.find("=")), gap.rest());
+  if (right->is(".") && gap.at + 1 == gap.statement.size()) return "remove the `.`";
+  if (right->is("+") && gap.wanted == wanted::value && !left->is("+") && !left->is("-") && !left->is("*") && !left->is("/"))
+    return "remove the `+`";
+  if (right->is("*") && left->is("(") && gap.wanted == wanted::value) return "a comment begins with `#` or `//`";
+  return {};
+}
+
+}  // namespace
+
+std::string hint_in_model(Gap const& gap) {
+  if (gap.statement.empty()) return {};
+  for (auto const look : {&behind_distribution, &at_distribution, &behind_declared, &in_unit, &at_bracket, &in_definition,
+                          &in_initial, &in_expression})
+    if (std::string help = look(gap); !help.empty()) return help;
+  return {};
+}
+
+}  // namespace sysid::grammar
