@@ -1,5 +1,6 @@
 // The Target of one model on its experiments: what samplers and optimisers see. Nothing of the language passes beyond this file.
 #pragma once
+#include <Eigen/Core>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -21,7 +22,8 @@ struct TargetOptions {
 
 /// The log likelihood is the sum over the experiments, in their order, of that of each; residual rows follow one another in the
 /// same order. Experiments differ in times, inputs, rows, start and in the parameters that are theirs; a channel that one does not
-/// measure takes no part there. Threads share (block of lanes, experiment).
+/// measure takes no part there. Threads share (block of lanes, experiment). Lanes that differ in nothing that an experiment reads
+/// are one simulation of it, and count as one.
 class ModelTarget : public Target {
  public:
   /// compiled: with a free start exactly when options.start_rows > 0. experiments: those of the space, in its order.
@@ -41,6 +43,12 @@ class ModelTarget : public Target {
   int residual_count() const override;
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
   double roughness() const override;
+  // An experiment is simulated for the coordinates that it reads; by others its derivatives are 0.
+  double derivative_cost() const override;
+  void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const override;
+  void residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const override;
+  void gauss_newton(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature,
+                    Ledger& ledger) const override;
   void constrain(ConstLanes theta, Lanes declared) const override { space_->constrain(theta, declared); }
   void unconstrain(ConstLanes declared, Lanes theta) const override { space_->unconstrain(declared, theta); }
 
@@ -57,10 +65,41 @@ class ModelTarget : public Target {
 
  private:
   struct Part;  // what simulates one experiment
-  /// theta [D x W] -> per experiment all parameter rows of its simulations, SI, the start state included.
-  std::vector<LaneArray> simulation_parameters(ConstLanes theta) const;
-  void record_failures(Simulator const& simulator, std::size_t experiment, LaneArray const& parameters,
-                       std::span<Outcome const> outcome, ConstLanes theta, Ledger& ledger) const;
+  /// The different parameter vectors among the lanes of a batch, as one experiment reads them.
+  struct Columns {
+    LaneArray parameters;      // [parameter rows x C] of its simulations, SI, the start state included
+    std::vector<int> example;  // [C] a lane that has them
+    std::vector<int> of_lane;  // [W] the column of each lane
+  };
+  /// Of a batch in one experiment: sums of the likelihood, or sums and records of the residuals.
+  struct Run {
+    LaneArray sums, records;
+    std::vector<Outcome> outcome;  // [C]
+  };
+  /// Whether a lane, and its neighbours along each coordinate, have a solution in every experiment that reads what moves.
+  struct Usable {
+    bool centre = true;
+    std::vector<bool> ahead, behind;  // [D]
+  };
+  /// What one lane's residuals are in one experiment, and their slopes by the coordinates that it reads.
+  using SeeSlopes = std::function<void(int experiment, int lane, Eigen::VectorXd const& residuals, Eigen::MatrixXd const& slopes)>;
+
+  /// theta: per experiment [D x W].
+  std::vector<Columns> columns_of(std::span<ConstLanes const> theta) const;
+  std::vector<Columns> columns_of(ConstLanes theta) const;
+  Columns different(ConstLanes values, int experiment) const;
+  std::vector<Run> run_likelihood(std::vector<Columns> const& columns) const;
+  std::vector<Run> run_residuals(std::vector<Columns> const& columns) const;
+  /// Of a column that did not fail.
+  double residual(ResidualPlace const& place, Run const& run, int column) const;
+  /// theta: per experiment, as given to `columns_of`.
+  void record_failures(bool of_residuals, std::vector<Columns> const& columns, std::vector<Run> const& runs,
+                       std::span<ConstLanes const> theta, Ledger& ledger) const;
+  void record_failures(Simulator const& simulator, int experiment, Columns const& columns, std::span<Outcome const> outcome,
+                       ConstLanes theta, Ledger& ledger) const;
+  std::vector<Usable> usable(std::vector<Columns> const& columns, std::vector<Run> const& runs, int width) const;
+  /// Every lane that did not fail, in every experiment; differences over `steps`.
+  void see_slopes(ConstLanes theta, std::span<double const> steps, Ledger& ledger, SeeSlopes const& see) const;
 
   std::shared_ptr<CompiledModel const> compiled_;
   std::shared_ptr<ParameterSpace const> space_;
@@ -69,6 +108,7 @@ class ModelTarget : public Target {
   std::shared_ptr<ThreadPool> pool_;  // absent for one thread
   std::vector<Part> parts_;
   std::vector<ResidualPlace> places_;
+  std::vector<int> first_place_;  // of each experiment, and the end
 };
 
 }  // namespace sysid

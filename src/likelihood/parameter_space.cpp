@@ -125,6 +125,12 @@ void ParameterSpace::compile() {
     else
       for (int e = 0; e < static_cast<int>(experiments_.size()); ++e) add(row(e, p));
   }
+  for (NodeId const each : value) {
+    std::vector<int>& read = coordinates_of_.emplace_back();
+    for (NodeId const id : graph.reachable({&each, 1}))
+      if (graph[id].operation == Operation::leaf && graph[id].leaf_kind == LeafKind::unconstrained) read.push_back(graph[id].index);
+    std::sort(read.begin(), read.end());
+  }
   constrain_ = compile_kernel(graph, coordinates, value);
   unconstrain_ = compile_kernel(graph, leaves, backward);
   NodeId const densities[] = {with_jacobian, without};

@@ -52,6 +52,9 @@ class ParameterSpace {
   int row(int experiment, int parameter) const {
     return row_of_[static_cast<std::size_t>(experiment)][static_cast<std::size_t>(parameter)];
   }
+  /// The coordinates that the value of a row reads, ascending: its own, and those of the parameters that its bounds read; none of a
+  /// fixed row.
+  std::vector<int> const& coordinates_of(int row) const { return coordinates_of_[static_cast<std::size_t>(row)]; }
 
   // As Target describes them; theta [D x W].
   void sample_prior(StreamKey key, Lanes theta) const;
@@ -85,6 +88,7 @@ class ParameterSpace {
   std::vector<FittedParameter> rows_;
   std::vector<std::vector<int>> row_of_;  // [experiments][model parameters]
   std::vector<int> sampled_;
+  std::vector<std::vector<int>> coordinates_of_;  // [rows]
   std::vector<ParameterInfo> infos_;
   Kernel constrain_;    // u [D] -> values
   Kernel unconstrain_;  // values -> u [D]

@@ -1,6 +1,7 @@
 // Derivatives by central differences, for targets that have no better ones.
 #include "likelihood/target.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +15,7 @@ constexpr int prior_draws = 256;
 constexpr std::uint64_t scale_step = 97;  // of Purpose::start
 
 /// Per lane of theta [P x W] its own column, then a step ahead and one behind along each coordinate: 2 P + 1 columns each.
-LaneArray moved_lanes(ConstLanes theta, std::vector<double> const& step) {
+LaneArray moved_lanes(ConstLanes theta, std::span<double const> step) {
   int const dimension = theta.rows(), columns = 2 * dimension + 1;
   LaneArray points(dimension, columns * theta.width());
   for (int w = 0; w < theta.width(); ++w)
@@ -24,14 +25,6 @@ LaneArray moved_lanes(ConstLanes theta, std::vector<double> const& step) {
         points(p, w * columns + c) = theta(p, w) + sign * step[static_cast<std::size_t>(p)];
       }
   return points;
-}
-
-/// The slope from the values of one function ahead, at and behind a place: of those two that are finite, 0 where there are none.
-double slope(double ahead, double at, double behind, double step) {
-  if (!std::isfinite(at)) return 0;
-  bool const up = std::isfinite(ahead), down = std::isfinite(behind);
-  if (!up && !down) return 0;
-  return ((up ? ahead : at) - (down ? behind : at)) / ((up ? step : 0) + (down ? step : 0));
 }
 
 std::vector<double> scaled(std::vector<double> values, double by) {
@@ -46,11 +39,18 @@ void take_differences(std::span<double const> values, std::vector<double> const&
     double const* const f = values.data() + w * columns;
     out[w] = f[0];
     for (std::size_t p = 0; p < steps.size(); ++p)
-      gradient(static_cast<int>(p), static_cast<int>(w)) = slope(f[2 * p + 1], f[0], f[2 * p + 2], steps[p]);
+      gradient(static_cast<int>(p), static_cast<int>(w)) = central_slope(f[2 * p + 1], f[0], f[2 * p + 2], steps[p]);
   }
 }
 
 }  // namespace
+
+double central_slope(double ahead, double at, double behind, double step) {
+  if (!std::isfinite(at)) return 0;
+  bool const up = std::isfinite(ahead), down = std::isfinite(behind);
+  if (!up && !down) return 0;
+  return ((up ? ahead : at) - (down ? behind : at)) / ((up ? step : 0) + (down ? step : 0));
+}
 
 double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
 
@@ -70,8 +70,10 @@ std::vector<double> const& Target::prior_widths() const {
   });
 }
 
+std::vector<double> Target::difference_steps() const { return scaled(prior_widths(), difference_width(*this)); }
+
 void Target::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
-  std::vector<double> const steps = scaled(prior_widths(), difference_width(*this));
+  std::vector<double> const steps = difference_steps();
   LaneArray const points = moved_lanes(theta, steps);
   std::vector<double> values(static_cast<std::size_t>(points.width()));
   log_likelihood(points, values, ledger);
@@ -88,7 +90,7 @@ void Target::log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes g
 }
 
 void Target::residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const {
-  std::vector<double> const steps = scaled(prior_widths(), difference_width(*this));
+  std::vector<double> const steps = difference_steps();
   LaneArray const points = moved_lanes(theta, steps);
   LaneArray rows(residual_count(), points.width());
   residuals(points, rows, ledger);
@@ -98,8 +100,32 @@ void Target::residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian
       double const* const f = rows.row(r).data() + w * columns;
       out(r, w) = f[0];
       for (int p = 0; p < dimension; ++p)
-        jacobian(r * dimension + p, w) = slope(f[2 * p + 1], f[0], f[2 * p + 2], steps[static_cast<std::size_t>(p)]);
+        jacobian(r * dimension + p, w) = central_slope(f[2 * p + 1], f[0], f[2 * p + 2], steps[static_cast<std::size_t>(p)]);
     }
+}
+
+void Target::gauss_newton(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature, Ledger& ledger) const {
+  LaneArray const points = moved_lanes(theta, steps);
+  LaneArray rows(residual_count(), points.width());
+  residuals(points, rows, ledger);
+  int const dimension = theta.rows(), columns = 2 * dimension + 1;
+  Eigen::VectorXd centre(rows.rows());
+  Eigen::MatrixXd jacobian(rows.rows(), dimension);
+  for (int w = 0; w < theta.width(); ++w) {
+    for (int r = 0; r < rows.rows(); ++r) {
+      double const* const f = rows.row(r).data() + w * columns;
+      centre(r) = f[0];
+      for (int p = 0; p < dimension; ++p)
+        jacobian(r, p) = central_slope(f[2 * p + 1], f[0], f[2 * p + 2], steps[static_cast<std::size_t>(p)]);
+    }
+    bool const finite = centre.allFinite();
+    Eigen::VectorXd const slope = -jacobian.transpose() * centre;
+    Eigen::MatrixXd const squares = jacobian.transpose() * jacobian;
+    for (int p = 0; p < dimension; ++p) {
+      gradient(p, w) = finite ? slope(p) : 0;
+      for (int q = 0; q < dimension; ++q) curvature(p * dimension + q, w) = finite ? squares(p, q) : 0;
+    }
+  }
 }
 
 }  // namespace sysid

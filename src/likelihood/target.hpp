@@ -53,12 +53,22 @@ class Target {
   virtual void log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian = true) const;
   /// Residuals [R x W] as above, and their derivatives: row r P + p of jacobian [R P x W] is d r_r / d theta_p; 0 in failed lanes.
   virtual void residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const;
+  /// What a Gauss-Newton step needs at each theta [P x W]: gradient -J'r [P x W] of the log likelihood, and curvature J'J [P P x
+  /// W], element (p, q) in row p P + q. r and J as above, but differences are over `steps` [P], where there are any. Both are 0
+  /// where a solve failed or a derivative is not finite. Lane w depends on column w alone.
+  virtual void gauss_newton(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature, Ledger& ledger) const;
+  /// What residuals and their derivatives cost together, in residuals: 2 P + 1 by differences.
+  virtual double derivative_cost() const { return 2.0 * dimension() + 1; }
   /// How rough the log likelihood is as a function of theta: what a simulation leaves to chance, as a part of its size. 0 where it
   /// is smooth but for rounding; the tolerance where steps are chosen by the error.
   virtual double roughness() const { return 0; }
   /// Declared values [P x W] (declared units) of theta [P x W], and back.
   virtual void constrain(ConstLanes theta, Lanes declared) const = 0;
   virtual void unconstrain(ConstLanes declared, Lanes theta) const = 0;
+
+ protected:
+  /// [P] what values are moved by for a difference: `difference_width` of the widths of the prior.
+  std::vector<double> difference_steps() const;
 
  private:
   /// [P] half the central 68 % of prior draws, > 0; 1 where they have no width. Differences are taken over parts of it.
@@ -69,5 +79,8 @@ class Target {
 /// Of a prior width: values bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
 /// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
 double difference_width(Target const& target);
+
+/// The slope from the values of one function ahead, at and behind a place: of those that are finite, 0 where there are too few.
+double central_slope(double ahead, double at, double behind, double step);
 
 }  // namespace sysid

@@ -50,44 +50,20 @@ void add_prior(Objective const& objective, std::vector<Climber*> const& block, s
 
 /// Gradient and Gauss-Newton curvature of every climber of the block.
 std::vector<Slope> slopes_of(Objective const& objective, std::vector<Climber*> const& block, Ledger& ledger) {
-  int const dimension = objective.dimension();
-  int const columns = 2 * dimension + 1;
-  int const rows = objective.target.residual_count();
-  double const width = difference_width(objective.target);
-  LaneArray theta(dimension, columns * static_cast<int>(block.size()));
-  for (std::size_t k = 0; k < block.size(); ++k) {
-    for (int c = 0; c < columns; ++c) {
-      for (int p = 0; p < dimension; ++p) {
-        double const shift = c == 2 * p ? 1 : c == 2 * p + 1 ? -1 : 0;
-        theta(p, static_cast<int>(k) * columns + c) = block[k]->theta(p) + shift * width * objective.scale(p);
-      }
-    }
-  }
-  LaneArray residuals(rows, theta.width());
-  objective.target.residuals(theta, residuals, ledger);
-
+  int const dimension = objective.dimension(), width = static_cast<int>(block.size());
+  LaneArray theta(dimension, width), gradient(dimension, width), curvature(dimension * dimension, width);
+  for (int k = 0; k < width; ++k)
+    for (int p = 0; p < dimension; ++p) theta(p, k) = block[static_cast<std::size_t>(k)]->theta(p);
+  Eigen::VectorXd const steps = difference_width(objective.target) * objective.scale;
+  objective.target.gauss_newton(theta, {steps.data(), static_cast<std::size_t>(dimension)}, gradient, curvature, ledger);
   std::vector<Slope> slopes;
-  Eigen::MatrixXd jacobian(rows, dimension);
-  Eigen::VectorXd centre(rows);
-  for (std::size_t k = 0; k < block.size(); ++k) {
-    int const first = static_cast<int>(k) * columns;
-    for (int r = 0; r < rows; ++r) centre(r) = residuals(r, first + 2 * dimension);
+  for (int k = 0; k < width; ++k) {
+    Slope slope{Eigen::VectorXd(dimension), Eigen::MatrixXd(dimension, dimension)};
     for (int p = 0; p < dimension; ++p) {
-      double const h = width * objective.scale(p);
-      auto const finite = [&](int column) { return rows > 0 && std::isfinite(residuals(0, first + column)); };
-      bool const ahead = finite(2 * p), behind = finite(2 * p + 1);
-      for (int r = 0; r < rows; ++r) {
-        double const up = ahead ? residuals(r, first + 2 * p) : centre(r);
-        double const down = behind ? residuals(r, first + 2 * p + 1) : centre(r);
-        double const apart = (ahead ? h : 0) + (behind ? h : 0);
-        jacobian(r, p) = apart > 0 ? (up - down) / apart : 0;  // both neighbours failed: leave the coordinate alone
-      }
+      slope.gradient(p) = gradient(p, k);
+      for (int q = 0; q < dimension; ++q) slope.curvature(p, q) = curvature(p * dimension + q, k);
     }
-    if (!jacobian.allFinite() || !centre.allFinite()) {
-      slopes.push_back({Eigen::VectorXd::Zero(dimension), Eigen::MatrixXd::Zero(dimension, dimension)});
-      continue;
-    }
-    slopes.push_back({-jacobian.transpose() * centre, jacobian.transpose() * jacobian});
+    slopes.push_back(std::move(slope));
   }
   add_prior(objective, block, slopes);
   return slopes;
@@ -149,18 +125,23 @@ std::vector<std::size_t> not_done(std::vector<Climber> const& climbers) {
 
 }  // namespace
 
-std::size_t climbers_per_block(Objective const& objective) {
-  int const columns = 2 * objective.dimension() + 1;
-  int const rows = std::max(1, objective.target.residual_count());
-  return static_cast<std::size_t>(std::clamp((1 << 22) / rows / columns, 1, std::max(1, 512 / columns)));
+namespace {
+
+std::size_t per_block(Objective const& objective, double lanes) {
+  double const rows = std::max(1, objective.target.residual_count());
+  return static_cast<std::size_t>(std::max(1.0, std::floor(std::min((1 << 22) / (rows * lanes), 512 / lanes))));
 }
+
+}  // namespace
+
+std::size_t climbers_per_block(Objective const& objective) { return per_block(objective, 2 * objective.dimension() + 1); }
 
 Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::move(theta), log_density, 1e-2, {}, false}; }
 
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop, Journal* journal) {
   if (objective.target.is_expensive()) return climb_by_gradient(objective, climbers, rounds, ledger, stop, journal);
-  std::size_t const width = climbers_per_block(objective);
+  std::size_t const width = per_block(objective, objective.target.derivative_cost());
   if (stop && stop()) return;
   ClimbingStep kept(journal, "climb", climbers, ledger);
   if (kept.over()) return;

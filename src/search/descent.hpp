@@ -33,10 +33,10 @@ Climber climber_at(Eigen::VectorXd theta, double log_density);
 ///
 ///   maximise  -1/2 sum r(theta)^2 + log prior(theta);   (J'J + P + damping D) step = -J'r + grad log prior,   D = diag(J'J + P)
 ///
-/// J by central differences of 1e-5 prior widths, more where the target is rough; P is minus the diagonal second derivative of the
-/// log prior where positive. Each round tries four dampings a decade apart and keeps the best. Steps are at most two prior widths
-/// long in any coordinate. An expensive target is climbed by its gradient instead. Levenberg 1944, Marquardt 1963; as in More 1978
-/// but for the choice of damping, which lanes make cheap.
+/// J is the target's; where it takes differences, over 1e-5 prior widths, more where it is rough. P is minus the diagonal second
+/// derivative of the log prior where positive. Each round tries four dampings a decade apart and keeps the best. Steps are at most
+/// two prior widths long in any coordinate. An expensive target is climbed by its gradient instead. Levenberg 1944, Marquardt 1963;
+/// as in More 1978 but for the choice of damping, which lanes make cheap.
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop, Journal* journal = nullptr);
 

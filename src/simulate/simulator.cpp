@@ -8,6 +8,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "core/system/interrupt.hpp"
+#include "core/text/diagnostic.hpp"
 #include "simulate/block.hpp"
 #include "simulate/machine_loop.hpp"
 #include "simulate/thread_pool.hpp"
@@ -126,7 +127,15 @@ void Simulator::give_up(int sample, int lane, int lanes, Lanes out, std::span<Ou
 }
 
 Work Simulator::sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
-  int const end = schedule_.last_summed();
+  return sums_to(schedule_.last_summed(), parameters, out, outcome);
+}
+
+Work Simulator::constant_sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
+  if (program_->registers.accumulators > 0) throw InternalError("sums that read states, without a step");
+  return sums_to(0, parameters, out, outcome);
+}
+
+Work Simulator::sums_to(int end, ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
   return blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     block.start();

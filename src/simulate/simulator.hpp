@@ -86,6 +86,8 @@ class Simulator {
 
   /// The same as work to do, so that several simulators share the threads; what the arguments view must outlive it.
   Work sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
+  /// Of a program whose sums read no state (none is accumulated): without a step. A lane fails by its initial state or a sum.
+  Work constant_sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
 
   /// Records of samples [first, last): record r of sample i is row (i - first) * records + r of out; a failed lane is NaN in every
   /// row.
@@ -106,6 +108,7 @@ class Simulator {
   Work blocks(int width, int samples, native::LoopKind loop, BlockWork const& work) const;
   Executor interpreter(int width, double instructions) const;
   std::optional<Executor> native(int width, double instructions, native::LoopKind loop) const;
+  Work sums_to(int end, ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
   static void give_up(int sample, int lane, int lanes, Lanes out, std::span<Outcome> outcome);
   void record_block(Block& block, Redraw const* redraw, int lane, int lanes, int first, int last, Lanes out,
                     std::span<Outcome> outcome) const;

@@ -1,0 +1,163 @@
+// Derivatives of a model's target by central differences, experiment by experiment: each is simulated for what it reads.
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/not_finite.hpp"
+#include "likelihood/model_target_part.hpp"
+
+namespace sysid {
+namespace {
+
+/// Per lane of theta [P x W] its own column, then a step ahead and one behind along each of the coordinates.
+LaneArray moved_lanes(ConstLanes theta, std::vector<int> const& coordinates, std::span<double const> steps) {
+  int const columns = 2 * static_cast<int>(coordinates.size()) + 1;
+  LaneArray points(theta.rows(), columns * theta.width());
+  for (int p = 0; p < theta.rows(); ++p)
+    for (int w = 0; w < theta.width(); ++w)
+      for (int c = 0; c < columns; ++c) points(p, w * columns + c) = theta(p, w);
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    int const p = coordinates[k], c = 2 * static_cast<int>(k) + 1;
+    double const step = steps[static_cast<std::size_t>(p)];
+    for (int w = 0; w < theta.width(); ++w) {
+      points(p, w * columns + c) = theta(p, w) + step;
+      points(p, w * columns + c + 1) = theta(p, w) - step;
+    }
+  }
+  return points;
+}
+
+std::vector<ConstLanes> views_of(std::vector<LaneArray> const& arrays) { return {arrays.begin(), arrays.end()}; }
+
+}  // namespace
+
+double ModelTarget::derivative_cost() const {
+  double lanes = 0, samples = 0;
+  for (Part const& part : parts_) {
+    double const of = part.residuals.schedule().last_summed();
+    lanes += of * (2.0 * static_cast<double>(part.read.coordinates.size()) + 1);
+    samples += of;
+  }
+  return samples > 0 ? lanes / samples : 1;
+}
+
+std::vector<ModelTarget::Usable> ModelTarget::usable(std::vector<Columns> const& columns, std::vector<Run> const& runs,
+                                                     int width) const {
+  auto const coordinates = static_cast<std::size_t>(dimension());
+  std::vector<Usable> result(static_cast<std::size_t>(width),
+                             {true, std::vector<bool>(coordinates, true), std::vector<bool>(coordinates, true)});
+  for (std::size_t e = 0; e < parts_.size(); ++e) {
+    std::vector<int> const& read = parts_[e].read.coordinates;
+    std::size_t lane = 0;
+    auto const next = [&] { return runs[e].outcome[static_cast<std::size_t>(columns[e].of_lane[lane++])].ok; };
+    for (Usable& each : result) {
+      each.centre = next() && each.centre;
+      for (int const p : read) {
+        auto const at = static_cast<std::size_t>(p);
+        each.ahead[at] = next() && each.ahead[at];
+        each.behind[at] = next() && each.behind[at];
+      }
+    }
+  }
+  return result;
+}
+
+void ModelTarget::see_slopes(ConstLanes theta, std::span<double const> steps, Ledger& ledger, SeeSlopes const& see) const {
+  std::vector<LaneArray> moved;
+  for (Part const& part : parts_) moved.push_back(moved_lanes(theta, part.read.coordinates, steps));
+  std::vector<ConstLanes> const views = views_of(moved);
+  std::vector<Columns> const columns = columns_of(views);
+  std::vector<Run> const runs = run_residuals(columns);
+  record_failures(true, columns, runs, views, ledger);
+  std::vector<Usable> const usable = this->usable(columns, runs, theta.width());
+  for (std::size_t e = 0; e < parts_.size(); ++e) {
+    std::vector<int> const& read = parts_[e].read.coordinates;
+    int const first = first_place_[e], rows = first_place_[e + 1] - first, count = static_cast<int>(read.size());
+    Eigen::VectorXd centre(rows);
+    Eigen::MatrixXd slopes(rows, count);
+    for (int w = 0; w < theta.width(); ++w) {
+      Usable const& good = usable[static_cast<std::size_t>(w)];
+      if (!good.centre) continue;
+      int const* const column = columns[e].of_lane.data() + static_cast<std::ptrdiff_t>(w) * (2 * count + 1);
+      for (int r = 0; r < rows; ++r) {
+        ResidualPlace const& place = places_[static_cast<std::size_t>(first + r)];
+        auto const at = [&](bool solved, int c) { return solved ? residual(place, runs[e], column[c]) : infinity; };
+        centre(r) = at(true, 0);
+        for (int k = 0; k < count; ++k) {
+          auto const p = static_cast<std::size_t>(read[static_cast<std::size_t>(k)]);
+          slopes(r, k) = central_slope(at(good.ahead[p], 2 * k + 1), centre(r), at(good.behind[p], 2 * k + 2), steps[p]);
+        }
+      }
+      see(static_cast<int>(e), w, centre, slopes);
+    }
+  }
+}
+
+void ModelTarget::residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const {
+  for (int r = 0; r < out.rows(); ++r) std::fill(out.row(r).begin(), out.row(r).end(), infinity);
+  for (int r = 0; r < jacobian.rows(); ++r) std::fill(jacobian.row(r).begin(), jacobian.row(r).end(), 0.0);
+  std::vector<double> const steps = difference_steps();
+  see_slopes(theta, steps, ledger, [&](int e, int w, Eigen::VectorXd const& residuals, Eigen::MatrixXd const& slopes) {
+    std::vector<int> const& read = parts_[static_cast<std::size_t>(e)].read.coordinates;
+    int const first = first_place_[static_cast<std::size_t>(e)];
+    for (int r = 0; r < static_cast<int>(residuals.size()); ++r) {
+      out(first + r, w) = residuals(r);
+      for (std::size_t k = 0; k < read.size(); ++k)
+        jacobian((first + r) * dimension() + read[k], w) = slopes(r, static_cast<Eigen::Index>(k));
+    }
+  });
+}
+
+void ModelTarget::gauss_newton(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature,
+                               Ledger& ledger) const {
+  for (Lanes const& each : {gradient, curvature})
+    for (int r = 0; r < each.rows(); ++r) std::fill(each.row(r).begin(), each.row(r).end(), 0.0);
+  std::vector<bool> finite(static_cast<std::size_t>(theta.width()), true);
+  see_slopes(theta, steps, ledger, [&](int e, int w, Eigen::VectorXd const& residuals, Eigen::MatrixXd const& slopes) {
+    std::vector<int> const& read = parts_[static_cast<std::size_t>(e)].read.coordinates;
+    Eigen::VectorXd const slope = -slopes.transpose() * residuals;
+    Eigen::MatrixXd const squares = slopes.transpose() * slopes;
+    if (!residuals.allFinite()) finite[static_cast<std::size_t>(w)] = false;
+    for (std::size_t k = 0; k < read.size(); ++k) {
+      gradient(read[k], w) += slope(static_cast<Eigen::Index>(k));
+      for (std::size_t l = 0; l < read.size(); ++l)
+        curvature(read[k] * dimension() + read[l], w) += squares(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
+    }
+  });
+  for (int w = 0; w < theta.width(); ++w)
+    for (Lanes const& each : {gradient, curvature})
+      for (int r = 0; r < each.rows() && !finite[static_cast<std::size_t>(w)]; ++r) each(r, w) = 0;
+}
+
+void ModelTarget::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
+  std::vector<double> const steps = difference_steps();
+  std::vector<LaneArray> moved;
+  for (Part const& part : parts_) moved.push_back(moved_lanes(theta, part.read.coordinates, steps));
+  std::vector<ConstLanes> const views = views_of(moved);
+  std::vector<Columns> const columns = columns_of(views);
+  std::vector<Run> const runs = run_likelihood(columns);
+  record_failures(false, columns, runs, views, ledger);
+  std::vector<Usable> const usable = this->usable(columns, runs, theta.width());
+  for (int w = 0; w < theta.width(); ++w) {
+    Usable const& good = usable[static_cast<std::size_t>(w)];
+    double total = 0;
+    for (int p = 0; p < dimension(); ++p) gradient(p, w) = 0;
+    for (std::size_t e = 0; e < parts_.size() && good.centre; ++e) {
+      LaneArray const& sums = runs[e].sums;
+      std::vector<int> const& read = parts_[e].read.coordinates;
+      int const* const column = columns[e].of_lane.data() + static_cast<std::ptrdiff_t>(w) * (2 * std::ssize(read) + 1);
+      auto const at = [&](bool solved, std::size_t c) {
+        double sum = solved ? 0 : infinity;
+        for (int row = 0; row < sums.rows() && solved; ++row) sum += sums(row, column[c]);
+        return sum;
+      };
+      for (int row = 0; row < sums.rows(); ++row) total += sums(row, column[0]);  // in the order of the log likelihood
+      for (std::size_t k = 0; k < read.size(); ++k) {
+        auto const p = static_cast<std::size_t>(read[k]);
+        gradient(read[k], w) += central_slope(at(good.ahead[p], 2 * k + 1), at(true, 0), at(good.behind[p], 2 * k + 2), steps[p]);
+      }
+    }
+    out[static_cast<std::size_t>(w)] = good.centre && !std::isnan(total) ? total : -infinity;
+  }
+}
+
+}  // namespace sysid

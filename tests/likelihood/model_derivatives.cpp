@@ -1,0 +1,273 @@
+// Derivatives of a model's target, experiment by experiment, against those that every target has; and what they cost.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/numeric/not_finite.hpp"
+#include "likelihood/model_target.hpp"
+#include "load/load.hpp"
+
+using namespace sysid;
+
+namespace derivative_tests {
+namespace {
+
+Model model_of(std::string const& text) {
+  Source source("case.sysid", text);
+  Diagnostics diagnostics;
+  auto file = load(source, diagnostics);
+  REQUIRE_MESSAGE(file, render(diagnostics, source));
+  return file->models.front();
+}
+
+// Shared (c), of a population (k), of each experiment alone (bias), with a bound that is estimated (top); one that nothing reads.
+std::string const text = R"(
+model mount {
+  input x
+  state y
+  initial y = y0, y' = 0
+  parameter y0 per experiment ~ normal(0, sd = 0.02)
+  parameter k_mean ~ normal(200, sd = 30)
+  parameter k_spread ~ half_normal(20)
+  parameter k per experiment ~ normal(k_mean, sd = k_spread, lower = 20)
+  parameter c ~ log_uniform(0.5, 5)
+  parameter top ~ log_uniform(1, 2)
+  parameter bias per experiment ~ uniform(-1, top)
+  parameter idle ~ normal(0, sd = 1)
+  parameter sigma ~ log_uniform(0.01, 1)
+  y'' + c*y' + k*y = x + bias
+  observe position ~ normal(y, sd = sigma)
+  observe speed ~ student_t(y', degrees_of_freedom = 5, scale = 3*sigma)
+}
+)";
+
+constexpr int experiments = 3;
+
+// Of different length; the second measures no speed.
+Experiment experiment(int which) {
+  Experiment made;
+  int const n = 40 + 10 * which;
+  made.name = "e" + std::to_string(which);
+  std::vector<double> force, position, speed;
+  for (int i = 0; i < n; ++i) {
+    made.time.push_back(0.01 * i);
+    force.push_back(std::sin(0.7 * i + which));
+    position.push_back(0.02 * std::cos(0.1 * i + which));
+    speed.push_back(0.1 * std::sin(0.2 * i));
+  }
+  made.inputs.emplace_back(InputRule::linear, made.time, force);
+  made.scored.assign(static_cast<std::size_t>(n), 1);
+  made.measured = {position, which == 1 ? std::vector<double>{} : speed};
+  made.measured[0][5] = std::nan("");
+  return made;
+}
+
+std::unique_ptr<ModelTarget> target_of(std::string const& source, bool free_start, ExecutionOptions execution = {}) {
+  Model const model = model_of(source);
+  std::vector<ExperimentMember> members;
+  std::vector<Experiment> records;
+  for (int e = 0; e < experiments; ++e) {
+    records.push_back(experiment(e));
+    members.push_back({records.back().name, {}});
+  }
+  TargetOptions options;
+  options.start_rows = free_start ? 8 : 0;
+  options.execution = execution;
+  return std::make_unique<ModelTarget>(compile(model, free_start, "rk4"), std::make_shared<ParameterSpace const>(model, members),
+                                       records, options);
+}
+
+LaneArray draws(Target const& target, int count) {
+  LaneArray theta(target.dimension(), count);
+  target.sample_prior({5, Purpose::prior, 0, 0}, theta);
+  return theta;
+}
+
+/// Everything that the derivatives of a target are.
+struct Slopes {
+  std::vector<double> value;
+  LaneArray gradient, residuals, jacobian, step, curvature;
+};
+
+std::vector<double> steps_of(Target const& target) {
+  return std::vector<double>(static_cast<std::size_t>(target.dimension()), 2e-5);
+}
+
+Slopes empty_slopes(Target const& target, int width) {
+  int const n = target.dimension(), rows = target.residual_count();
+  return {std::vector<double>(static_cast<std::size_t>(width)),
+          LaneArray(n, width),
+          LaneArray(rows, width),
+          LaneArray(rows * n, width),
+          LaneArray(n, width),
+          LaneArray(n * n, width)};
+}
+
+Slopes by_experiments(ModelTarget const& target, LaneArray const& theta, Ledger& ledger) {
+  Slopes found = empty_slopes(target, theta.width());
+  target.log_likelihood_gradient(theta, found.value, found.gradient, ledger);
+  target.residuals_with_jacobian(theta, found.residuals, found.jacobian, ledger);
+  target.gauss_newton(theta, steps_of(target), found.step, found.curvature, ledger);
+  return found;
+}
+
+/// As of any target: every coordinate moved in every experiment.
+Slopes of_any_target(ModelTarget const& target, LaneArray const& theta, Ledger& ledger) {
+  Slopes found = empty_slopes(target, theta.width());
+  target.Target::log_likelihood_gradient(theta, found.value, found.gradient, ledger);
+  target.Target::residuals_with_jacobian(theta, found.residuals, found.jacobian, ledger);
+  target.Target::gauss_newton(theta, steps_of(target), found.step, found.curvature, ledger);
+  return found;
+}
+
+bool same(LaneArray const& a, LaneArray const& b) {
+  bool equal = true;
+  for (int r = 0; r < a.rows(); ++r) equal = equal && std::ranges::equal(a.row(r), b.row(r));
+  return equal;
+}
+
+double largest(LaneArray const& a) {
+  double most = 0;
+  for (int r = 0; r < a.rows(); ++r)
+    for (double const v : a.row(r)) most = std::max(most, std::fabs(v));
+  return most;
+}
+
+double furthest(LaneArray const& a, LaneArray const& b) {
+  double most = 0;
+  for (int r = 0; r < a.rows(); ++r)
+    for (int w = 0; w < a.width(); ++w) most = std::max(most, std::fabs(a(r, w) - b(r, w)));
+  return most;
+}
+
+void check_same(ModelTarget const& target, LaneArray const& theta) {
+  Ledger ledger;
+  Slopes const found = by_experiments(target, theta, ledger), expected = of_any_target(target, theta, ledger);
+  CHECK(found.value == expected.value);
+  CHECK(same(found.residuals, expected.residuals));
+  CHECK(same(found.jacobian, expected.jacobian));
+  // Sums in another order: rounding, which in the gradient a difference over 1e-5 of a width magnifies.
+  CHECK(furthest(found.curvature, expected.curvature) <= 1e-12 * largest(expected.curvature));
+  CHECK(furthest(found.step, expected.step) <= 1e-12 * largest(expected.step));
+  double most = 0;
+  for (double const v : expected.value)
+    if (std::isfinite(v)) most = std::max(most, std::fabs(v));
+  CHECK(furthest(found.gradient, expected.gradient) <= 1e-14 * most / 1e-7);
+}
+
+}  // namespace
+
+TEST_CASE("derivatives experiment by experiment are those of any target") {
+  for (bool const free_start : {false, true}) {
+    CAPTURE(free_start);
+    auto const target = target_of(text, free_start);
+    REQUIRE(target->dimension() == 15);
+    check_same(*target, draws(*target, 4));
+  }
+}
+
+TEST_CASE("derivatives are the same bytes for any threads, lanes and neighbours") {
+  auto const one = target_of(text, true), two = target_of(text, true, {.lanes = 4, .threads = 2});
+  LaneArray const theta = draws(*one, 5);
+  Ledger ledger;
+  Slopes const first = by_experiments(*one, theta, ledger), second = by_experiments(*two, theta, ledger);
+  CHECK(first.value == second.value);
+  CHECK(same(first.gradient, second.gradient));
+  CHECK(same(first.jacobian, second.jacobian));
+  CHECK(same(first.step, second.step));
+  CHECK(same(first.curvature, second.curvature));
+  LaneArray last(theta.rows(), 1);
+  for (int p = 0; p < theta.rows(); ++p) last(p, 0) = theta(p, 4);
+  Slopes const alone = by_experiments(*one, last, ledger);
+  CHECK(alone.value[0] == first.value[4]);
+  bool equal = true;
+  for (int r = 0; r < alone.jacobian.rows(); ++r) equal = equal && alone.jacobian(r, 0) == first.jacobian(r, 4);
+  for (int r = 0; r < alone.curvature.rows(); ++r) equal = equal && alone.curvature(r, 0) == first.curvature(r, 4);
+  CHECK(equal);
+}
+
+TEST_CASE("an experiment is simulated for the coordinates that it reads, and once for lanes that are the same to it") {
+  auto const target = target_of(text, false);
+  LaneArray const theta = draws(*target, 2);
+  // Its own y0, k and bias, the bound of bias, c and sigma: not the population's mean and spread, and nothing of the others.
+  constexpr int read = 6, lanes = 2;
+  Ledger ledger;
+  LaneArray residuals(target->residual_count(), lanes), jacobian(target->residual_count() * target->dimension(), lanes);
+  target->residuals_with_jacobian(theta, residuals, jacobian, ledger);
+  CHECK(ledger.solves() == experiments * lanes * (2 * read + 1));
+  CHECK(target->derivative_cost() == 2 * read + 1);
+  Ledger any;
+  target->Target::residuals_with_jacobian(theta, residuals, jacobian, any);
+  CHECK(any.solves() == ledger.solves());
+  // A hyper-parameter has no slope.
+  for (int p = 0; p < target->dimension(); ++p) {
+    if (!target->parameters()[static_cast<std::size_t>(p)].name.starts_with("k_")) continue;
+    for (int r = 0; r < residuals.rows(); ++r) CHECK(jacobian(r * target->dimension() + p, 0) == 0);
+  }
+  // Lanes that differ in nothing, and in what no experiment reads.
+  LaneArray repeated(theta.rows(), 3);
+  for (int p = 0; p < theta.rows(); ++p) {
+    bool const idle = target->parameters()[static_cast<std::size_t>(p)].name == "idle";
+    for (int w = 0; w < 3; ++w) repeated(p, w) = theta(p, 0) + (idle ? w / 2 : 0);
+  }
+  Ledger few;
+  std::vector<double> value(3), alone(1);
+  target->log_likelihood(repeated, value, few);
+  CHECK(few.solves() == experiments);
+  target->log_likelihood(theta.view().columns(0, 1), alone, few);
+  CHECK(value == std::vector<double>(3, alone[0]));
+}
+
+TEST_CASE("where a neighbour fails in one experiment, all take the other side; where a place fails there is no slope") {
+  std::string const runaway = R"(
+model runaway {
+  input x
+  state y
+  initial y = start + shift
+  parameter start ~ normal(0.5, sd = 0.5)
+  parameter shift per experiment ~ normal(0, sd = 0.2)
+  parameter idle ~ normal(0, sd = 1)
+  y' = 40*y^3 + x
+  observe level ~ normal(y, sd = 1)
+  observe rate ~ normal(y', sd = 100)
+}
+)";
+  auto const target = target_of(runaway, false);
+  REQUIRE(target->dimension() == 5);
+  Ledger ledger;
+  // The largest starts whose likelihood, and whose residuals, are finite, to within a part of a difference.
+  auto const largest_start = [&](bool of_residuals) {
+    double good = 0.05, bad = 1e3;
+    while (bad - good > 1e-9) {
+      LaneArray theta(5, 1), residuals(target->residual_count(), 1);
+      theta(0, 0) = (good + bad) / 2;
+      double value = 0;
+      target->log_likelihood(theta, {&value, 1}, ledger);
+      target->residuals(theta, residuals, ledger);
+      (std::isfinite(of_residuals ? residuals(0, 0) : value) ? good : bad) = theta(0, 0);
+    }
+    return good;
+  };
+  LaneArray theta(5, 4);
+  theta(0, 0) = largest_start(false);
+  theta(0, 1) = 10;
+  theta(0, 2) = 0.05;
+  theta(0, 3) = largest_start(true);
+  check_same(*target, theta);
+  Slopes const found = by_experiments(*target, theta, ledger);
+  CHECK(std::isfinite(found.value[0]));
+  CHECK(found.value[1] == -infinity);
+  CHECK(found.residuals(0, 1) == infinity);
+  for (int r = 0; r < found.jacobian.rows(); ++r) CHECK(found.jacobian(r, 1) == 0);
+  for (int p = 0; p < 5; ++p) {
+    CHECK(found.gradient(p, 1) == 0);
+    CHECK(found.step(p, 1) == 0);
+  }
+  CHECK(found.jacobian(0, 2) != 0);
+}
+
+}  // namespace derivative_tests
