@@ -26,7 +26,7 @@ BoundCheck check_bounds(std::span<double const> draws, double lower, double uppe
   }
   if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) return {};
   std::sort(x.begin(), x.end());
-  double const spread = quantile(x, 0.95) - quantile(x, 0.05);
+  double const spread = sorted_quantile(x, 0.95) - sorted_quantile(x, 0.05);
   if (!(spread > 0) || spread > 0.5 * (upper - lower)) return {};
   double const window = 0.1 * spread;
   std::ptrdiff_t peak = 0;

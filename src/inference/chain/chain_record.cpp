@@ -77,17 +77,23 @@ void ChainRecord::write_chain(Target const& target, Trace const& trace, std::siz
         theta(p, static_cast<int>(i)) =
             trace.theta[(first + i) * static_cast<std::size_t>(dimension_) + static_cast<std::size_t>(p)];
     target.constrain(theta, declared);
-    std::vector<double> declared_prior(count);
-    target.log_prior(theta, declared_prior, false);
     for (int p = 0; unthinned && p < dimension_; ++p) {
       auto& values = result.unthinned[static_cast<std::size_t>(p)][chain];
       values.insert(values.end(), declared.row(p).begin(), declared.row(p).end());
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      if ((first + i + 1) % thin != 0) continue;
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < count; ++i)
+      if ((first + i + 1) % thin == 0) kept.push_back(i);
+    LaneArray kept_theta(dimension_, static_cast<int>(kept.size()));
+    for (int p = 0; p < dimension_; ++p)
+      for (std::size_t k = 0; k < kept.size(); ++k) kept_theta(p, static_cast<int>(k)) = theta(p, static_cast<int>(kept[k]));
+    std::vector<double> declared_prior(kept.size());
+    target.log_prior(kept_theta, declared_prior, false);
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      std::size_t const i = kept[k];
       draws.values.emplace_back();
       for (int p = 0; p < dimension_; ++p) draws.values.back().push_back(declared(p, static_cast<int>(i)));
-      draws.log_prior.push_back(declared_prior[i]);
+      draws.log_prior.push_back(declared_prior[k]);
       draws.log_likelihood.push_back(trace.log_likelihood[first + i]);
       draws.log_density.push_back(trace.log_prior[first + i] + trace.log_likelihood[first + i]);
       draws.acceptance.push_back(trace.acceptance[first + i]);
