@@ -170,7 +170,7 @@ double range(auto const& value, int first, int end) {
 
 // One channel of one experiment: rows [first, end) of the predictions.
 void compare(Preflight const& preflight, int first, int end, LaneArray const& centres, std::vector<Draw>& draws) {
-  std::vector<Output::Place> const& places = preflight.outputs.front().places();
+  std::vector<Output::Place> const& places = preflight.output().places();
   double const measured = range([&](int r) { return places[static_cast<std::size_t>(r)].measured; }, first, end);
   std::vector<double> finite;
   double apart = 0;  // draws
@@ -229,7 +229,7 @@ PriorDraws draw_prior(Preflight const& preflight) {
     prior.coordinates.push_back(std::move(coordinate));
   }
   prior.noise = listed(noise);
-  Output const& stated = preflight.outputs.front();
+  Output const& stated = preflight.output();
   LaneArray const values = space.values_of_declared(declared);
   prior.points = LaneArray(stated.point_rows(), count);
   for (int r = 0; r < values.rows(); ++r)

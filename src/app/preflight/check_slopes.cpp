@@ -29,7 +29,7 @@ double roughness(Sensitivity const& s) {
 }
 
 std::vector<Converged> converge(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& draws) {
-  int const rows = static_cast<int>(preflight.outputs.front().places().size());
+  int const rows = static_cast<int>(preflight.output().places().size());
   auto const refinements = static_cast<Eigen::Index>(preflight.solvers.size()) - 1;
   // Many at once fill the lanes; long records leave room for fewer.
   int const most = std::clamp(static_cast<int>(most_numbers / (static_cast<std::size_t>(rows) * preflight.solvers.size())), 1,
@@ -41,14 +41,14 @@ std::vector<Converged> converge(Preflight const& preflight, PriorDraws const& pr
     all.push_back({draws[static_cast<std::size_t>(w)], preflight.solvers.size(), Eigen::MatrixXd(rows, refinements), 0});
     for (int r = 0; r < points.rows(); ++r) points(r, w) = prior.points(r, all.back().lane);
   }
-  preflight.outputs.front().centres(points, before);
+  preflight.output().centres(points, before);
   std::vector<double> last(all.size());
   for (int w = 0; w < width && refinements == 0; ++w) {
     all[static_cast<std::size_t>(w)].level = 0;
     for (int r = 0; r < rows; ++r) last[static_cast<std::size_t>(w)] += 0 * before(r, w);  // NaN where a solve failed
   }
   for (std::size_t level = 0; level + 1 < preflight.solvers.size(); ++level) {
-    preflight.outputs[level + 1].centres(points, now);
+    preflight.output(level + 1).centres(points, now);
     for (int w = 0; w < width; ++w) {
       Converged& draw = all[static_cast<std::size_t>(w)];
       double& moved = last[static_cast<std::size_t>(w)];
@@ -84,7 +84,7 @@ LocalSlopes slopes_at(Preflight const& preflight, PriorDraws const& prior, Conve
   while (!preflight.what.solver.fixed_step() && level + 1 < preflight.solvers.size() &&
          preflight.solvers[level].relative > Preflight::smooth_enough)
     ++level;
-  Output const& output = preflight.on_jumps ? *preflight.on_jumps : preflight.outputs[level];
+  Output const& output = preflight.output_on_jumps() != nullptr ? *preflight.output_on_jumps() : preflight.output(level);
   int const rows = static_cast<int>(output.places().size()), all = prior.points.rows();
   int const own = static_cast<int>(preflight.space->rows().size());
   LaneArray here(all, 1);

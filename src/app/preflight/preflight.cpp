@@ -90,16 +90,28 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
     --effort.refinements;
   step_work = work_of(model(), experiments) * what.solver.substeps;
   effort = effort_of(what.solver.row().in_program ? step_work : step_work * solver_work(), space->dimension(), effort);
-  auto const pool = make_pool(session.options.execution);
   solvers.push_back(what.solver);
   while (static_cast<int>(solvers.size()) <= effort.refinements) solvers.push_back(solvers.back().finer());
-  for (SolverSettings const& solver : solvers)
-    outputs.emplace_back(compiled, space, experiments, solver, start_rows(what.start), session.abandonable(), pool);
-  if (what.solver.fixed_step() && jumps(model())) {
+  pool_ = make_pool(session.options.execution);
+  outputs_ = std::vector<Lazily<Output>>(solvers.size());
+  jumps_ = what.solver.fixed_step() && jumps(model());
+}
+
+Output Preflight::output_of(std::shared_ptr<CompiledModel const> const& with_method, SolverSettings const& solver) const {
+  return {with_method, space, experiments, solver, start_rows(what.start), session.abandonable(), pool_};
+}
+
+Output const& Preflight::output(std::size_t solver) const {
+  return outputs_[solver].get([&] { return output_of(compiled, solvers[solver]); });
+}
+
+Output const* Preflight::output_on_jumps() const {
+  if (!jumps_) return nullptr;
+  return &on_jumps_.get([&] {
     SolverSettings const adaptive{.method = std::string(adaptive_solver().name), .relative = smooth_enough};
-    on_jumps.emplace(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, adaptive.method, what.prediction),
-                     space, experiments, adaptive, start_rows(what.start), session.abandonable(), pool);
-  }
+    return output_of(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, adaptive.method, what.prediction),
+                     adaptive);
+  });
 }
 
 double Preflight::solver_work() const {
@@ -116,7 +128,7 @@ void Preflight::add(FindingCode code, Severity severity, std::vector<std::string
 
 std::vector<std::pair<int, int>> Preflight::responses() const {
   std::vector<std::pair<int, int>> all;
-  std::vector<Output::Place> const& places = outputs.front().places();
+  std::vector<Output::Place> const& places = output().places();
   for (int r = 0; r < static_cast<int>(places.size()); ++r) {
     Output::Place const& place = places[static_cast<std::size_t>(r)];
     if (all.empty() || places[static_cast<std::size_t>(all.back().first)].experiment != place.experiment ||

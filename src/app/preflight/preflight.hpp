@@ -1,7 +1,6 @@
 // One model of a task while `check` looks ahead: its data, its solvers from coarse to fine, and how much work that may be.
 #pragma once
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "app/preflight/check_information.hpp"
 #include "app/preflight/prior_simulations.hpp"
 #include "app/session/session.hpp"
+#include "core/system/lazily.hpp"
 #include "experiment/experiments.hpp"
 #include "likelihood/output.hpp"
 #include "result/check_page.hpp"
@@ -38,12 +38,14 @@ class Preflight {
   Effort effort;
   double step_work = 0;                 // operations of the equations at the steps of one trajectory, with the stated solver
   std::vector<SolverSettings> solvers;  // as stated, then ever finer
-  std::vector<Output> outputs;          // of each
-  std::optional<Output> on_jumps;       // ends its steps where the equations jump; of models that do
 
   static constexpr std::size_t most_scored = 10000;  // rows of an experiment that are looked at
   static constexpr double smooth_enough = 1e-8;      // tolerance of adaptive steps under differences
 
+  /// By one of the solvers; the rows of finer and finer ones take long to tabulate, so each is made when it is first asked for.
+  Output const& output(std::size_t solver = 0) const;
+  /// One that ends its steps where the equations jump; null where they do not.
+  Output const* output_on_jumps() const;
   /// Of a trajectory with the stated solver, in trajectories of one step of rk4 for each substep, about.
   double solver_work() const;
   Model const& model() const { return compiled->model; }
@@ -53,6 +55,14 @@ class Preflight {
   void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) const;
   /// Rows [first, end) of the predictions: one channel of one experiment each.
   std::vector<std::pair<int, int>> responses() const;
+
+ private:
+  Output output_of(std::shared_ptr<CompiledModel const> const& with_method, SolverSettings const& solver) const;
+
+  std::shared_ptr<ThreadPool> pool_;
+  bool jumps_ = false;
+  std::vector<Lazily<Output>> outputs_;  // [solvers]
+  Lazily<Output> on_jumps_;
 };
 
 /// Draws of the prior in SI, all rows of a point; what only the noise reads at its median, so that one level of noise stands for
