@@ -106,11 +106,14 @@ std::vector<double> mean_autocovariance(ChainValues const& chains, std::vector<d
   std::size_t const n = chains.front().size();
   std::size_t const size = fourier.size();
   std::vector<double> power(size), re(size), im(size);
+  auto const take = [&](std::size_t chain, std::vector<double>& part) {
+    std::size_t const length = chain < chains.size() ? n : 0;
+    for (std::size_t i = 0; i < length; ++i) part[i] = chains[chain][i] - means[chain];
+    std::fill(part.begin() + static_cast<std::ptrdiff_t>(length), part.end(), 0.0);
+  };
   for (std::size_t c = 0; c < chains.size(); c += 2) {
-    std::fill(re.begin(), re.end(), 0.0);
-    std::fill(im.begin(), im.end(), 0.0);
-    for (std::size_t i = 0; i < n; ++i) re[i] = chains[c][i] - means[c];
-    for (std::size_t i = 0; i < n && c + 1 < chains.size(); ++i) im[i] = chains[c + 1][i] - means[c + 1];
+    take(c, re);
+    take(c + 1, im);
     fourier.to_reversed(re, im);
     for (std::size_t k = 0; k < size; ++k) power[k] += re[k] * re[k] + im[k] * im[k];
   }

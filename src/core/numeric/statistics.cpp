@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -64,10 +65,17 @@ double sorted_quantile(std::vector<double> const& sorted, double probability) {
 double predictive_quantile(std::vector<double>& draws, double probability) {
   auto const last = static_cast<double>(draws.size()) - 1;
   double const place = std::clamp(probability * (last + 2) - 1, 0.0, last);
-  auto const at = draws.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(draws.begin(), at, draws.end());
-  double const above = at + 1 == draws.end() ? *at : *std::min_element(at + 1, draws.end());
-  return *at + (place - std::floor(place)) * (above - *at);
+  auto const below = static_cast<std::size_t>(place), above = std::min(below + 1, draws.size() - 1);
+  double const share = place - std::floor(place);
+  auto const near = [&](std::size_t count) { return draws.begin() + static_cast<std::ptrdiff_t>(count); };
+  // A tail is a small part: sorted from its end, few of the others are moved.
+  if (2 * above < draws.size()) {
+    std::partial_sort(draws.begin(), near(above + 1), draws.end());
+    return draws[below] + share * (draws[above] - draws[below]);
+  }
+  std::partial_sort(draws.begin(), near(draws.size() - below), draws.end(), std::greater<>());
+  double const low = draws[draws.size() - 1 - below], high = draws[draws.size() - 1 - above];
+  return low + share * (high - low);
 }
 
 double quantile(std::vector<double> draws, double probability) {
