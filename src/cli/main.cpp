@@ -1,4 +1,6 @@
 // The command line: a table of verbs in, an exit code out. What they do is in app/, exchange/, repl/ and lsp/.
+#include <malloc.h>
+
 #include "cli/command.hpp"
 #include "cli/help.hpp"
 #include "cli/usage.hpp"
@@ -90,4 +92,10 @@ ExitCode main(int argument_count, char** arguments) {
 }  // namespace
 }  // namespace sysid::cli
 
-int main(int argument_count, char** arguments) { return static_cast<int>(sysid::cli::main(argument_count, arguments)); }
+int main(int argument_count, char** arguments) {
+  // A fit asks for the same megabytes again and again: what has been returned is kept, since each page that comes from the system
+  // anew costs as much as reading it twice.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  return static_cast<int>(sysid::cli::main(argument_count, arguments));
+}
