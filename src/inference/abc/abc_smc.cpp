@@ -12,6 +12,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "core/system/interrupt.hpp"
+#include "inference/abc/batch.hpp"
 #include "inference/abc/findings.hpp"
 #include "inference/abc/proposals.hpp"
 #include "inference/abc/state.hpp"
@@ -93,98 +94,35 @@ class Run {
 
   /// False when the run is interrupted meanwhile: nothing of the batch is kept.
   bool propose(Proposals const& proposals) {
-    int const count = batch_size();
-    std::uint64_t const first = record_.proposed;
-    Proposed const proposed = proposals.make(first, count);
-    std::size_t const models = proposed.x.size();
-    // What lies outside the prior's support is not simulated.
-    std::vector<std::vector<int>> simulated(models);
-    std::vector<LaneArray> theta(models);
-    std::vector<std::vector<double>> distance(models);
-    std::vector<std::vector<Simulated>> ending(models);
-    std::vector<SelectionTarget::Batch> batches;
-    std::vector<std::vector<int>> place(models);  // of a column among the simulated; -1: outside
-    for (std::size_t m = 0; m < models; ++m) {
-      for (double const log_prior : proposed.log_prior[m]) {
-        bool const inside = log_prior > -infinity;
-        place[m].push_back(inside ? static_cast<int>(simulated[m].size()) : -1);
-        if (inside) simulated[m].push_back(static_cast<int>(place[m].size()) - 1);
-      }
-      theta[m] = LaneArray(proposed.theta[m].rows(), static_cast<int>(simulated[m].size()));
-      for (int d = 0; d < theta[m].rows(); ++d)
-        for (int w = 0; w < theta[m].width(); ++w) theta[m](d, w) = proposed.theta[m](d, simulated[m][static_cast<std::size_t>(w)]);
-      distance[m].resize(simulated[m].size());
-      ending[m].resize(simulated[m].size());
-      if (!simulated[m].empty()) batches.push_back({static_cast<int>(m), theta[m], distance[m], ending[m]});
-    }
-    std::vector<Failed> failed;
     try {
-      candidates_.distances(batches, next_.threshold);
-      failed = look_into(proposed, place, theta, ending);
+      Batch const batch(candidates_, proposals, record_.proposed, batch_size(), next_.threshold);
+      // Before anything is counted: an interruption throws.
+      std::uint64_t const traced = std::min(context_.ledger.failed(), traced_failures);
+      count(batch, batch.failed_places(plan_.particles - record_.accepted, traced_failures - traced));
+      return true;
     } catch (Interrupted const&) {
       return !(result_.interrupted = true);
     }
+  }
 
-    std::size_t looked_into = 0;
-    for (std::size_t i = 0; i < proposed.model.size() && record_.accepted < plan_.particles; ++i) {
-      auto const m = static_cast<std::size_t>(proposed.model[i]);
-      auto const column = static_cast<std::size_t>(proposed.column[i]);
+  /// Up to the proposal that fills the population. failed_places: of its first failures; the others are only counted.
+  void count(Batch const& batch, std::vector<Batch::Place> const& failed_places) {
+    std::size_t placed = 0;
+    for (std::size_t i = 0; i < batch.size() && record_.accepted < plan_.particles; ++i) {
+      std::size_t const m = batch.model(i);
       ++record_.proposed;
       ++record_.models[m].proposed;
-      if (place[m][column] < 0) continue;
-      auto const lane = static_cast<std::size_t>(place[m][column]);
+      if (!batch.is_simulated(i)) continue;
       ++record_.simulated;
       context_.ledger.add_solves(1);
-      if (ending[m][lane] == Simulated::failed) {
+      if (batch.ending(i) == Simulated::failed) {
         ++record_.failed;
         ++record_.models[m].failed;
-        note_failure(static_cast<int>(m), theta[m].view().columns(static_cast<int>(lane), 1),
-                     looked_into < failed.size() ? &failed[looked_into++] : nullptr);
+        batch.note_failure(i, placed < failed_places.size() ? &failed_places[placed++] : nullptr, context_.ledger);
       }
-      if (ending[m][lane] != Simulated::within) continue;
-      next_.models[m].add(proposed.x[m], proposed.column[i], proposed.log_prior[m][column], distance[m][lane]);
+      if (batch.ending(i) != Simulated::within) continue;
+      batch.keep(i, next_.models[m]);
       ++record_.accepted;
-    }
-    return true;
-  }
-
-  /// Where a simulation went wrong, in the user's words, and when [s].
-  using Failed = std::pair<std::string, double>;
-
-  /// The failures of a batch that are not only counted, in the order of the proposals, up to the one that fills the population.
-  /// Before anything is counted: an interruption throws.
-  std::vector<Failed> look_into(Proposed const& proposed, std::vector<std::vector<int>> const& place,
-                                std::vector<LaneArray> const& theta, std::vector<std::vector<Simulated>> const& ending) const {
-    std::vector<Failed> found;
-    int accepted = record_.accepted;
-    for (std::size_t i = 0; i < proposed.model.size() && accepted < plan_.particles; ++i) {
-      auto const m = static_cast<std::size_t>(proposed.model[i]);
-      int const lane = place[m][static_cast<std::size_t>(proposed.column[i])];
-      if (lane < 0) continue;
-      Simulated const how = ending[m][static_cast<std::size_t>(lane)];
-      if (how == Simulated::within) ++accepted;
-      if (how != Simulated::failed || context_.ledger.failed() + found.size() >= traced_failures) continue;
-      found.push_back(candidates_.failure(static_cast<int>(m), theta[m].view().columns(lane, 1)));
-    }
-    return found;
-  }
-
-  /// failed: null where it is only counted.
-  void note_failure(int model, ConstLanes theta, Failed const* failed) {
-    LaneArray declared(theta.rows(), 1);
-    candidates_.constrain(model, theta, declared);
-    std::vector<double> example;
-    std::vector<std::string> names;
-    for (int d = 0; d < declared.rows(); ++d) {
-      example.push_back(declared(d, 0));
-      names.push_back(candidates_.parameters(model)[static_cast<std::size_t>(d)].name);
-    }
-    if (failed != nullptr) {
-      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("{} of `{}`", failed->first, candidates_.name(model)),
-                                  failed->second, std::move(example), 1, std::move(names));
-    } else {
-      context_.ledger.add_failure(FailureClass::non_finite, fmt::format("`{}`{}", candidates_.name(model), Ledger::not_traced),
-                                  not_a_number, std::move(example), 1, std::move(names));
     }
   }
 
