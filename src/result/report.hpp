@@ -106,10 +106,13 @@ struct Report {
   std::vector<Summary> summary;  // of the draws, parameters first
   std::string verdict;           // its headline, in plain words; empty: as `verdict_of` words the findings
   Findings findings;
-  std::vector<CheckRecord> checks;        // of a fit
-  std::vector<FitLine> fit;               // what the task itself has scored
-  std::vector<Prediction> predictions;    // of each experiment: over the fitted rows, or of the predicted ones
-  std::vector<Mode> modes;                // by falling share
+  std::vector<CheckRecord> checks;      // of a fit
+  std::vector<FitLine> fit;             // what the task itself has scored
+  std::vector<Prediction> predictions;  // of each experiment: over the fitted rows, or of the predicted ones
+  std::vector<Mode> modes;              // by falling share
+  /// What the search moved and the back end sampled: names of the values of modes, and of failures that have none. Parameters that
+  /// are integrated out have draws and are not among them.
+  std::vector<std::string> sampled_names = {};
   std::optional<Evidence> evidence;       // of a fit that has come to its end
   std::vector<std::string> noise;         // of a fit: its parameters that only the noise reads
   std::vector<FunctionReport> functions;  // unknown ones of the equations

@@ -144,6 +144,7 @@ Report duffing(int draws) {
   mode.log_mass = 3921.7;
   mode.share = 0.9993;
   report.modes.push_back(mode);
+  report.sampled_names = report.draws.names;
   report.ledger.add_solves(100000);
   report.ledger.add_failure(FailureClass::non_finite, "k3*y^3 at duffing.sysid:12", 0.0125, truth, 3);
   report.settings = {{"samples", std::int64_t{25000}}, {"burn_in", std::int64_t{5000}},       {"thin", std::int64_t{10}},

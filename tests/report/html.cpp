@@ -258,6 +258,19 @@ TEST_CASE("what is said of modes is no more than a search can see, least of all 
   CHECK(says("The search found 2 modes, reached by 3 and 3 of its local searches."));
 }
 
+TEST_CASE("the table of modes has the names of what was searched, whatever else has draws") {
+  Report report = example::duffing(20);
+  report.sampled_names = {"c", "k"};  // the others are integrated out
+  report.modes[0].declared = {20, 1e4};
+  std::string const page = report_html(report, {});
+  std::size_t const title = page.find("Modes found by the global search over the prior");
+  REQUIRE(title != std::string::npos);
+  std::string const head = page.substr(title, page.find("<td", title) - title);
+  CHECK(head.find(">c<") < head.find(">k<"));
+  CHECK(head.find(">k<") != std::string::npos);
+  CHECK(head.find(">m<") == std::string::npos);
+}
+
 TEST_CASE("paper keeps the tasks of a run with their verdicts, and not the links to sections") {
   Report const one = example::duffing(20), other = example::duffing(30);
   std::string const run = run_html({{{one, {}}, {other, {}}}, {{"a on b", "", {"prediction", "nmse [%]"}, {{"e", "1"}}}}, "", {}});

@@ -39,6 +39,19 @@ TEST_CASE("the summary holds each parameter with unit and diagnostics, exactly")
   CHECK(json["findings"][0]["severity"] == "note");
 }
 
+TEST_CASE("values of modes and of failures have the names of what was sampled, whatever else has draws") {
+  Report report = example::duffing(20);
+  report.sampled_names = {"c", "k", "k3", "beta"};  // m is integrated out
+  report.modes[0].declared = {20, 1e4, 5e9, 1e7};
+  report.modes[0].sd = {0.1, 1, 1e6, 1e4};
+  report.ledger = {};
+  report.ledger.add_failure(FailureClass::non_finite, "k3*y^3 at duffing.sysid:12", 0.0125, {20, 1e4, 5e9, 1e7}, 3);
+  auto const json = nlohmann::json::parse(summary_json(report));
+  CHECK(json["modes"][0]["values"] == nlohmann::json{{"c", 20}, {"k", 1e4}, {"k3", 5e9}, {"beta", 1e7}});
+  CHECK(json["modes"][0]["sd"] == nlohmann::json{{"c", 0.1}, {"k", 1}, {"k3", 1e6}, {"beta", 1e4}});
+  CHECK(json["ledger"]["failures"][0]["example"]["c"] == 20);
+}
+
 TEST_CASE("a failed diagnostic fails the verdict") {
   Report report = example::duffing(20);
   report.findings.push_back({FindingCode::chains_disagree, Severity::error, {}, "the chains disagree on m", "run longer"});

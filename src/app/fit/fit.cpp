@@ -286,6 +286,7 @@ class Fit {
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
     for (FittedRows& rows : finished.rows) report.predictions.push_back(std::move(rows.prediction));
     report.modes = result.modes;
+    for (ParameterInfo const& each : target.parameters()) report.sampled_names.push_back(each.name);
     add_settings(result.settings, report);
     report.ledger = preparation_.ledger;
     report.ledger.merge(ledger_);

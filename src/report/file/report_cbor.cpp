@@ -254,8 +254,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, verb, prediction_rule, measured_past, lags, model_name, model_title,
                                    equations, formulas, model_text, resolved_text, priors, fixed, data, draws, summary, verdict,
-                                   findings, fit, predictions, modes, evidence, noise, functions, forces, tables, selection,
-                                   discovery, ledger, seed, place, command, unseeded, settings, versions)
+                                   findings, fit, predictions, modes, sampled_names, evidence, noise, functions, forces, tables,
+                                   selection, discovery, ledger, seed, place, command, unseeded, settings, versions)
 
 namespace {
 

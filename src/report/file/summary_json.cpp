@@ -158,15 +158,15 @@ std::string summary_json(Report const& report, FileDigests const& files) {
     out["modes"].push_back({{"log_density", mode.log_density},
                             {"log_mass", mode.log_mass},
                             {"share", mode.share},
-                            {"values", named_values(mode.declared, report.draws.names)},
-                            {"sd", named_values(mode.sd, report.draws.names)}});
+                            {"values", named_values(mode.declared, report.sampled_names)},
+                            {"sd", named_values(mode.sd, report.sampled_names)}});
   if (report.evidence) {
     out["evidence"] = evidence(*report.evidence);
     out["parameter_count"] = report.draws.parameter_count;
     out["noise"] = report.noise;
   }
   for (ReportTable const& table : report.tables) out["tables"][table.title] = {{"header", table.header}, {"rows", table.rows}};
-  out["ledger"] = ledger(report.ledger, report.draws.names);
+  out["ledger"] = ledger(report.ledger, report.sampled_names);
   out["seed"] = report.seed;
   out["versions"] = facts(report.versions);
   out["versions"]["form"] = stored_form;

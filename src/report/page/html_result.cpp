@@ -111,14 +111,12 @@ std::string table_html(ReportTable const& table, std::size_t words, TitleBegins 
 std::string modes_html(Report const& report) {
   if (report.modes.empty()) return "";
   HtmlTable table{"Modes found by the global search over the prior", {"mode", "share", "log density"}, {}, 1};
-  std::size_t const count = std::min(report.modes[0].declared.size(), report.draws.names.size());
-  for (std::size_t i = 0; i < count; ++i) table.header.push_back(escape(report.draws.names[i]));
+  for (std::string const& name : report.sampled_names) table.header.push_back(escape(name));
   for (std::size_t m = 0; m < report.modes.size(); ++m) {
     Mode const& mode = report.modes[m];
     table.rows.push_back(
         {std::to_string(m + 1), pretty_number(significant(mode.share, 3)), pretty_number(significant(mode.log_density, 6))});
-    for (std::size_t i = 0; i < std::min(count, mode.declared.size()); ++i)
-      table.rows.back().push_back(pretty_number(significant(mode.declared[i], 4)));
+    for (double const value : mode.declared) table.rows.back().push_back(pretty_number(significant(value, 4)));
   }
   return paragraph(mode_words(report)) + html(table) + paragraph("Share: fraction of the total Laplace mass of all modes.", "note");
 }
