@@ -29,7 +29,7 @@ TEST_CASE("a flat density accepts every move, so states spread as the proposal s
   std::vector<Proposal const*> const proposals(chains, &proposal);
   Ledger ledger;
   State state = init(flat, LaneArray(2, chains), ledger);
-  Info const info = step(flat, proposals, {1, Purpose::proposal, 0, 0}, state, ledger);
+  Info const info = step(flat, {proposals}, {1, Purpose::proposal, 0, 0}, state, ledger);
   double aa = 0, ab = 0, bb = 0, accepted = 0;
   for (int w = 0; w < chains; ++w) {
     aa += state.theta(0, w) * state.theta(0, w) / chains;
@@ -55,7 +55,7 @@ TEST_CASE("one step leaves the target's distribution as it is") {
   std::vector<Proposal const*> const proposals(chains, &proposal);
   double acceptance = 0;
   for (std::uint64_t i = 0; i < 3; ++i) {
-    Info const info = step(target, proposals, {3, Purpose::proposal, 0, i}, state, ledger);
+    Info const info = step(target, {proposals}, {3, Purpose::proposal, 0, i}, state, ledger);
     for (Move const& move : info) acceptance += move.acceptance_probability / (3.0 * chains);
   }
   double square = 0, fourth = 0;
@@ -77,7 +77,7 @@ TEST_CASE("small moves come in their share and size") {
   std::vector<Proposal const*> const proposals(chains, &proposal);
   Ledger ledger;
   State state = init(flat, LaneArray(1, chains), ledger);
-  Info const info = step(flat, proposals, {1, Purpose::proposal, 0, 0}, state, ledger);
+  Info const info = step(flat, {proposals}, {1, Purpose::proposal, 0, 0}, state, ledger);
   double small = 0, square = 0;
   for (int w = 0; w < chains; ++w) {
     if (!info[static_cast<std::size_t>(w)].small) continue;
@@ -94,7 +94,7 @@ TEST_CASE("a move to a place that cannot be solved is rejected and marked") {
   Ledger ledger;
   State state = init(target, LaneArray(1, 3), ledger);
   Proposal const proposal = spherical(1, 1);
-  Info const info = step(target, std::vector<Proposal const*>(3, &proposal), {1, Purpose::proposal, 0, 0}, state, ledger);
+  Info const info = step(target, {std::vector<Proposal const*>(3, &proposal)}, {1, Purpose::proposal, 0, 0}, state, ledger);
   for (int w = 0; w < 3; ++w) {
     CHECK(state.theta(0, w) == 0);
     CHECK(info[static_cast<std::size_t>(w)].failed);
@@ -110,11 +110,11 @@ TEST_CASE("many chains in one batch take the steps that each takes alone") {
   Ledger ledger;
   State together = init(target, LaneArray(3, 5), ledger);
   for (std::uint64_t i = 0; i < 20; ++i)
-    step(target, std::vector<Proposal const*>(5, &proposal), {1, Purpose::proposal, 0, i}, together, ledger);
+    step(target, {std::vector<Proposal const*>(5, &proposal)}, {1, Purpose::proposal, 0, i}, together, ledger);
   for (int w = 0; w < 5; ++w) {
     State alone = init(target, LaneArray(3, 1), ledger);
     for (std::uint64_t i = 0; i < 20; ++i)
-      step(target, std::vector<Proposal const*>(1, &proposal), {1, Purpose::proposal, static_cast<std::uint64_t>(w), i}, alone,
+      step(target, {std::vector<Proposal const*>(1, &proposal)}, {1, Purpose::proposal, static_cast<std::uint64_t>(w), i}, alone,
            ledger);
     for (int p = 0; p < 3; ++p) CHECK(alone.theta(p, 0) == together.theta(p, w));
     CHECK(alone.log_likelihood[0] == together.log_likelihood[static_cast<std::size_t>(w)]);
@@ -139,7 +139,7 @@ TEST_CASE("chains that run ahead in idle lanes take the same path as step by ste
     };
     int batches = 0;
     for (; next != std::vector<std::uint64_t>(3, iterations); ++batches)
-      advance(target, proposals, {1, Purpose::proposal, 0, 0}, ahead, iterations, next, state, ledger, visit);
+      advance(target, {proposals}, {1, Purpose::proposal, 0, 0}, ahead, iterations, next, state, ledger, visit);
     return std::pair(path, batches);
   };
   auto const [one, batches_of_one] = run(1);
@@ -155,7 +155,7 @@ TEST_CASE("chains that run ahead in idle lanes take the same path as step by ste
   std::vector<std::uint64_t> next(1, 0);
   int batches = 0;
   for (; next[0] < iterations; ++batches)
-    advance(target, std::vector<Proposal const*>{&wide}, {1, Purpose::proposal, 0, 0}, 8, iterations, next, alone, ledger,
+    advance(target, {std::vector<Proposal const*>{&wide}}, {1, Purpose::proposal, 0, 0}, 8, iterations, next, alone, ledger,
             [](int, Move const&) {});
   CHECK(batches < 80);
   CHECK(alone.theta(0, 0) == one[0][4 * iterations - 4]);
@@ -172,7 +172,7 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   double late = 0;
   for (std::uint64_t i = 0; i < 5000; ++i) {
     Info const info =
-        step(target, std::vector<Proposal const*>(4, &adaptation.proposal()), {1, Purpose::proposal, 0, i}, state, ledger);
+        step(target, {std::vector<Proposal const*>(4, &adaptation.proposal())}, {1, Purpose::proposal, 0, i}, state, ledger);
     for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info[w].small ? 0 : info[w].acceptance_probability / (0.9 * 2000 * 4);
     adaptation.learn(state, info, std::vector<char>(4));
   }
@@ -187,7 +187,7 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   CHECK(adaptation.proposal().scale == scale);
   // Independence moves tell nothing of the random walk's scale, and chains at another mode nothing of the width of this one.
   for (int i = 0; i < 10; ++i)
-    adaptation.learn(state, Info(4, Move{.acceptance_probability = 1, .independent = true}), std::vector<char>(4));
+    adaptation.learn(state, Info(4, Move{.acceptance_probability = 1, .kind = MoveKind::independent}), std::vector<char>(4));
   CHECK(adaptation.proposal().scale == scale);
   Eigen::MatrixXd const covariance = adaptation.covariance();
   for (int w = 0; w < 4; ++w) state.theta(0, w) = 1e6;
@@ -213,10 +213,10 @@ TEST_CASE("a cycle takes its moves in turn, each from where the one before ended
   constexpr std::uint64_t end = 9999;  // no multiple of the cycle: the last one is cut
   while (at < end)
     at += static_cast<std::uint64_t>(
-        cycle(target, proposals, mixture, 3, {1, Purpose::proposal, 0, at}, end, state, ledger, [&](int chain, Move const& move) {
+        cycle(target, {proposals}, mixture, 3, {1, Purpose::proposal, 0, at}, end, state, ledger, [&](int chain, Move const& move) {
           order.push_back(chain);
-          independent += move.independent;
-          accepted += move.independent && move.accepted;
+          independent += move.kind == MoveKind::independent;
+          accepted += move.kind == MoveKind::independent && move.accepted;
           mean += state.theta(0, chain) / (3.0 * end);
           square += 100 * state.theta(1, chain) * state.theta(1, chain) / (3.0 * end);
         }));

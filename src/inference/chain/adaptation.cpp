@@ -55,8 +55,9 @@ void Adaptation::learn_scale(Info const& info) {
   int moves = 0, walks = 0;
   for (int const chain : chains_) {
     Move const& move = info[static_cast<std::size_t>(chain)];
-    walks += move.independent ? 0 : 1;
-    if (move.independent || move.failed || move.small) continue;  // a failed solve says nothing of the posterior's width
+    bool const walked = move.kind == MoveKind::walk;
+    walks += walked ? 1 : 0;
+    if (!walked || move.failed || move.small) continue;  // a failed solve says nothing of the posterior's width
     acceptance += move.acceptance_probability;
     ++moves;
   }

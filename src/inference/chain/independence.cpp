@@ -34,6 +34,21 @@ void add_logs(std::span<double> a, std::span<double const> b) {
   }
 }
 
+/// P numbers, without a visit to the heap while they are few.
+class Scratch {
+ public:
+  explicit Scratch(std::size_t size) : size_(size) {
+    if (size > std::size(few_)) many_.resize(size);
+  }
+  operator std::span<double>() { return {many_.empty() ? few_ : many_.data(), size_}; }
+  double& operator[](std::size_t i) { return many_.empty() ? few_[i] : many_[i]; }
+
+ private:
+  double few_[64];
+  std::vector<double> many_;
+  std::size_t size_;
+};
+
 }  // namespace
 
 double log_of_sum(double a, double b) {
@@ -41,7 +56,7 @@ double log_of_sum(double a, double b) {
   return high == minus_infinity ? high : high + elementary::log1p(elementary::exp(low - high));
 }
 
-Independence::Independence(std::vector<Component> const& components) {
+Independence::Independence(std::vector<Component> const& components, bool declared) : declared_(declared) {
   std::vector<double> weights;
   for (Component const& component : components) {
     Eigen::MatrixXd const factor = cholesky_or_diagonal(component.covariance);
@@ -157,6 +172,58 @@ void Independence::shift(Part const& part, std::size_t j, double sds, Lanes to, 
   }
 }
 
+double Independence::whiten(Part const& part, ConstLanes theta, int lane, std::span<double> z) const {
+  double squares = 0;  // forward substitution
+  for (std::size_t i = 0; i < dimension_; ++i) {
+    double rest = theta(static_cast<int>(i), lane) - part.mean[i];
+    double const* row = part.factor.data() + i * dimension_;
+    for (std::size_t j = 0; j < i; ++j) rest -= row[j] * z[j];
+    z[i] = rest / row[i];
+    squares += z[i] * z[i];
+  }
+  return squares;
+}
+
+double Independence::log_normal(Part const& part, ConstLanes theta, int lane, std::span<double> z) const {
+  double const log_density = part.log_normal - whiten(part, theta, lane, z) / 2;
+  return std::isfinite(log_density) ? log_density : minus_infinity;
+}
+
+Independence::Part const& Independence::part_at(double share, ConstLanes theta, int lane) const {
+  Scratch z(dimension_);
+  double const log_limit = elementary::log(share) + log_normal_density(theta, lane);
+  double sum = minus_infinity;
+  for (Part const& part : parts_) {
+    sum = log_of_sum(sum, log_normal(part, theta, lane, z));
+    if (sum >= log_limit) return part;
+  }
+  return parts_.back();
+}
+
+double Independence::move_about(Stream& stream, double step, ConstLanes from, int chain, Lanes to, int lane) const {
+  Part const& part = parts_.size() > 1 ? part_at(stream.uniform(), from, chain) : parts_.front();
+  Scratch z(dimension_);
+  whiten(part, from, chain, z);
+  // sqrt(1 - b^2) - 1 without cancellation.
+  double const shrink = -step * step / (1 + std::sqrt(std::max(0.0, 1 - step * step)));
+  double jump = 0;
+  for (std::size_t i = 0; i < dimension_; ++i) {
+    to(static_cast<int>(i), lane) = from(static_cast<int>(i), chain);
+    z[i] = shrink * z[i] + step * stream.normal();
+    jump += z[i] * z[i];
+  }
+  for (std::size_t j = 0; j < dimension_; ++j)
+    for (std::size_t i = j; i < dimension_; ++i) to(static_cast<int>(i), lane) += part.factor[i * dimension_ + j] * z[j];
+  return jump;
+}
+
+double Independence::log_normal_density(ConstLanes theta, int lane) const {
+  Scratch z(dimension_);
+  double sum = minus_infinity;
+  for (Part const& part : parts_) sum = log_of_sum(sum, log_normal(part, theta, lane, z));
+  return sum;
+}
+
 void Independence::log_part(Part const& part, ConstLanes theta, std::span<double> out) const {
   int const width = theta.width();
   std::size_t const lanes = out.size();
@@ -250,13 +317,14 @@ nlohmann::json Independence::store() const {
     parts.push_back({{"constants", checkpoint::encode(std::vector<double>{part.cumulative, part.log_normal, part.log_student})},
                      {"mean", checkpoint::encode(std::span<double const>(part.mean))},
                      {"factor", checkpoint::encode(std::span<double const>(part.factor))}});
-  return parts;
+  return {{"declared", declared_}, {"parts", parts}};
 }
 
 Independence Independence::restore(nlohmann::json const& stored, int dimension) {
   Independence all;
   all.dimension_ = static_cast<std::size_t>(dimension);
-  for (nlohmann::json const& from : stored) {
+  all.declared_ = stored.at("declared").get<bool>();
+  for (nlohmann::json const& from : stored.at("parts")) {
     std::vector<double> const constants = checkpoint::decode(from.at("constants"), 3);
     Part part{constants.at(0),
               constants.at(1),

@@ -14,7 +14,7 @@ namespace sysid::metropolis {
 double log_of_sum(double a, double b);
 
 /// q(x) = sum over components of  weight (0.65 N(x) + 0.25 mean over j of N(x) t_3(z_j) / N(z_j) + 0.1 t_6(x)),  N and t_6 with the
-/// component's mean and covariance S = L L' over the sampler's coordinates, z_j = (x_j - mean_j) / sd_j.
+/// component's mean and covariance S = L L', z_j = (x_j - mean_j) / sd_j. x are the sampler's coordinates, or the declared values.
 ///
 /// The normal part is what most posteriors near a mode are. Student's t keeps the weights p / q bounded where the tails of p are
 /// heavier (Tierney 1994, sec. 2.3.3): in the middle part those of one coordinate, with the others as they follow from it; in the
@@ -30,8 +30,10 @@ class Independence {
   /// Proposes nothing.
   Independence() = default;
   /// Of a covariance that is not positive definite only the diagonal is used.
-  explicit Independence(std::vector<Component> const& components);
+  explicit Independence(std::vector<Component> const& components, bool declared = false);
 
+  /// Whether x are declared values.
+  bool declared() const { return declared_; }
   bool empty() const { return parts_.empty(); }
   /// Writes a draw into each column of `to` [P x W]; keys [W]: of its numbers.
   void draw(std::span<StreamKey const> keys, Lanes to) const;
@@ -39,6 +41,17 @@ class Independence {
   /// log q of each column, all constants kept; -infinity when empty. out: [W].
   void log_density(ConstLanes theta, std::span<double> out) const;
   double log_density(ConstLanes theta, int lane) const;
+  /// Writes an autoregressive move from column `chain` of `from` about the normal parts of the components, their mixture n, into
+  /// column `lane` of `to`; returns |L^-1 (x' - x)|^2:
+  ///
+  ///   k with probability  weight_k N_k(x) / n(x);   x' = mean_k + sqrt(1 - step^2) (x - mean_k) + step L_k z,   z ~ N(0, I)
+  ///
+  /// Each N_k is stationary under its moves and these are reversible, so x' is accepted with min(1, p(x') n(x) / (p(x) n(x'))):
+  /// how often depends on how far p / n is from constant, not on the dimension. Step 1 is a draw of N_k.
+  ///                                          Neal 1998, Cotter, Roberts, Stuart and White 2013 (preconditioned Crank-Nicolson)
+  double move_about(Stream& stream, double step, ConstLanes from, int chain, Lanes to, int lane) const;
+  /// log n of a column, all constants kept; -infinity when empty.
+  double log_normal_density(ConstLanes theta, int lane) const;
   /// The component that most likely drew a column; -1 when empty.
   int nearest(ConstLanes theta, int lane) const;
 
@@ -63,10 +76,17 @@ class Independence {
   void shift(Part const& part, std::size_t j, double sds, Lanes to, int lane) const;
   /// log of weight times density of each column. out: [W].
   void log_part(Part const& part, ConstLanes theta, std::span<double> out) const;
+  /// The component up to which weights times normal densities at a column sum to a share of all.
+  Part const& part_at(double share, ConstLanes theta, int lane) const;
+  /// z = L^-1 (x - mean) [P] of a column; returns |z|^2.
+  double whiten(Part const& part, ConstLanes theta, int lane, std::span<double> z) const;
+  /// log of weight times normal density; -infinity where that is not finite. z [P] as above.
+  double log_normal(Part const& part, ConstLanes theta, int lane, std::span<double> z) const;
   void set_constants(std::vector<double> const& weights);
   static void set_sds(Part& part);
 
   std::size_t dimension_ = 0;
+  bool declared_ = false;
   std::vector<Part> parts_;
 };
 

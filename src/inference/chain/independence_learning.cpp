@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/lanes.hpp"
 #include "inference/backend/checkpoint.hpp"
+#include "inference/chain/candidates.hpp"
 #include "search/laplace.hpp"
 
 namespace sysid::metropolis {
@@ -18,9 +20,43 @@ constexpr std::uint64_t trial_interval = 8;
 /// Laplace's shares may be far off: each mode is visited.
 constexpr double least_weight = 0.02;
 
+/// States of an archive; per coordinate, those that a candidate is made from at least.
+constexpr std::size_t most_archived = 8192, least_archived = 10;
+
 constexpr int most_moves = 15;
 /// Independence moves that a chain spends in one place at most, between two moves of the random walk that lead out of it.
 constexpr double longest_wait = 30;
+/// Acceptance of independence moves by which every other move is one, however thin the mixture is somewhere: it costs there half of
+/// the local moves.
+constexpr double worth_half = 0.25;
+/// Acceptance of independence moves by which others are not needed.
+constexpr double enough_acceptance = 0.5;
+
+/// A normal distribution over theta as one over the declared values, to first order about its mean.
+Independence::Component over_declared(Target const& target, Independence::Component const& component) {
+  constexpr double step = 1e-3;  // of a width
+  Eigen::Index const dimension = component.mean.size();
+  LaneArray theta(static_cast<int>(dimension), static_cast<int>(2 * dimension + 1)), declared(theta.rows(), theta.width());
+  Eigen::VectorXd const width = component.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  for (int p = 0; p < theta.rows(); ++p)
+    for (int w = 0; w < theta.width(); ++w)
+      theta(p, w) = component.mean(p) + (w == 2 * p ? step * width(p) : w == 2 * p + 1 ? -step * width(p) : 0);
+  target.constrain(theta, declared);
+  Eigen::MatrixXd slope(dimension, dimension);
+  for (int p = 0; p < theta.rows(); ++p)
+    for (int k = 0; k < theta.rows(); ++k) {
+      double const apart = 2 * step * width(k);
+      slope(p, k) = apart > 0 ? (declared(p, 2 * k) - declared(p, 2 * k + 1)) / apart : p == k ? 1 : 0;
+    }
+  return {component.weight, column(declared, theta.width() - 1), slope * component.covariance * slope.transpose()};
+}
+
+/// Whether all components have a width in every direction.
+bool usable(std::span<Independence::Component const> components) {
+  return std::all_of(components.begin(), components.end(), [](Independence::Component const& each) {
+    return each.mean.allFinite() && each.covariance.allFinite() && (each.covariance.diagonal().array() > 0).all();
+  });
+}
 
 }  // namespace
 
@@ -31,25 +67,32 @@ void IndependenceLearning::Fit::add(double log_posterior, double log_q, bool fir
   log_inverse = first ? -log_weight : log_of_sum(log_inverse, -log_weight);
 }
 
-IndependenceLearning::IndependenceLearning(std::vector<Mode> const& modes, std::vector<int> component_of_chain)
+IndependenceLearning::IndependenceLearning(Target const& target, std::vector<Mode> const& modes,
+                                           std::vector<int> component_of_chain)
     : component_of_chain_(std::move(component_of_chain)) {
-  std::vector<Independence::Component> components;
+  std::vector<Independence::Component> components, declared;
   for (Mode const& mode : modes) {
     weights_.push_back(std::max(mode.share, least_weight));
     components.push_back({weights_.back(), theta_of(mode), covariance_of(mode)});
+    declared.push_back(over_declared(target, components.back()));
   }
-  current_ = candidate_ = Independence(components);
+  mixtures_[0] = Independence(components);
+  if (usable(declared)) mixtures_[3] = Independence(declared, true);
+  archives_.resize(modes.size());
 }
 
 // A move of the random walk is worth 0.33 / P independent draws at best (Gelman, Roberts and Gilks 1996), an independence move at
 // most its chance of being accepted. But in a place that the mixture hardly reaches a chain stays for long, and the walk must lead
-// out of it. Between separate modes nothing but independence moves leads.
+// out of it, in at least half of the moves. Between separate modes nothing but independence moves leads.
 int IndependenceLearning::worth() const {
-  int const few = weights_.size() > 1 && acceptance_ >= 0.01 ? 1 : 0;
+  bool const sometimes = acceptance_ >= (weights_.size() > 1 ? 0.01 : worth_half);
+  int const few = sometimes ? 1 : 0;
   if (acceptance_ < 0.1) return few;
-  int const by_acceptance = acceptance_ >= 0.5 ? most_moves : acceptance_ >= 0.25 ? 7 : 3;
+  int const by_acceptance = acceptance_ >= enough_acceptance ? most_moves : acceptance_ >= 0.25 ? 7 : 3;
   return std::max(few, std::min(by_acceptance, static_cast<int>(longest_wait / longest_stay_)));
 }
+
+bool IndependenceLearning::too_few() const { return active() && windows_ > 0 && acceptance_ < enough_acceptance; }
 
 int IndependenceLearning::moves_in_burn_in() const {
   if (!active()) return 0;
@@ -60,83 +103,152 @@ int IndependenceLearning::moves_in_burn_in() const {
 
 int IndependenceLearning::moves() const { return active() && windows_ > 0 ? worth() : 0; }
 
-std::vector<char> IndependenceLearning::away(State const& state) const {
+std::vector<char> IndependenceLearning::away(Target const& target, State const& state) const {
   std::vector<char> is_away(component_of_chain_.size(), 0);
-  for (std::size_t w = 0; weights_.size() > 1 && w < is_away.size(); ++w)
-    is_away[w] = current_.nearest(state.theta, static_cast<int>(w)) != component_of_chain_[w];
+  if (weights_.size() < 2) return is_away;
+  Framed const states = framed(target, mixture().declared(), state.theta);
+  for (std::size_t w = 0; w < is_away.size(); ++w)
+    is_away[w] = mixture().nearest(states.x, static_cast<int>(w)) != component_of_chain_[w];
   return is_away;
 }
 
-void IndependenceLearning::learn(State const& state, Info const& info) {
+void IndependenceLearning::archive(State const& state, std::span<char const> away) {
+  auto const dimension = static_cast<std::size_t>(state.theta.rows());
+  for (std::size_t w = 0; w < away.size(); ++w) {
+    Archive& archive = archives_[static_cast<std::size_t>(component_of_chain_[w])];
+    if (away[w] != 0 || iterations_ % archive.interval != 0) continue;
+    for (int p = 0; p < state.theta.rows(); ++p) archive.states.push_back(state.theta(p, static_cast<int>(w)));
+  }
+  for (Archive& archive : archives_) {
+    if (archive.states.size() < most_archived * dimension) continue;
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n * dimension < archive.states.size(); n += 2, ++kept) {
+      if (n == kept) continue;
+      std::copy_n(archive.states.begin() + static_cast<std::ptrdiff_t>(n * dimension), dimension,
+                  archive.states.begin() + static_cast<std::ptrdiff_t>(kept * dimension));
+    }
+    archive.states.resize(kept * dimension);
+    archive.interval *= 2;
+  }
+}
+
+std::optional<Independence::Component> IndependenceLearning::declared(Target const& target, std::size_t component) const {
+  std::vector<double> const& all = archives_[component].states;
+  auto const dimension = static_cast<std::size_t>(target.dimension());
+  std::size_t const count = all.size() / dimension, first = count / 3;
+  if (count - first < least_archived * dimension) return std::nullopt;
+  LaneArray theta(target.dimension(), static_cast<int>(count - first)), values(theta.rows(), theta.width());
+  for (int p = 0; p < theta.rows(); ++p)
+    for (int n = 0; n < theta.width(); ++n)
+      theta(p, n) = all[(first + static_cast<std::size_t>(n)) * dimension + static_cast<std::size_t>(p)];
+  target.constrain(theta, values);
+  Eigen::MatrixXd states(values.rows(), values.width());
+  for (int p = 0; p < values.rows(); ++p)
+    for (int n = 0; n < values.width(); ++n) states(p, n) = values(p, n);
+  Eigen::VectorXd const mean = states.rowwise().mean();
+  states.colwise() -= mean;
+  Eigen::MatrixXd const covariance = states * states.transpose() / static_cast<double>(states.cols());
+  return Independence::Component{weights_[component], mean, covariance};
+}
+
+void IndependenceLearning::learn(Target const& target, State const& state, Info const& info, std::span<char const> away) {
   ++iterations_;
   ++window_.iterations;
-  std::vector<double> of_current(info.size()), of_candidate(info.size());
-  current_.log_density(state.theta, of_current);
-  candidate_.log_density(state.theta, of_candidate);
-  for (int w = 0; w < state.theta.width(); ++w) {
-    double const now = of_current[static_cast<std::size_t>(w)], then = of_candidate[static_cast<std::size_t>(w)];
-    double const density = state.log_prior[static_cast<std::size_t>(w)] + state.log_likelihood[static_cast<std::size_t>(w)];
-    if (std::isfinite(now) && std::isfinite(then) && std::isfinite(density)) {
-      window_.current.add(density, now, window_.states == 0);
-      window_.candidate.add(density, then, window_.states == 0);
+  archive(state, away);
+  Framed const plain = framed(target, false, state.theta);
+  Framed const declared = sees_declared() ? framed(target, true, state.theta) : Framed{};
+  std::array<std::vector<double>, 4> log_q;
+  for (std::size_t m = 0; m < mixtures_.size(); ++m) {
+    log_q[m].assign(info.size(), 0.0);
+    if (!compared(m)) continue;
+    Framed const& frame = mixtures_[m].declared() ? declared : plain;
+    mixtures_[m].log_density(frame.x, log_q[m]);
+    for (std::size_t w = 0; w < info.size(); ++w) log_q[m][w] += frame.log_slope[w];
+  }
+  for (std::size_t chain = 0; chain < info.size(); ++chain) {
+    double const density = state.log_prior[chain] + state.log_likelihood[chain];
+    bool finite = std::isfinite(density);
+    for (auto const& each : log_q) finite = finite && std::isfinite(each[chain]);
+    if (finite) {
+      for (std::size_t m = 0; m < mixtures_.size(); ++m) window_.fits[m].add(density, log_q[m][chain], window_.states == 0);
       ++window_.states;
     }
-    Move const& move = info[static_cast<std::size_t>(w)];
-    if (!move.independent) continue;
-    window_.acceptance += move.acceptance_probability;
+    if (info[chain].kind != MoveKind::independent) continue;
+    window_.acceptance += info[chain].acceptance_probability;
     ++window_.moves;
   }
 }
 
-void IndependenceLearning::end_cycle(std::span<Adaptation const> groups) {
+bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation const> groups) {
   ++cycles_;
-  if (window_.iterations < std::max(shortest_window, iterations_ / 4)) return;
-  bool const better = window_.candidate.log_density > window_.current.log_density;
-  if (better) current_ = candidate_;
+  if (window_.iterations < std::max(shortest_window, iterations_ / 4)) return false;
+  std::size_t best = 0;
+  for (std::size_t m = 1; m < mixtures_.size(); ++m)
+    if (compared(m) && window_.fits[m].log_density > window_.fits[best].log_density) best = m;
+  mixtures_[0] = mixtures_[best];
   if (window_.states > 0) {
     // E w over q is 1 / E(1 / w) over p, of which the states are.
-    Fit const& fit = better ? window_.candidate : window_.current;
+    Fit const& fit = window_.fits[best];
     longest_stay_ = elementary::exp(fit.log_highest + fit.log_inverse) / static_cast<double>(window_.states);
   }
   if (window_.moves > 0) acceptance_ = window_.acceptance / static_cast<double>(window_.moves);
   ++windows_;
   window_ = {};
-  std::vector<Independence::Component> components;
-  for (std::size_t k = 0; k < weights_.size(); ++k)
+  propose_mixtures(target, groups);
+  return true;
+}
+
+void IndependenceLearning::propose_mixtures(Target const& target, std::span<Adaptation const> groups) {
+  std::vector<Independence::Component> plain, over_values;
+  for (std::size_t k = 0; k < weights_.size(); ++k) {
     for (Adaptation const& group : groups)
       if (component_of_chain_[static_cast<std::size_t>(group.chains().front())] == static_cast<int>(k))
-        components.push_back({weights_[k], group.mean(), group.covariance()});
+        plain.push_back({weights_[k], group.mean(), group.covariance()});
+    if (!sees_declared()) continue;
+    if (auto component = declared(target, k)) over_values.push_back(std::move(*component));
+  }
   // Modes without a chain have nothing new: a candidate that lost them would lose the posterior's mass there.
-  if (components.size() == weights_.size()) candidate_ = Independence(components);
+  mixtures_[1] = plain.size() == weights_.size() ? Independence(plain) : Independence();
+  mixtures_[2] = over_values.size() == weights_.size() && usable(over_values) ? Independence(over_values, true) : Independence();
 }
 
 nlohmann::json IndependenceLearning::store() const {
+  nlohmann::json mixtures = nlohmann::json::array(), archives = nlohmann::json::array();
+  for (Independence const& mixture : mixtures_) mixtures.push_back(mixture.store());
+  for (Archive const& each : archives_)
+    archives.push_back({{"states", checkpoint::encode(std::span<double const>(each.states))}, {"interval", each.interval}});
+  std::vector<double> sums{window_.acceptance, acceptance_, longest_stay_};
+  for (Fit const& fit : window_.fits) sums.insert(sums.end(), {fit.log_density, fit.log_highest, fit.log_inverse});
   return {{"component_of_chain", component_of_chain_},
           {"weights", checkpoint::encode(std::span<double const>(weights_))},
-          {"current", current_.store()},
-          {"candidate", candidate_.store()},
+          {"mixtures", mixtures},
+          {"archives", archives},
           {"counts", {window_.iterations, window_.states, window_.moves, iterations_, cycles_, windows_}},
-          {"sums",
-           checkpoint::encode(std::vector<double>{
-               window_.current.log_density, window_.current.log_highest, window_.current.log_inverse, window_.candidate.log_density,
-               window_.candidate.log_highest, window_.candidate.log_inverse, window_.acceptance, acceptance_, longest_stay_})}};
+          {"sums", checkpoint::encode(std::span<double const>(sums))}};
 }
 
 IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored, int dimension) {
   IndependenceLearning all;
   all.component_of_chain_ = stored.at("component_of_chain").get<std::vector<int>>();
   all.weights_ = checkpoint::decode(stored.at("weights"));
-  all.current_ = Independence::restore(stored.at("current"), dimension);
-  all.candidate_ = Independence::restore(stored.at("candidate"), dimension);
   auto const counts = stored.at("counts").get<std::vector<std::uint64_t>>();
-  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 9);
-  if (counts.size() != 6) throw checkpoint::Mismatch("its independence moves differ in form");
-  all.window_ = {counts[0], counts[1], counts[2], {sums[0], sums[1], sums[2]}, {sums[3], sums[4], sums[5]}, sums[6]};
+  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 15);
+  if (counts.size() != 6 || stored.at("mixtures").size() != all.mixtures_.size() ||
+      stored.at("archives").size() != all.weights_.size())
+    throw checkpoint::Mismatch("its independence moves differ in form");
+  for (std::size_t m = 0; m < all.mixtures_.size(); ++m)
+    all.mixtures_[m] = Independence::restore(stored.at("mixtures").at(m), dimension);
+  for (nlohmann::json const& each : stored.at("archives"))
+    all.archives_.push_back(
+        {checkpoint::decode(each.at("states")), std::max<std::uint64_t>(1, each.at("interval").get<std::uint64_t>())});
+  all.window_ = {counts[0], counts[1], counts[2], {}, sums[0]};
+  for (std::size_t m = 0; m < all.window_.fits.size(); ++m)
+    all.window_.fits[m] = {sums[3 + 3 * m], sums[4 + 3 * m], sums[5 + 3 * m]};
   all.iterations_ = counts[3];
   all.cycles_ = counts[4];
   all.windows_ = counts[5];
-  all.acceptance_ = sums[7];
-  all.longest_stay_ = sums[8];
+  all.acceptance_ = sums[1];
+  all.longest_stay_ = sums[2];
   return all;
 }
 

@@ -1,6 +1,8 @@
 // Learns during burn-in around what, and how often, independence moves are tried.
 #pragma once
+#include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,32 +14,39 @@ namespace sysid::metropolis {
 
 /// Begins with the normal distributions at the modes. Burn-in is cut into windows, each a third of what lies before it. At the end
 /// of one a mixture with the means and covariances that the chains had before it replaces the one in use if it gives the states
-/// *of* the window, which it has not seen, a higher mean log density. How many independence moves follow each move of the random
-/// walk is decided by the share of them that is accepted, and by how long a chain may stay in one place: at x it takes w(x) / E w
-/// independence moves to leave, w = p / q, E over q (Mengersen and Tweedie 1996).
+/// *of* the window, which it has not seen, a higher mean log density. Where less than half of the moves of the window before were
+/// accepted, two mixtures over the declared values are candidates as well, one from the modes and one from the states: noise that
+/// is added to what is measured makes normal what a response is linear in, which is more often a value than its logarithm.
+///
+/// How many independence moves follow each local move is decided by the share of them that is accepted, and by how long a chain
+/// may stay in one place: at x it takes w(x) / E w independence moves to leave, w = p / q, E over q (Mengersen and Tweedie 1996).
+/// Where a quarter of them is accepted one is made, however long a chain may stay: local moves are half of all then.
 class IndependenceLearning {
  public:
   /// Random walks alone.
   IndependenceLearning() = default;
   /// component_of_chain [W]: the mode that each chain starts in.
-  IndependenceLearning(std::vector<Mode> const& modes, std::vector<int> component_of_chain);
+  IndependenceLearning(Target const& target, std::vector<Mode> const& modes, std::vector<int> component_of_chain);
 
-  bool active() const { return !current_.empty(); }
-  Independence const& mixture() const { return current_; }
+  bool active() const { return !mixtures_[0].empty(); }
+  Independence const& mixture() const { return mixtures_[0]; }
   /// Independence moves of the next cycle of burn-in: now and then one even where they are not accepted, since they may be later.
   int moves_in_burn_in() const;
   /// The same after burn-in; 0 where they are not worth their simulations.
   int moves() const;
 
   /// [W]: the chains that stand nearer to another mode than to their own.
-  std::vector<char> away(State const& state) const;
-  /// After every iteration of burn-in.
-  void learn(State const& state, Info const& info);
-  /// Between cycles: ends the window when it is long enough. Candidates that are drawn already must have been decided on.
-  void end_cycle(std::span<Adaptation const> groups);
+  std::vector<char> away(Target const& target, State const& state) const;
+  /// After every iteration of burn-in; away [W] as above.
+  void learn(Target const& target, State const& state, Info const& info, std::span<char const> away);
+  /// Between cycles: ends the window when it is long enough, and returns whether it did. Candidates that are drawn already must
+  /// have been decided on.
+  bool end_cycle(Target const& target, std::span<Adaptation const> groups);
 
   /// Share of accepted independence moves in the last window; 0 before its end.
   double acceptance() const { return acceptance_; }
+  /// Whether a window has ended, and too few of its moves were accepted to do without others.
+  bool too_few() const;
 
   nlohmann::json store() const;
   static IndependenceLearning restore(nlohmann::json const& stored, int dimension);
@@ -51,14 +60,28 @@ class IndependenceLearning {
   };
   struct Window {
     std::uint64_t iterations = 0, states = 0, moves = 0;
-    Fit current, candidate;
-    double acceptance = 0;  // sum over moves
+    std::array<Fit, 4> fits;  // of the mixtures
+    double acceptance = 0;    // sum over moves
   };
+  /// States of the chains of one mode while they were near it, at equal intervals, which double when there are too many.
+  struct Archive {
+    std::vector<double> states;  // P numbers each
+    std::uint64_t interval = 1;
+  };
+  void archive(State const& state, std::span<char const> away);
+  /// Over the declared values of the last two thirds of an archive; nothing where they are too few.
+  std::optional<Independence::Component> declared(Target const& target, std::size_t component) const;
+  void propose_mixtures(Target const& target, std::span<Adaptation const> groups);
+  /// Whether a mixture takes part in the comparison.
+  bool compared(std::size_t m) const { return !mixtures_[m].empty() && (m < 2 || sees_declared()); }
+  bool sees_declared() const { return too_few() || mixture().declared(); }
   int worth() const;
 
   std::vector<int> component_of_chain_;
   std::vector<double> weights_;
-  Independence current_, candidate_;
+  /// In use; candidates over theta, over declared values, and over these as the modes are; empty where there are none.
+  std::array<Independence, 4> mixtures_;
+  std::vector<Archive> archives_;  // of the components
   Window window_;
   std::uint64_t iterations_ = 0, cycles_ = 0, windows_ = 0;
   double acceptance_ = 0, longest_stay_ = 1;  // of the last window

@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "inference/chain/candidates.hpp"
 
 namespace sysid::metropolis {
 namespace {
 
-/// Writes what `chain` proposes into `lane`; returns whether the move is a small one.
-bool propose(Proposal const& proposal, StreamKey key, ConstLanes from, int chain, Lanes to, int lane) {
-  Stream stream(key);
-  bool const small = proposal.small_share > 0 && stream.uniform() < proposal.small_share;
+/// x' - x = scale L z into `lane`; returns scale^2 |z|^2.
+double walk(Proposal const& proposal, Stream& stream, bool small, ConstLanes from, int chain, Lanes to, int lane) {
   double const scale = small ? proposal.small_scale * proposal.scale : proposal.scale;
   auto const dimension = static_cast<std::size_t>(proposal.dimension);
   double normals[64];
@@ -22,13 +21,65 @@ bool propose(Proposal const& proposal, StreamKey key, ConstLanes from, int chain
     many.resize(dimension);
     z = many.data();
   }
-  for (std::size_t i = 0; i < dimension; ++i) z[i] = stream.normal();
+  double squares = 0;
+  for (std::size_t i = 0; i < dimension; ++i) {
+    z[i] = stream.normal();
+    squares += z[i] * z[i];
+  }
   for (std::size_t i = 0; i < dimension; ++i) {
     double move = 0;
     for (std::size_t j = 0; j <= i; ++j) move += proposal.factor[i * dimension + j] * z[j];
     to(static_cast<int>(i), lane) = from(static_cast<int>(i), chain) + scale * move;
   }
-  return small;
+  return scale * scale * squares;
+}
+
+/// Writes what `chain` proposes into candidate `lane`; returns what kind of move it is. here: the states as the mixture sees them.
+Move propose(LocalMoves const& local, StreamKey key, ConstLanes from, Framed const& here, int chain, Candidates& to, int lane) {
+  Stream stream(key);
+  Proposal const& proposal = *local.walks[static_cast<std::size_t>(chain)];
+  Move move;
+  if (local.share > 0 && stream.uniform() < local.share) {
+    move.kind = MoveKind::autoregressive;
+    move.small = stream.uniform() < local.shorter;
+    double const step = local.step * (move.small ? stream.uniform() : 1);
+    move.squared_jump = local.mixture->move_about(stream, step, here.x, chain, to.drawn(lane), lane);
+  } else {
+    move.small = proposal.small_share > 0 && stream.uniform() < proposal.small_share;
+    move.squared_jump = walk(proposal, stream, move.small, from, chain, to.theta(), lane);
+  }
+  return move;
+}
+
+/// The states as the mixture sees them, where local moves go about one.
+Framed frame_of(Target const& target, LocalMoves const& local, State const& state) {
+  return local.share > 0 ? framed(target, local.mixture->declared(), state.theta) : Framed{};
+}
+
+/// Takes or refuses candidate `lane`, a local move of chain w.
+Move settle(LocalMoves const& local, Move const& proposal, StreamKey key, State& state, Framed const& here, std::size_t w,
+            Candidates const& candidates, int lane) {
+  Odds odds;
+  if (proposal.kind == MoveKind::autoregressive) {
+    Framed const& there = candidates.framed();
+    odds.log_reverse = local.mixture->log_normal_density(here.x, static_cast<int>(w)) + here.log_slope[w] -
+                       local.mixture->log_normal_density(there.x, lane) - there.log_slope[static_cast<std::size_t>(lane)];
+  }
+  Move move = decide(key, state, w, candidates.theta(), lane, candidates.log_prior(lane), candidates.log_likelihood(lane), odds);
+  move.failed = move.failed && !candidates.outside(lane);
+  move.small = proposal.small;
+  move.kind = proposal.kind;
+  move.squared_jump = proposal.squared_jump;
+  return move;
+}
+
+/// Columns that can be simulated, for candidates of chain `chain_of(lane)`.
+template <class ChainOf>
+LaneArray states_of(State const& state, int width, ChainOf const& chain_of) {
+  LaneArray columns(state.theta.rows(), width);
+  for (int p = 0; p < columns.rows(); ++p)
+    for (int lane = 0; lane < width; ++lane) columns(p, lane) = state.theta(p, chain_of(lane));
+  return columns;
 }
 
 }  // namespace
@@ -66,84 +117,83 @@ State init(Target const& target, LaneArray theta, Ledger& ledger) {
   return state;
 }
 
-Info step(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, State& state, Ledger& ledger) {
+Info step(Target const& target, LocalMoves const& local, StreamKey key, State& state, Ledger& ledger) {
   auto const width = static_cast<std::size_t>(state.theta.width());
   Info info(width);
   std::vector<std::uint64_t> next(width, key.step);
-  advance(target, proposals, key, 1, key.step + 1, next, state, ledger,
+  advance(target, local, key, 1, key.step + 1, next, state, ledger,
           [&](int chain, Move const& move) { info[static_cast<std::size_t>(chain)] = move; });
   return info;
 }
 
-int cycle(Target const& target, std::span<Proposal const* const> proposals, Independence const& independence, int moves,
-          StreamKey key, std::uint64_t end, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit) {
-  auto const chains = static_cast<std::size_t>(state.theta.width());
-  auto const iterations = static_cast<std::size_t>(std::min<std::uint64_t>(static_cast<std::uint64_t>(moves) + 1, end - key.step));
-  LaneArray proposed(state.theta.rows(), static_cast<int>(chains * iterations));
-  auto const key_of = [&](Purpose purpose, std::size_t w, std::size_t later) {
-    return StreamKey{key.seed, purpose, key.index + w, key.step + later};
+int cycle(Target const& target, LocalMoves const& local, Independence const& independence, int moves, StreamKey key,
+          std::uint64_t end, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit) {
+  int const chains = state.theta.width();
+  int const iterations = static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(moves) + 1, end - key.step));
+  auto const key_of = [&](Purpose purpose, int w, int later) {
+    return StreamKey{key.seed, purpose, key.index + static_cast<std::uint64_t>(w), key.step + static_cast<std::uint64_t>(later)};
   };
-  std::vector<char> small(chains);
-  for (std::size_t w = 0; w < chains; ++w)
-    small[w] =
-        propose(*proposals[w], key_of(Purpose::proposal, w, 0), state.theta, static_cast<int>(w), proposed, static_cast<int>(w));
-  auto const independent = proposed.view().columns(static_cast<int>(chains), static_cast<int>((iterations - 1) * chains));
+  Candidates candidates(target, &independence, chains * iterations);
+  Framed here = frame_of(target, local, state);
+  std::vector<Move> moved;
+  for (int w = 0; w < chains; ++w)
+    moved.push_back(propose(local, key_of(Purpose::proposal, w, 0), state.theta, here, w, candidates, w));
   std::vector<StreamKey> keys;
-  for (std::size_t i = 1; i < iterations; ++i)
-    for (std::size_t w = 0; w < chains; ++w) keys.push_back(key_of(Purpose::proposal, w, i));
-  if (iterations > 1) independence.draw(keys, independent);
+  for (int i = 1; i < iterations; ++i)
+    for (int w = 0; w < chains; ++w) keys.push_back(key_of(Purpose::proposal, w, i));
+  int const drawn = static_cast<int>(keys.size());
+  if (drawn > 0) independence.draw(keys, candidates.drawn(chains, drawn));
+  candidates.evaluate(states_of(state, chains * iterations, [&](int lane) { return lane % chains; }), ledger);
 
-  std::vector<double> log_prior(chains * iterations), log_likelihood(log_prior), here(chains), there(keys.size());
-  target.log_prior(proposed, log_prior);
-  target.log_likelihood(proposed, log_likelihood, ledger);
-  for (std::size_t w = 0; w < chains; ++w) {
-    Move move = decide(key_of(Purpose::accept, w, 0), state, w, proposed, static_cast<int>(w), log_prior[w], log_likelihood[w]);
-    move.small = small[w] != 0;
-    visit(static_cast<int>(w), move);
-  }
+  for (int w = 0; w < chains; ++w)
+    visit(w, settle(local, moved[static_cast<std::size_t>(w)], key_of(Purpose::accept, w, 0), state, here,
+                    static_cast<std::size_t>(w), candidates, w));
   if (iterations == 1) return 1;
-  independence.log_density(state.theta, here);
-  independence.log_density(independent, there);
-  for (std::size_t i = 1; i < iterations; ++i)
-    for (std::size_t w = 0; w < chains; ++w) {
-      std::size_t const lane = i * chains + w, candidate = lane - chains;
-      Move move = decide(key_of(Purpose::accept, w, i), state, w, proposed, static_cast<int>(lane), log_prior[lane],
-                         log_likelihood[lane], {.log_reverse = here[w] - there[candidate]});
-      move.independent = true;
-      if (move.accepted) here[w] = there[candidate];
-      visit(static_cast<int>(w), move);
+  here = framed(target, independence.declared(), state.theta);
+  std::vector<double> now(static_cast<std::size_t>(chains)), there(keys.size());
+  independence.log_density(here.x, now);
+  independence.log_density(candidates.framed().x.view().columns(chains, drawn), there);
+  for (std::size_t w = 0; w < now.size(); ++w) now[w] += here.log_slope[w];
+  for (std::size_t c = 0; c < there.size(); ++c) there[c] += candidates.framed().log_slope[now.size() + c];
+  for (int i = 1; i < iterations; ++i)
+    for (int w = 0; w < chains; ++w) {
+      int const lane = i * chains + w;
+      auto const chain = static_cast<std::size_t>(w), candidate = static_cast<std::size_t>(lane - chains);
+      Move move = decide(key_of(Purpose::accept, w, i), state, chain, candidates.theta(), lane, candidates.log_prior(lane),
+                         candidates.log_likelihood(lane), {.log_reverse = now[chain] - there[candidate]});
+      move.failed = move.failed && !candidates.outside(lane);
+      move.kind = MoveKind::independent;
+      if (move.accepted) now[chain] = there[candidate];
+      visit(w, move);
     }
-  return static_cast<int>(iterations);
+  return iterations;
 }
 
-void advance(Target const& target, std::span<Proposal const* const> proposals, StreamKey key, int ahead, std::uint64_t end,
+void advance(Target const& target, LocalMoves const& local, StreamKey key, int ahead, std::uint64_t end,
              std::span<std::uint64_t> next, State& state, Ledger& ledger, std::function<void(int, Move const&)> const& visit) {
-  std::vector<int> tries;
-  int width = 0;
-  for (std::uint64_t const iteration : next) {
-    tries.push_back(iteration < end ? static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(ahead), end - iteration))
-                                    : 0);
-    width += tries.back();
+  std::vector<int> tries, chain_of;
+  for (std::size_t w = 0; w < next.size(); ++w) {
+    tries.push_back(next[w] < end ? static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(ahead), end - next[w]))
+                                  : 0);
+    chain_of.insert(chain_of.end(), static_cast<std::size_t>(tries.back()), static_cast<int>(w));
   }
-  LaneArray proposed(state.theta.rows(), width);
-  std::vector<char> small(static_cast<std::size_t>(width));
+  int const width = static_cast<int>(chain_of.size());
+  Candidates candidates(target, local.mixture, width);
+  Framed const here = frame_of(target, local, state);
+  std::vector<Move> moved;
   auto const key_of = [&](Purpose purpose, std::size_t w, int later) {
     return StreamKey{key.seed, purpose, key.index + w, next[w] + static_cast<std::uint64_t>(later)};
   };
-  for (std::size_t w = 0, lane = 0; w < next.size(); ++w)
-    for (int i = 0; i < tries[w]; ++i, ++lane)
-      small[lane] = propose(*proposals[w], key_of(Purpose::proposal, w, i), state.theta, static_cast<int>(w), proposed,
-                            static_cast<int>(lane));
-
-  std::vector<double> log_prior(static_cast<std::size_t>(width)), log_likelihood(log_prior);
-  target.log_prior(proposed, log_prior);
-  target.log_likelihood(proposed, log_likelihood, ledger);
+  for (std::size_t w = 0; w < next.size(); ++w)
+    for (int i = 0; i < tries[w]; ++i)
+      moved.push_back(propose(local, key_of(Purpose::proposal, w, i), state.theta, here, static_cast<int>(w), candidates,
+                              static_cast<int>(moved.size())));
+  candidates.evaluate(states_of(state, width, [&](int lane) { return chain_of[static_cast<std::size_t>(lane)]; }), ledger);
   for (std::size_t w = 0, first = 0; w < next.size(); first += static_cast<std::size_t>(tries[w]), ++w) {
     for (int i = 0; i < tries[w]; ++i) {
       std::size_t const lane = first + static_cast<std::size_t>(i);
-      Move move =
-          decide(key_of(Purpose::accept, w, 0), state, w, proposed, static_cast<int>(lane), log_prior[lane], log_likelihood[lane]);
-      move.small = small[lane] != 0;
+      Move const move =
+          settle(local, moved[lane], key_of(Purpose::accept, w, 0), state, here, w, candidates, static_cast<int>(lane));
       ++next[w];
       visit(static_cast<int>(w), move);
       if (move.accepted) break;

@@ -14,6 +14,7 @@
 #include "inference/chain/adaptation.hpp"
 #include "inference/chain/chain_record.hpp"
 #include "inference/chain/independence_learning.hpp"
+#include "inference/chain/local_learning.hpp"
 #include "inference/chain/metropolis.hpp"
 #include "inference/chain/watch.hpp"
 #include "search/laplace.hpp"
@@ -51,6 +52,7 @@ struct State {
   metropolis::State chains;
   std::vector<metropolis::Adaptation> groups;  // empty for a spherical proposal
   metropolis::IndependenceLearning independence;
+  metropolis::LocalLearning local;
   std::vector<Mode> modes;
   Findings findings;  // of the search
   ChainRecord record;
@@ -91,6 +93,7 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
           {"log_likelihood", block(state.chains.log_likelihood)},
           {"groups", groups},
           {"independence", state.independence.store()},
+          {"local", state.local.store()},
           {"modes", modes},
           {"findings", checkpoint::encode(state.findings)},
           {"record", state.record.store()},
@@ -107,6 +110,7 @@ State restore(nlohmann::json const& stored, Target const& target, Plan const& pl
     throw checkpoint::Mismatch("its chains differ in number or dimension");
   for (auto const& group : stored.at("groups")) state.groups.push_back(metropolis::Adaptation::restore(group));
   state.independence = metropolis::IndependenceLearning::restore(stored.at("independence"), target.dimension());
+  state.local = metropolis::LocalLearning::restore(stored.at("local"));
   for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
   state.findings = checkpoint::decode_findings(stored.at("findings"));
   state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
@@ -150,7 +154,7 @@ std::optional<State> begin(Target const& target, Plan const& plan, RunContext& c
     std::vector<int> const mode_of_chain = spread_over_modes(found.modes, plan.chains);
     starts = overdispersed_starts(target, found.modes, mode_of_chain, context);
     if (plan.adaptive) state.groups = make_groups(found.modes, mode_of_chain);
-    if (plan.independent) state.independence = {found.modes, mode_of_chain};
+    if (plan.independent) state.independence = {target, found.modes, mode_of_chain};
     state.modes = std::move(found.modes);
     state.findings = std::move(found.findings);
   } else {
@@ -168,8 +172,14 @@ std::optional<State> begin(Target const& target, Plan const& plan, RunContext& c
   return state;
 }
 
+/// The local moves to make now: with autoregressive ones where there is a mixture that they can go about.
+metropolis::LocalMoves local_moves(std::span<metropolis::Proposal const* const> walks, State const& state) {
+  if (!state.independence.active()) return {walks};
+  return {walks, &state.independence.mixture(), state.local.step(), state.local.share()};
+}
+
 /// One batch of burn-in: an iteration of every chain, or a cycle of them with independence moves.
-void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Proposal const* const> proposals, StreamKey key,
+void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Proposal const* const> walks, StreamKey key,
              Ledger& ledger, State& state) {
   metropolis::Info info(static_cast<std::size_t>(plan.chains));
   auto const learn = [&](int chain, metropolis::Move const& move) {
@@ -178,23 +188,25 @@ void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Propo
     for (std::uint64_t& n : state.next) ++n;
     std::vector<char> away(info.size(), 0);
     if (state.independence.active()) {
-      away = state.independence.away(state.chains);
-      state.independence.learn(state.chains, info);
+      away = state.independence.away(target, state.chains);
+      state.independence.learn(target, state.chains, info, away);
+      state.local.learn(info);
     }
     for (auto& group : state.groups) group.learn(state.chains, info, away);
     state.record.count_burn_in(info);
   };
-  metropolis::cycle(target, proposals, state.independence.mixture(), state.independence.moves_in_burn_in(),
+  metropolis::cycle(target, local_moves(walks, state), state.independence.mixture(), state.independence.moves_in_burn_in(),
                     key.with_step(state.next.front()), plan.burn_in, state.chains, ledger, learn);
-  if (state.independence.active()) state.independence.end_cycle(state.groups);
+  if (state.independence.active() && state.independence.end_cycle(target, state.groups))
+    state.local.end_window(state.independence.too_few());
 }
 
 /// Iterates to the end, or until asked to stop or a batch is given up, of which nothing is kept; returns whether it was.
 bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
   metropolis::Proposal const fixed = metropolis::spherical(target.dimension(), plan.variance);
-  std::vector<metropolis::Proposal const*> proposals(static_cast<std::size_t>(plan.chains), &fixed);
+  std::vector<metropolis::Proposal const*> walks(static_cast<std::size_t>(plan.chains), &fixed);
   for (auto const& group : state.groups)
-    for (int const chain : group.chains()) proposals[static_cast<std::size_t>(chain)] = &group.proposal();
+    for (int const chain : group.chains()) walks[static_cast<std::size_t>(chain)] = &group.proposal();
   StreamKey const key{context.seed, Purpose::proposal, 0, 0};
   Watch watch(context, [&] { return store(state, context.ledger, identity); });
   auto const look = [&] { watch.look(*std::min_element(state.next.begin(), state.next.end()), state.record.mean_acceptance()); };
@@ -217,12 +229,13 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     return stopped;
   };
   while (!stopped && !all_lags(plan.burn_in) && !(stopped = context.stop_requested())) {
-    if (given_up([&] { burn_in(target, plan, proposals, key, context.ledger, state); })) break;
+    if (given_up([&] { burn_in(target, plan, walks, key, context.ledger, state); })) break;
     look();
   }
   // The proposals are frozen. Without independence moves idle lanes may run ahead. How far must not depend on the machine, or the
   // counts of solves would.
   int const ahead = std::clamp(lanes_worth_filling / plan.chains, 1, most_ahead), moves = state.independence.moves();
+  metropolis::LocalMoves const local = local_moves(walks, state);
   auto const counted = [&](int chain, metropolis::Move const& move) {
     ++state.next[static_cast<std::size_t>(chain)];
     record(chain, move);
@@ -230,10 +243,10 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
   while (!stopped && !all_lags(plan.samples) && !(stopped = context.stop_requested())) {
     auto const batch = [&] {
       if (moves > 0)
-        metropolis::cycle(target, proposals, state.independence.mixture(), moves, key.with_step(state.next.front()), plan.samples,
+        metropolis::cycle(target, local, state.independence.mixture(), moves, key.with_step(state.next.front()), plan.samples,
                           state.chains, context.ledger, counted);
       else
-        metropolis::advance(target, proposals, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
+        metropolis::advance(target, local, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
     };
     if (given_up(batch)) break;
     look();
