@@ -4,6 +4,7 @@
 #include "core/setting/table.hpp"
 #include "inference/chain/mh.hpp"
 #include "inference/chain/tempering.hpp"
+#include "inference/nuts/nuts.hpp"
 #include "inference/optimum.hpp"
 
 namespace sysid {
@@ -17,6 +18,13 @@ BackendRow const backend_rows[] = {
      mh::settings(),
      &mh::refuse,
      &mh::run},
+    {"nuts",
+     "no-U-turn chains: trajectories along the gradient of the log density",
+     {.proper_prior = true},
+     ObjectiveKind::posterior,
+     nuts::settings(),
+     &nuts::refuse,
+     &nuts::run},
     {"tempering",
      "replica exchange between prior and posterior, for several modes and curved or flat posteriors",
      {.proper_prior = true},

@@ -19,6 +19,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::ess_bulk_low, "ess_bulk_low", error},
     {FindingCode::ess_tail_low, "ess_tail_low", error},
     {FindingCode::replicas_do_not_mix, "replicas_do_not_mix", warning},
+    {FindingCode::trajectories_diverge, "trajectories_diverge", error_or_warning},
+    {FindingCode::trajectories_cut, "trajectories_cut", warning},
     {FindingCode::no_diagnostics, "no_diagnostics", error},
     {FindingCode::integration_step, "integration_step", any},
     {FindingCode::step_not_settled, "step_not_settled", error_or_warning},

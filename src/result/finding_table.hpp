@@ -18,6 +18,8 @@ enum class FindingCode {
   ess_bulk_low,
   ess_tail_low,
   replicas_do_not_mix,
+  trajectories_diverge,
+  trajectories_cut,
   no_diagnostics,
   integration_step,
   step_not_settled,

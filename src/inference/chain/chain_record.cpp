@@ -11,10 +11,13 @@ namespace sysid {
 ChainRecord::ChainRecord(int dimension, int chains) : dimension_(dimension), traces_(static_cast<std::size_t>(chains)) {}
 
 void ChainRecord::count_burn_in(metropolis::Info const& info) {
-  for (std::size_t w = 0; w < traces_.size(); ++w) {
-    ++traces_[w].burnt;
-    traces_[w].accepted_burning += info[w].accepted ? 1 : 0;
-  }
+  for (std::size_t w = 0; w < traces_.size(); ++w) count_burn_in(static_cast<int>(w), info[w]);
+}
+
+void ChainRecord::count_burn_in(int chain, metropolis::Move const& move) {
+  Trace& trace = traces_[static_cast<std::size_t>(chain)];
+  ++trace.burnt;
+  trace.accepted_burning += move.accepted ? 1 : 0;
 }
 
 void ChainRecord::add(int chain, metropolis::State const& state, metropolis::Move const& move, bool keep) {
@@ -26,6 +29,17 @@ void ChainRecord::add(int chain, metropolis::State const& state, metropolis::Mov
   for (int p = 0; p < dimension_; ++p) trace.theta.push_back(state.theta(p, chain));
   trace.log_prior.push_back(state.log_prior[w]);
   trace.log_likelihood.push_back(state.log_likelihood[w]);
+  trace.acceptance.push_back(move.acceptance_probability);
+}
+
+void ChainRecord::add(int chain, std::span<double const> theta, double log_prior, double log_likelihood,
+                      metropolis::Move const& move) {
+  Trace& trace = traces_[static_cast<std::size_t>(chain)];
+  ++trace.sampled;
+  trace.accepted += move.accepted ? 1 : 0;
+  trace.theta.insert(trace.theta.end(), theta.begin(), theta.end());
+  trace.log_prior.push_back(log_prior);
+  trace.log_likelihood.push_back(log_likelihood);
   trace.acceptance.push_back(move.acceptance_probability);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <vector>
 
 #include "inference/backend/backend.hpp"
@@ -15,8 +16,12 @@ class ChainRecord {
   ChainRecord(int dimension, int chains);
 
   void count_burn_in(metropolis::Info const& info);
+  /// One iteration of one chain in burn-in.
+  void count_burn_in(int chain, metropolis::Move const& move);
   /// One iteration of one chain after burn-in; `keep`: its state is recorded, not only counted.
   void add(int chain, metropolis::State const& state, metropolis::Move const& move, bool keep);
+  /// The same of a state [P] on its own, which is recorded.
+  void add(int chain, std::span<double const> theta, double log_prior, double log_likelihood, metropolis::Move const& move);
 
   /// Share of accepted moves per chain: after burn-in once there is any, else during it.
   std::vector<double> acceptance_rate() const;

@@ -197,8 +197,8 @@ std::vector<ChainWords> chain_words(Report const& report) {
          fmt::format("The mean acceptance probability of the moves that led to the kept draws is {} %: {}.", number(100 * rate, 2),
                      !good        ? "the chains hardly moved"
                      : rate < 0.1 ? "low, but the effective sample sizes above decide"
-                     : rate > 0.6 ? "high, as is usual for independence moves that fit the posterior, and for short steps; the "
-                                    "effective sample sizes above decide"
+                     : rate > 0.6 ? "high, as is usual for independence moves that fit the posterior, for nuts, and for short "
+                                    "steps; the effective sample sizes above decide"
                                   : "in the usual range"),
          good});
   }
