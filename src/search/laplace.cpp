@@ -9,6 +9,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "search/ridge.hpp"
 #include "search/settle.hpp"
 
 namespace sysid {
@@ -16,6 +17,10 @@ namespace {
 
 constexpr double curvature_step = 0.3;  // conditional sds: log density falls by 0.045, far above its rounding
 constexpr double close_enough = 1e-8;   // Newton decrement: 1e-4 sd from the optimum
+constexpr double flat_move = 0.1;       // prior widths that a flat direction is shown over
+/// Curvatures below this share of a conditional width's are rounding: of second differences along the parameters, where those along
+/// narrow directions drown them; and of the sums that turn differences along the axes into a matrix.
+constexpr double rounding = 1e-11, rounding_along_axes = 1e-14;
 
 /// Value, gradient and minus the second derivatives of the log density, in units of the columns of `steps` [P x P].
 struct Local {
@@ -63,10 +68,12 @@ Local local_shape(Objective const& objective, Eigen::VectorXd const& theta, Eige
 /// long, not infinite. Units are conditional widths where those are narrower than the prior's: a parameter known to a billionth
 /// would else leave its rounding in all others.
 struct Spectrum {
-  Eigen::VectorXd unit;     // [P]
-  Eigen::VectorXd values;   // > 0
-  Eigen::MatrixXd vectors;  // columns, in units
-  std::vector<Eigen::Index> flat;
+  Eigen::VectorXd unit;                // [P]
+  Eigen::VectorXd values;              // > 0
+  Eigen::MatrixXd vectors;             // columns, in units
+  std::vector<Eigen::Index> flat;      // longer than ten prior widths
+  std::vector<Eigen::Index> doubtful;  // longer than is measured along the parameters, which may be much less than a prior width
+  Eigen::VectorXd measured;
 };
 
 Spectrum spectrum_of(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& scale) {
@@ -74,13 +81,12 @@ Spectrum spectrum_of(Eigen::MatrixXd const& curvature, Eigen::VectorXd const& sc
   for (Eigen::Index i = 0; i < unit.size(); ++i)
     if (curvature(i, i) > 0) unit(i) = std::min(scale(i), 1 / std::sqrt(curvature(i, i)));
   auto [values, vectors] = symmetric_eigen(unit.asDiagonal() * curvature * unit.asDiagonal());
-  Spectrum spectrum{unit, std::move(values), std::move(vectors), {}};
-  constexpr double noise = 1e-11;  // what rounding leaves in second differences
+  Spectrum spectrum{unit, values, std::move(vectors), {}, {}, values};
   for (Eigen::Index k = 0; k < unit.size(); ++k) {
     double const length = spectrum.vectors.col(k).cwiseProduct(unit).cwiseQuotient(scale).norm();
-    double const least = std::max(length * length / (longest_width * longest_width), noise);
+    double const of_prior = length * length / (longest_width * longest_width), least = std::max(of_prior, rounding);
     if (spectrum.values(k) >= least) continue;
-    spectrum.flat.push_back(k);
+    (of_prior < rounding ? spectrum.doubtful : spectrum.flat).push_back(k);
     spectrum.values(k) = std::max(std::fabs(spectrum.values(k)), least);
   }
   return spectrum;
@@ -168,8 +174,22 @@ void add_flat(Eigen::VectorXd move, Eigen::VectorXd const& scale, Eigen::MatrixX
   double const largest = widths.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < move.size(); ++i)
     if (std::fabs(widths(i)) < 0.1 * largest) move(i) = 0;
-  Eigen::VectorXd const declared = slope * move * (0.1 / largest);
+  Eigen::VectorXd const declared = slope * move * (flat_move / largest);
   mode.flat.insert(mode.flat.end(), declared.begin(), declared.end());
+}
+
+/// Directions so much longer than the narrowest that the curvature alone does not tell whether they are flat: they are if the
+/// likelihood has a ridge there, else as long as is measured along the axes.
+void settle_doubts(Objective const& objective, Eigen::VectorXd const& theta, bool along_parameters, Spectrum& spectrum,
+                   Ledger& ledger) {
+  for (Eigen::Index const k : spectrum.doubtful) {
+    Eigen::VectorXd const move = spectrum.unit.cwiseProduct(spectrum.vectors.col(k));
+    double const widths = move.cwiseQuotient(objective.scale).cwiseAbs().maxCoeff();
+    if (objective.target.is_expensive() || is_ridge(objective, theta, move * (flat_move / widths), ledger))
+      spectrum.flat.push_back(k);
+    else if (!along_parameters && spectrum.measured(k) > rounding_along_axes)
+      spectrum.values(k) = spectrum.measured(k);
+  }
 }
 
 }  // namespace
@@ -223,7 +243,8 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
       break;
     }
   }
-  Spectrum const spectrum = spectrum_of(curvature, scale);
+  Spectrum spectrum = spectrum_of(curvature, scale);
+  settle_doubts(objective, theta, steps.along_parameters, spectrum, ledger);
   Eigen::MatrixXd const covariance = covariance_from(spectrum);
   Eigen::Index const n = theta.size();
   Mode mode;

@@ -21,8 +21,9 @@ constexpr int most_measured_in_full = 24;  // parameters
 /// over the sampler's coordinates, or for an objective that is a density of the declared parameters over those. `guess` is a
 /// curvature to choose difference widths by (Gauss-Newton). Above 24 parameters second differences are taken along its axes alone,
 /// as P^2 simulations cost more than they tell: what is left out is how the axes turn, not how long they are. Directions along
-/// which the curvature leaves more than ten prior widths get those, and are listed in `flat`. Declared sds: first order, through
-/// the derivative of the declared values. most_steps: of Newton's method, at most.
+/// which the curvature leaves more than ten prior widths get those, and are listed in `flat`; where rounding hides how long one is,
+/// only if the likelihood has a ridge there (search/ridge.hpp). Declared sds: first order, through the derivative of the declared
+/// values. most_steps: of Newton's method, at most.
 Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::MatrixXd const& guess, Ledger& ledger,
                   int most_steps = most_laplace_steps);
 

@@ -54,3 +54,32 @@ TEST_CASE("sds of many parameters are exact, that of the noise too, which Gauss-
   for (int c = 0; c < coefficients; ++c)
     CHECK(mode.sd[static_cast<std::size_t>(c)] == doctest::Approx(std::sqrt(covariance(c, c))).epsilon(0.01));
 }
+
+namespace {
+
+/// a and b, prior sd 1, of which the data know a - b, or a b, to 1e-9; and b to `width`, if that is finite.
+TestTarget narrow(bool product, double width) {
+  return {
+      {"a", "b"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1}}, 2, 0, [=](std::vector<double> const& w, std::vector<double>& r) {
+        r[0] = (product ? w[0] * w[1] - 0.5 : w[0] - w[1]) / 1e-9;
+        r[1] = (w[1] - 0.3) / width;
+      }};
+}
+
+}  // namespace
+
+TEST_CASE("a direction that is a million times as long as the narrowest, and a thousandth of the prior, is not flat") {
+  Bench bench;
+  Mode const mode = search(narrow(false, 1e-3), ObjectiveKind::posterior, bench.context).modes.front();
+  CHECK(mode.flat.empty());
+  CHECK(mode.sd[0] == doctest::Approx(1e-3).epsilon(0.01));
+  CHECK(mode.sd[1] == doctest::Approx(1e-3).epsilon(0.01));
+}
+
+TEST_CASE("a ridge as long as the prior is flat however narrow it is, straight or bent") {
+  for (bool const product : {false, true}) {
+    CAPTURE(product);
+    Bench bench;
+    CHECK_FALSE(search(narrow(product, INFINITY), ObjectiveKind::likelihood, bench.context).modes.front().flat.empty());
+  }
+}
