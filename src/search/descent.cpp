@@ -136,6 +136,13 @@ std::size_t per_block(Objective const& objective, double lanes) {
 
 std::size_t climbers_per_block(Objective const& objective) { return per_block(objective, 2 * objective.dimension() + 1); }
 
+std::pair<Eigen::VectorXd, Eigen::MatrixXd> slope_at(Objective const& objective, Eigen::VectorXd const& theta, Ledger& ledger) {
+  Climber climber;
+  climber.theta = theta;
+  Slope slope = slopes_of(objective, {&climber}, ledger).front();
+  return {std::move(slope.gradient), std::move(slope.curvature)};
+}
+
 Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::move(theta), log_density, 1e-2, {}, false}; }
 
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/numeric/not_finite.hpp"
@@ -27,6 +28,9 @@ struct Climber {
 std::size_t climbers_per_block(Objective const& objective);
 
 Climber climber_at(Eigen::VectorXd theta, double log_density);
+
+/// Gradient of the log density at theta, and the Gauss-Newton curvature with the prior's: J'J + P as below.
+std::pair<Eigen::VectorXd, Eigen::MatrixXd> slope_at(Objective const& objective, Eigen::VectorXd const& theta, Ledger& ledger);
 
 /// Up to `rounds` steps of every climber that is not done; stops early when `stop` says so. A `journal` keeps it, as a step of
 /// its own; none costs nothing.

@@ -35,6 +35,8 @@ class Independence {
   /// Whether x are declared values.
   bool declared() const { return declared_; }
   bool empty() const { return parts_.empty(); }
+  /// P.
+  int dimension() const { return static_cast<int>(dimension_); }
   /// Writes a draw into each column of `to` [P x W]; keys [W]: of its numbers.
   void draw(std::span<StreamKey const> keys, Lanes to) const;
   void draw(StreamKey key, Lanes to, int lane) const { draw({&key, 1}, to.columns(lane, 1)); }

@@ -23,6 +23,11 @@ constexpr double least_weight = 0.02;
 /// States of an archive; per coordinate, those that a candidate is made from at least.
 constexpr std::size_t most_archived = 8192, least_archived = 10;
 
+/// Parameters; with more, places along a ridge cost a part of the run.
+constexpr int most_of_ridge = 24;
+/// Windows in which other mixtures can show what they are worth.
+constexpr std::uint64_t windows_before_ridge = 5;
+
 constexpr int most_moves = 15;
 /// Independence moves that a chain spends in one place at most, between two moves of the random walk that lead out of it.
 constexpr double longest_wait = 30;
@@ -93,6 +98,18 @@ int IndependenceLearning::worth() const {
 }
 
 bool IndependenceLearning::too_few() const { return active() && windows_ > 0 && acceptance_ < enough_acceptance; }
+
+bool IndependenceLearning::wants_ridge() const {
+  return too_few() && windows_ >= windows_before_ridge && !ridge_seen_ && weights_.size() == 1 &&
+         mixture().dimension() <= most_of_ridge;
+}
+
+void IndependenceLearning::see_ridge(Independence const& mixture, double worth) {
+  ridge_seen_ = true;
+  if (worth <= acceptance_) return;
+  on_ridge_ = true;
+  mixtures_ = {mixture, {}, {}, {}};
+}
 
 int IndependenceLearning::moves_in_burn_in() const {
   if (!active()) return 0;
@@ -199,6 +216,7 @@ bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation 
 }
 
 void IndependenceLearning::propose_mixtures(Target const& target, std::span<Adaptation const> groups) {
+  if (on_ridge_) return;
   std::vector<Independence::Component> plain, over_values;
   for (std::size_t k = 0; k < weights_.size(); ++k) {
     for (Adaptation const& group : groups)
@@ -223,6 +241,7 @@ nlohmann::json IndependenceLearning::store() const {
           {"weights", checkpoint::encode(std::span<double const>(weights_))},
           {"mixtures", mixtures},
           {"archives", archives},
+          {"ridge", {ridge_seen_, on_ridge_}},
           {"counts", {window_.iterations, window_.states, window_.moves, iterations_, cycles_, windows_}},
           {"sums", checkpoint::encode(std::span<double const>(sums))}};
 }
@@ -244,6 +263,8 @@ IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored,
   all.window_ = {counts[0], counts[1], counts[2], {}, sums[0]};
   for (std::size_t m = 0; m < all.window_.fits.size(); ++m)
     all.window_.fits[m] = {sums[3 + 3 * m], sums[4 + 3 * m], sums[5 + 3 * m]};
+  all.ridge_seen_ = stored.at("ridge").at(0).get<bool>();
+  all.on_ridge_ = stored.at("ridge").at(1).get<bool>();
   all.iterations_ = counts[3];
   all.cycles_ = counts[4];
   all.windows_ = counts[5];

@@ -43,6 +43,14 @@ class IndependenceLearning {
   /// have been decided on.
   bool end_cycle(Target const& target, std::span<Adaptation const> groups);
 
+  /// Whether the ridge through the mode is to be followed now: once, with one mode and not too many parameters, where too few
+  /// moves were accepted.
+  bool wants_ridge() const;
+  /// A mixture along it, and the share of independent draws that its draws are worth: if that is more than the share of accepted
+  /// moves, it is used from now on and no other is compared with it, since states of chains tell nothing of where they have not
+  /// been.
+  void see_ridge(Independence const& mixture, double worth);
+
   /// Share of accepted independence moves in the last window; 0 before its end.
   double acceptance() const { return acceptance_; }
   /// Whether a window has ended, and too few of its moves were accepted to do without others.
@@ -79,12 +87,14 @@ class IndependenceLearning {
 
   std::vector<int> component_of_chain_;
   std::vector<double> weights_;
-  /// In use; candidates over theta, over declared values, and over these as the modes are; empty where there are none.
+  /// In use; candidates over theta, over declared values, over these as the modes are, and along a ridge; empty where there are
+  /// none.
   std::array<Independence, 4> mixtures_;
   std::vector<Archive> archives_;  // of the components
   Window window_;
   std::uint64_t iterations_ = 0, cycles_ = 0, windows_ = 0;
-  double acceptance_ = 0, longest_stay_ = 1;  // of the last window
+  double acceptance_ = 0, longest_stay_ = 1;    // of the last window
+  bool ridge_seen_ = false, on_ridge_ = false;  // whether the mixture in use is one along a ridge
 };
 
 }  // namespace sysid::metropolis

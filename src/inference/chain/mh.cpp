@@ -16,6 +16,7 @@
 #include "inference/chain/independence_learning.hpp"
 #include "inference/chain/local_learning.hpp"
 #include "inference/chain/metropolis.hpp"
+#include "inference/chain/ridge.hpp"
 #include "inference/chain/watch.hpp"
 #include "search/laplace.hpp"
 #include "search/search.hpp"
@@ -178,9 +179,19 @@ metropolis::LocalMoves local_moves(std::span<metropolis::Proposal const* const> 
   return {walks, &state.independence.mixture(), state.local.step(), state.local.share()};
 }
 
+/// Independence moves along the ridge through the mode, if their draws are worth more. Interrupted, it has changed nothing.
+void follow_ridge(Target const& target, std::uint64_t seed, Ledger& ledger, State& state) {
+  Ledger spent;
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, 0);
+  metropolis::Independence const along(metropolis::along_ridge(objective, state.modes.front(), spent));
+  state.independence.see_ridge(along, metropolis::worth_of_draws(objective, along, seed, spent));
+  ledger.merge(spent);
+}
+
 /// One batch of burn-in: an iteration of every chain, or a cycle of them with independence moves.
 void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Proposal const* const> walks, StreamKey key,
              Ledger& ledger, State& state) {
+  if (state.independence.wants_ridge()) follow_ridge(target, key.seed, ledger, state);
   metropolis::Info info(static_cast<std::size_t>(plan.chains));
   auto const learn = [&](int chain, metropolis::Move const& move) {
     info[static_cast<std::size_t>(chain)] = move;
