@@ -3,6 +3,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/text/diagnostic.hpp"
+#include "expression/finite_slope.hpp"
 #include "expression/function.hpp"
 #include "expression/graph.hpp"
 
@@ -11,14 +12,31 @@ namespace {
 
 NodeId log_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) { return graph.divide(graph.constant(1), a); }
 
+/// base^exponent as a factor of a derivative: where `held`, 0 instead of infinity at 0.
+NodeId slope_factor(Graph& graph, NodeId base, NodeId exponent, bool held) {
+  NodeId const factor = graph.power(base, exponent), zero = graph.constant(0);
+  std::optional<double> const number = graph.constant_value(exponent);
+  if (!held || (number && *number >= 0)) return factor;
+  NodeId const at_zero = graph.select(graph.binary(Operation::less, exponent, zero), zero, graph.power(zero, exponent));
+  return graph.select(graph.binary(Operation::equal, base, zero), at_zero, factor);
+}
+
 /// d(a^b): the exponent's part is a^b log a, which tends to 0 as a falls to 0 for b > 0; log is kept finite there.
-NodeId power_derivative(Graph& graph, NodeId power, Node const& node, NodeId da, NodeId db) {
+NodeId power_derivative(Graph& graph, NodeId power, Node const& node, NodeId da, NodeId db, bool held) {
   NodeId const one = graph.constant(1);
-  NodeId const by_base = graph.multiply(graph.multiply(node.b, graph.power(node.a, graph.subtract(node.b, one))), da);
+  NodeId const factor = held && graph.is_constant(da, 0) ? da : slope_factor(graph, node.a, graph.subtract(node.b, one), held);
+  NodeId const by_base = graph.multiply(graph.multiply(node.b, factor), da);
   if (graph.is_constant(db, 0)) return by_base;
   NodeId const base = graph.select(graph.binary(Operation::equal, node.a, graph.constant(0)), one, node.a);
   NodeId const by_exponent = graph.multiply(graph.multiply(power, graph.call(log_function, base)), db);
   return graph.is_constant(da, 0) ? by_exponent : graph.add(by_base, by_exponent);
+}
+
+/// d(sqrt a)
+NodeId root_derivative(Graph& graph, NodeId root, NodeId da, bool held) {
+  NodeId const plain = graph.divide(da, graph.multiply(graph.constant(2), root));
+  if (!held) return plain;
+  return graph.select(graph.binary(Operation::equal, root, graph.constant(0)), graph.constant(0), plain);
 }
 
 }  // namespace
@@ -26,66 +44,69 @@ NodeId power_derivative(Graph& graph, NodeId power, Node const& node, NodeId da,
 // The graph itself needs one elementary function, for the derivative of a power by its exponent.
 Function const log_function{"log", 1, &elementary::log, &elementary::log_lanes, nullptr, nullptr, &log_derivative};
 
-NodeId Graph::differentiate(NodeId root, NodeId leaf) {
-  std::vector<NodeId> const order = reachable({&root, 1});
-  NodeId const zero = constant(0), one = constant(1);
+namespace {
+
+NodeId differentiate(Graph& graph, NodeId root, NodeId leaf, bool held) {
+  std::vector<NodeId> const order = graph.reachable({&root, 1});
+  NodeId const zero = graph.constant(0), one = graph.constant(1);
   std::vector<NodeId> derivative(root + std::size_t{1}, zero);
   for (NodeId const id : order) {
     if (id == leaf) {
       derivative[id] = one;
       continue;
     }
-    Node const node = nodes_[id];  // a copy: nodes_ grows below
-    int const operands = operand_count(id);
+    Node const node = graph[id];  // a copy: the graph grows below
+    int const operands = operand_count(node);
     NodeId const da = operands > 0 ? derivative[node.a] : zero;
     NodeId const db = operands > 1 ? derivative[node.b] : zero;
     NodeId const dc = operands > 2 ? derivative[node.c] : zero;
-    if (is_constant(da, 0) && is_constant(db, 0) && is_constant(dc, 0)) continue;
+    if (graph.is_constant(da, 0) && graph.is_constant(db, 0) && graph.is_constant(dc, 0)) continue;
     NodeId& result = derivative[id];
     switch (node.operation) {
       case Operation::negate:
-        result = negate(da);
+        result = graph.negate(da);
         break;
       case Operation::add:
-        result = add(da, db);
+        result = graph.add(da, db);
         break;
       case Operation::subtract:
-        result = subtract(da, db);
+        result = graph.subtract(da, db);
         break;
       case Operation::multiply:
-        result = add(multiply(da, node.b), multiply(node.a, db));
+        result = graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db));
         break;
       case Operation::divide:
-        result = divide(subtract(da, multiply(id, db)), node.b);
+        result = graph.divide(graph.subtract(da, graph.multiply(id, db)), node.b);
         break;
       case Operation::power:
-        result = power_derivative(*this, id, node, da, db);
+        result = power_derivative(graph, id, node, da, db, held);
         break;
       case Operation::fused:
-        result = add(add(multiply(da, node.b), multiply(node.a, db)), dc);
+        result = graph.add(graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db)), dc);
         break;
       case Operation::square_root:
-        result = divide(da, multiply(constant(2), id));
+        result = root_derivative(graph, id, da, held);
         break;
       case Operation::absolute:
-        result = multiply(unary(Operation::sign, node.a), da);
+        result = graph.multiply(graph.unary(Operation::sign, node.a), da);
         break;
       case Operation::minimum:
-        result = select(binary(Operation::less, node.a, node.b), da, db);
+        result = graph.select(graph.binary(Operation::less, node.a, node.b), da, db);
         break;
       case Operation::maximum:
-        result = select(binary(Operation::less, node.b, node.a), da, db);
+        result = graph.select(graph.binary(Operation::less, node.b, node.a), da, db);
         break;
       case Operation::select:
-        result = select(node.a, db, dc);
+        result = graph.select(node.a, db, dc);
         break;
       case Operation::call: {
         if (node.function->derivative == nullptr)
           throw InternalError("the derivative of `" + std::string(node.function->name) + "` is not known");
         NodeId const second = node.function->arity == 2 ? node.b : node.a;
         NodeId sum = zero;
-        if (!is_constant(da, 0)) sum = multiply(node.function->derivative(*this, id, node.a, second, 0), da);
-        if (!is_constant(db, 0)) sum = add(sum, multiply(node.function->derivative(*this, id, node.a, second, 1), db));
+        if (!graph.is_constant(da, 0)) sum = graph.multiply(node.function->derivative(graph, id, node.a, second, 0), da);
+        if (!graph.is_constant(db, 0))
+          sum = graph.add(sum, graph.multiply(node.function->derivative(graph, id, node.a, second, 1), db));
         result = sum;
         break;
       }
@@ -95,6 +116,12 @@ NodeId Graph::differentiate(NodeId root, NodeId leaf) {
   }
   return derivative[root];
 }
+
+}  // namespace
+
+NodeId Graph::differentiate(NodeId root, NodeId leaf) { return sysid::differentiate(*this, root, leaf, false); }
+
+NodeId finite_slope(Graph& graph, NodeId root, NodeId leaf) { return differentiate(graph, root, leaf, true); }
 
 NodeId Graph::substitute(NodeId root, std::function<std::optional<NodeId>(NodeId)> const& replacement) {
   return substitute({&root, 1}, replacement).front();

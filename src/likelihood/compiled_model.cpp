@@ -8,7 +8,9 @@
 
 #include "model/dump.hpp"
 
+#include "likelihood/differentiated.hpp"
 #include "likelihood/parameter_space.hpp"
+#include "program/tangents.hpp"
 #include "solver/solver.hpp"
 
 namespace sysid {
@@ -245,6 +247,7 @@ std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::
   compiled->method = method;
   compile_kernels(*compiled);
   compile_programs(*compiled);
+  if (!free_start) compiled->differentiated = differentiated_parameters(compiled->model, compiled->residuals->source);
   return compiled;
 }
 
@@ -266,6 +269,25 @@ std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& 
     source.records.push_back(channel_density(folded, compiled.model.channels[c], static_cast<int>(c)).sample);
   }
   return finish(folded, std::move(source));
+}
+
+std::shared_ptr<SimulationProgram const> CompiledModel::squares() const {
+  return squares_.get([&] {
+    Folded folded(model, keeps_unknowns(*this));
+    Graph& graph = folded.graph;
+    SimulationSource source = dynamics(folded, *this);
+    for (std::size_t c = 0; c < model.channels.size(); ++c) {
+      int const index = static_cast<int>(c);
+      ChannelDensity const density = channel_density(folded, model.channels[c], index);
+      Distribution const use = folded(model.channels[c].noise);
+      NodeId const measured = graph.leaf(LeafKind::measured, index);
+      source.channels.push_back({{density.saturated}});
+      source.records.push_back(use.row->gaussian ? graph.divide(graph.subtract(measured, use.arguments[0]), use.arguments[1])
+                                                 : deviance_residual(graph, density, index));
+    }
+    source.graph = graph;
+    return std::make_shared<SimulationProgram const>(sysid::compile(with_squares(std::move(source), differentiated)));
+  });
 }
 
 std::string dump_program(CompiledModel const& compiled) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/system/lazily.hpp"
 #include "core/text/source.hpp"
 #include "model/model.hpp"
 #include "program/kernel.hpp"
@@ -36,6 +37,16 @@ struct CompiledModel {
   std::vector<Record> records;  // of `trajectory`, SI
 
   int parameter_rows() const;
+
+  /// By which parameters of the model `squares` differentiates (likelihood/differentiated.hpp); none where there are no tangents,
+  /// and where starts are estimated.
+  std::vector<int> differentiated;
+  /// The normal equations of `residuals` by these parameters (program/tangents.hpp); compiled at the first need. Residuals of
+  /// normal noise are (y - mean)/sd there, which has a derivative at 0.
+  std::shared_ptr<SimulationProgram const> squares() const;
+
+ private:
+  Lazily<std::shared_ptr<SimulationProgram const>> squares_;
 };
 
 /// free_start: the initial state is read from extra parameter rows instead of the model's initial values. method: a solver's name.

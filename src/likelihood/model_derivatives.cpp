@@ -1,6 +1,8 @@
-// Derivatives of a model's target by central differences, experiment by experiment: each is simulated for what it reads.
+// Derivatives of a model's target, experiment by experiment, each for what it reads: by tangents of the program where there are
+// any, else by central differences.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/numeric/not_finite.hpp"
 #include "likelihood/model_target_part.hpp"
@@ -26,15 +28,43 @@ LaneArray moved_lanes(ConstLanes theta, std::vector<int> const& coordinates, std
   return points;
 }
 
+LaneArray picked(ConstLanes theta, std::vector<int> const& lanes) {
+  LaneArray some(theta.rows(), static_cast<int>(lanes.size()));
+  for (int p = 0; p < theta.rows(); ++p)
+    for (std::size_t k = 0; k < lanes.size(); ++k) some(p, static_cast<int>(k)) = theta(p, lanes[k]);
+  return some;
+}
+
+void put_back(LaneArray const& some, std::vector<int> const& lanes, Lanes all) {
+  for (int r = 0; r < some.rows(); ++r)
+    for (std::size_t k = 0; k < lanes.size(); ++k) all(r, lanes[k]) = some(r, static_cast<int>(k));
+}
+
+/// `work` is several batches, each of which may be interrupted; done again, none may have been counted before.
+void counted_whole(Ledger& ledger, auto const& work) {
+  Ledger before = ledger;
+  try {
+    work();
+  } catch (...) {
+    ledger = std::move(before);
+    throw;
+  }
+}
+
 std::vector<ConstLanes> views_of(std::vector<LaneArray> const& arrays) { return {arrays.begin(), arrays.end()}; }
 
 }  // namespace
 
+DerivativeSource ModelTarget::derivatives() const {
+  return compiled_->differentiated.empty() ? DerivativeSource::differences : DerivativeSource::exact;
+}
+
 double ModelTarget::derivative_cost() const {
+  double const each = derivatives() == DerivativeSource::exact ? 1 : 2;
   double lanes = 0, samples = 0;
   for (Part const& part : parts_) {
     double const of = part.residuals.schedule().last_summed();
-    lanes += of * (2.0 * static_cast<double>(part.read.coordinates.size()) + 1);
+    lanes += of * (each * static_cast<double>(part.read.coordinates.size()) + 1);
     samples += of;
   }
   return samples > 0 ? lanes / samples : 1;
@@ -107,8 +137,8 @@ void ModelTarget::residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jac
   });
 }
 
-void ModelTarget::gauss_newton(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature,
-                               Ledger& ledger) const {
+void ModelTarget::squares_by_differences(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature,
+                                         Ledger& ledger) const {
   for (Lanes const& each : {gradient, curvature})
     for (int r = 0; r < each.rows(); ++r) std::fill(each.row(r).begin(), each.row(r).end(), 0.0);
   std::vector<bool> finite(static_cast<std::size_t>(theta.width()), true);
@@ -128,7 +158,21 @@ void ModelTarget::gauss_newton(ConstLanes theta, std::span<double const> steps, 
       for (int r = 0; r < each.rows() && !finite[static_cast<std::size_t>(w)]; ++r) each(r, w) = 0;
 }
 
-void ModelTarget::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
+void ModelTarget::gauss_newton(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature,
+                               Ledger& ledger) const {
+  if (derivatives() != DerivativeSource::exact) return squares_by_differences(theta, steps, gradient, curvature, ledger);
+  counted_whole(ledger, [&] {
+    std::vector<int> const left = squares_by_tangents(theta, gradient, curvature, ledger);
+    if (left.empty()) return;
+    LaneArray const others = picked(theta, left);
+    LaneArray slopes(gradient.rows(), others.width()), squares(curvature.rows(), others.width());
+    squares_by_differences(others, steps, slopes, squares, ledger);
+    put_back(slopes, left, gradient);
+    put_back(squares, left, curvature);
+  });
+}
+
+void ModelTarget::gradient_by_differences(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
   std::vector<double> const steps = difference_steps();
   std::vector<LaneArray> moved;
   for (Part const& part : parts_) moved.push_back(moved_lanes(theta, part.read.coordinates, steps));
@@ -158,6 +202,21 @@ void ModelTarget::log_likelihood_gradient(ConstLanes theta, std::span<double> ou
     }
     out[static_cast<std::size_t>(w)] = good.centre && !std::isnan(total) ? total : -infinity;
   }
+}
+
+void ModelTarget::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
+  if (derivatives() != DerivativeSource::exact) return gradient_by_differences(theta, out, gradient, ledger);
+  LaneArray curvature(dimension() * dimension(), theta.width());
+  counted_whole(ledger, [&] {
+    log_likelihood(theta, out, ledger);
+    std::vector<int> const left = squares_by_tangents(theta, gradient, curvature, ledger);  // -J'r is the gradient
+    if (left.empty()) return;
+    LaneArray const others = picked(theta, left);
+    LaneArray slopes(theta.rows(), others.width());
+    std::vector<double> values(left.size());
+    gradient_by_differences(others, values, slopes, ledger);
+    put_back(slopes, left, gradient);
+  });
 }
 
 }  // namespace sysid

@@ -16,12 +16,11 @@
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
-namespace {
-
-// Keeps the radicand of the scale row positive for any sensible noise level; its value does not matter, only that it is fixed.
-double scale_offset(int count) { return 100.0 * count + 1000.0; }
-
-}  // namespace
+double scale_residual(Simulator const& simulator, int channel, double saturated) {
+  // Keeps the radicand positive for any sensible noise level; its value does not matter, only that it is fixed.
+  double const offset = 100.0 * simulator.schedule().count(channel) + 1000.0;
+  return std::sqrt(2 * std::max(offset - saturated, 0.0));
+}
 
 ModelTarget::~ModelTarget() = default;
 
@@ -45,7 +44,8 @@ ModelTarget::ModelTarget(std::shared_ptr<CompiledModel const> compiled, std::sha
     auto const simulator = [&](std::shared_ptr<SimulationProgram const> const& program) {
       return Simulator(program, Schedule(*program, experiment, options_.solver), options_.execution, pool_);
     };
-    parts_.push_back({simulator(compiled_->likelihood), simulator(compiled_->residuals), nullptr, read_by(*compiled_, *space_, e)});
+    parts_.push_back(
+        {simulator(compiled_->likelihood), simulator(compiled_->residuals), nullptr, read_by(*compiled_, *space_, e), {}});
     if (options_.start_rows > 0)
       parts_.back().start =
           std::make_unique<StartState>(compiled_, experiment, options_.start_rows, options_.solver, options_.execution, pool_);
@@ -215,8 +215,7 @@ double ModelTarget::residual(ResidualPlace const& place, Run const& run, int col
   if (place.sample >= 0) {
     value = run.records(place.sample * channels + place.channel, column);
   } else {
-    double const offset = scale_offset(simulator.schedule().count(place.channel));
-    value = std::sqrt(2 * std::max(offset - run.sums(simulator.program().sum_row(place.channel, 0), column), 0.0));
+    value = scale_residual(simulator, place.channel, run.sums(simulator.program().sum_row(place.channel, 0), column));
   }
   return std::isnan(value) ? infinity : value;
 }

@@ -43,7 +43,9 @@ class ModelTarget : public Target {
   int residual_count() const override;
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
   double roughness() const override;
-  // An experiment is simulated for the coordinates that it reads; by others its derivatives are 0.
+  // Exact where the compiled model says so, but for single lanes where these are not finite: by differences. An experiment is
+  // simulated for the coordinates that it reads; by others its derivatives are 0.
+  DerivativeSource derivatives() const override;
   double derivative_cost() const override;
   void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const override;
   void residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const override;
@@ -100,6 +102,15 @@ class ModelTarget : public Target {
   std::vector<Usable> usable(std::vector<Columns> const& columns, std::vector<Run> const& runs, int width) const;
   /// Every lane that did not fail, in every experiment; differences over `steps`.
   void see_slopes(ConstLanes theta, std::span<double const> steps, Ledger& ledger, SeeSlopes const& see) const;
+  void squares_by_differences(ConstLanes theta, std::span<double const> steps, Lanes gradient, Lanes curvature,
+                              Ledger& ledger) const;
+  void gradient_by_differences(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const;
+  /// By tangents of the program; returned are the lanes that these leave to differences, whose results may be anything.
+  std::vector<int> squares_by_tangents(ConstLanes theta, Lanes gradient, Lanes curvature, Ledger& ledger) const;
+  Simulator const& squares(std::size_t experiment) const;
+  /// Of one lane in one experiment, by the parameters of the model.
+  void take_squares(Simulator const& simulator, Run const& run, int column, Eigen::VectorXd& gradient,
+                    Eigen::MatrixXd& curvature) const;
 
   std::shared_ptr<CompiledModel const> compiled_;
   std::shared_ptr<ParameterSpace const> space_;

@@ -9,10 +9,14 @@
 
 namespace sysid {
 
+/// The residual row of a channel that carries its scale, from its sum of saturated log densities.
+double scale_residual(Simulator const& simulator, int channel, double saturated);
+
 struct ModelTarget::Part {
   Simulator likelihood, residuals;
   std::unique_ptr<StartState> start;
   ReadByExperiment read;
+  Lazily<Simulator> squares;  // where the compiled model has derivatives
 };
 
 }  // namespace sysid

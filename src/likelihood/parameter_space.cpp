@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/numeric/not_finite.hpp"
 #include "core/text/diagnostic.hpp"
+#include "function/primitive.hpp"
 
 namespace sysid {
 namespace {
@@ -92,6 +94,7 @@ void ParameterSpace::compile() {
     };
   };
   NodeId with_jacobian = graph.constant(0), without = graph.constant(0);
+  std::vector<Constrained> constrained;
   infos_.resize(sampled_.size());
   auto const add = [&](int r) {
     FittedParameter const& row = rows_[static_cast<std::size_t>(r)];
@@ -116,6 +119,7 @@ void ParameterSpace::compile() {
       auto const constant = bound ? graph.constant_value(*bound) : std::nullopt;
       return constant ? row.from_si(*constant) : fallback;
     };
+    constrained.push_back({r, static_cast<int>(k), bounds, moved.log_jacobian});
     infos_[k] = {row.name, row.unit_text(), number(bounds.lower, -infinity), number(bounds.upper, infinity),
                  model_.parameters[static_cast<std::size_t>(row.parameter)].coefficient};
   };
@@ -125,16 +129,44 @@ void ParameterSpace::compile() {
     else
       for (int e = 0; e < static_cast<int>(experiments_.size()); ++e) add(row(e, p));
   }
-  for (NodeId const each : value) {
-    std::vector<int>& read = coordinates_of_.emplace_back();
-    for (NodeId const id : graph.reachable({&each, 1}))
-      if (graph[id].operation == Operation::leaf && graph[id].leaf_kind == LeafKind::unconstrained) read.push_back(graph[id].index);
-    std::sort(read.begin(), read.end());
-  }
   constrain_ = compile_kernel(graph, coordinates, value);
   unconstrain_ = compile_kernel(graph, leaves, backward);
   NodeId const densities[] = {with_jacobian, without};
   prior_ = compile_kernel(graph, coordinates, densities);
+  compile_slopes(graph, constrained, coordinates, value);
+}
+
+/// By its own coordinate a value's derivative is what the log Jacobian is the logarithm of, smooth at 0; by others it has one
+/// through its bounds.
+void ParameterSpace::compile_slopes(Graph& graph, std::span<Constrained const> constrained, std::span<NodeId const> coordinates,
+                                    std::span<NodeId const> value) {
+  std::vector<std::map<int, NodeId>> slopes(rows_.size());  // by coordinate
+  for (auto const& [r, coordinate, bounds, log_jacobian] : constrained) {
+    std::map<int, NodeId>& here = slopes[static_cast<std::size_t>(r)];
+    NodeId const size = graph.call(exp_function, log_jacobian);
+    here.emplace(coordinate, bounds.upper && !bounds.lower ? graph.negate(size) : size);
+    NodeId const moved = sysid::constrain(graph, bounds, coordinates[static_cast<std::size_t>(coordinate)]).value;
+    for (NodeId const leaf : graph.reachable({&moved, 1})) {
+      if (!is_parameter(graph[leaf])) continue;
+      NodeId const by_bound = graph.substitute(graph.differentiate(moved, leaf), [&](NodeId other) -> std::optional<NodeId> {
+        return is_parameter(graph[other]) ? std::optional(value[static_cast<std::size_t>(graph[other].index)]) : std::nullopt;
+      });
+      for (auto const& [through, slope] : slopes[static_cast<std::size_t>(graph[leaf].index)]) {
+        NodeId& sum = here.try_emplace(through, graph.constant(0)).first->second;
+        sum = graph.add(sum, graph.multiply(by_bound, slope));
+      }
+    }
+  }
+  std::vector<NodeId> values;
+  for (int r = 0; r < static_cast<int>(rows_.size()); ++r) {
+    std::vector<int>& read = coordinates_of_.emplace_back();
+    for (auto const& [coordinate, slope] : slopes[static_cast<std::size_t>(r)]) {
+      read.push_back(coordinate);
+      slopes_.push_back({r, coordinate});
+      values.push_back(slope);
+    }
+  }
+  slope_ = compile_kernel(graph, coordinates, values);
 }
 
 template <class Place>
@@ -213,6 +245,8 @@ void ParameterSpace::constrain(ConstLanes theta, Lanes declared) const {
 }
 
 void ParameterSpace::unconstrain(ConstLanes declared, Lanes theta) const { run(unconstrain_, values_of_declared(declared), theta); }
+
+void ParameterSpace::slopes(ConstLanes theta, Lanes out) const { run(slope_, theta, out); }
 
 void ParameterSpace::select(ConstLanes values, int experiment, Lanes parameters) const {
   for (int p = 0; p < static_cast<int>(model_.parameters.size()); ++p) {

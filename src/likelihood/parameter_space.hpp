@@ -56,6 +56,15 @@ class ParameterSpace {
   /// fixed row.
   std::vector<int> const& coordinates_of(int row) const { return coordinates_of_[static_cast<std::size_t>(row)]; }
 
+  /// Of the value of a row, SI, by a coordinate.
+  struct Slope {
+    int row, coordinate;
+  };
+  /// Those that are not zero, by row and coordinate.
+  std::vector<Slope> const& slopes() const { return slopes_; }
+  /// Their values [slopes x W] at theta [D x W].
+  void slopes(ConstLanes theta, Lanes out) const;
+
   // As Target describes them; theta [D x W].
   void sample_prior(StreamKey key, Lanes theta) const;
   void log_prior(ConstLanes theta, std::span<double> out, bool jacobian) const;
@@ -79,6 +88,15 @@ class ParameterSpace {
  private:
   void lay_out();
   void compile();
+  /// A value between its bounds, expressions of the rows that they read.
+  struct Constrained {
+    int row, coordinate;
+    Support bounds;
+    NodeId log_jacobian;
+  };
+  /// constrained: in the order in which they read one another. value: of the rows, from the coordinates.
+  void compile_slopes(Graph& graph, std::span<Constrained const> constrained, std::span<NodeId const> coordinates,
+                      std::span<NodeId const> value);
   /// Draws the model parameters `order` of one lane, reading and writing parameter p at values(place(p), lane).
   template <class Place>
   void draw(std::span<int const> order, Place const& place, Lanes values, int lane, Stream& stream) const;
@@ -90,7 +108,9 @@ class ParameterSpace {
   std::vector<int> sampled_;
   std::vector<std::vector<int>> coordinates_of_;  // [rows]
   std::vector<ParameterInfo> infos_;
+  std::vector<Slope> slopes_;
   Kernel constrain_;    // u [D] -> values
+  Kernel slope_;        // u [D] -> slopes
   Kernel unconstrain_;  // values -> u [D]
   Kernel prior_;        // u [D] -> log prior on R^D, log prior of the declared parameters
 };

@@ -44,14 +44,16 @@ class Target {
   /// Whether one value costs so much that a search begins at few places and climbs by the gradient (Gaussian processes), instead of
   /// by Levenberg-Marquardt from many.
   virtual bool is_expensive() const { return false; }
-  /// Where the three functions below take derivatives from. Differences cost 2 P + 1 values and are known to about half the digits.
+  /// Where `log_likelihood_gradient` and `gauss_newton` take derivatives from. Differences cost 2 P + 1 values and are known to
+  /// about half the digits.
   virtual DerivativeSource derivatives() const { return DerivativeSource::differences; }
   /// log likelihood [W] of theta [P x W] as above, and its gradient [P x W]. Where a solve failed the value is -infinity and the
   /// gradient 0; derivatives that are not finite are 0. Lane w depends on column w alone.
   virtual void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const;
   /// log prior [W] of theta [P x W] as above, and its gradient [P x W]; 0 where the density is.
   virtual void log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian = true) const;
-  /// Residuals [R x W] as above, and their derivatives: row r P + p of jacobian [R P x W] is d r_r / d theta_p; 0 in failed lanes.
+  /// Residuals [R x W] as above, and their derivatives by differences: row r P + p of jacobian [R P x W] is d r_r / d theta_p; 0 in
+  /// failed lanes.
   virtual void residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const;
   /// What a Gauss-Newton step needs at each theta [P x W]: gradient -J'r [P x W] of the log likelihood, and curvature J'J [P P x
   /// W], element (p, q) in row p P + q. r and J as above, but differences are over `steps` [P], where there are any. Both are 0

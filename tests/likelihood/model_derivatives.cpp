@@ -66,7 +66,8 @@ Experiment experiment(int which) {
   return made;
 }
 
-std::unique_ptr<ModelTarget> target_of(std::string const& source, bool free_start, ExecutionOptions execution = {}) {
+std::unique_ptr<ModelTarget> target_of(std::string const& source, bool free_start, std::string const& method,
+                                       ExecutionOptions execution = {}) {
   Model const model = model_of(source);
   std::vector<ExperimentMember> members;
   std::vector<Experiment> records;
@@ -76,8 +77,9 @@ std::unique_ptr<ModelTarget> target_of(std::string const& source, bool free_star
   }
   TargetOptions options;
   options.start_rows = free_start ? 8 : 0;
+  options.solver.method = method;
   options.execution = execution;
-  return std::make_unique<ModelTarget>(compile(model, free_start, "rk4"), std::make_shared<ParameterSpace const>(model, members),
+  return std::make_unique<ModelTarget>(compile(model, free_start, method), std::make_shared<ParameterSpace const>(model, members),
                                        records, options);
 }
 
@@ -161,17 +163,101 @@ void check_same(ModelTarget const& target, LaneArray const& theta) {
 
 }  // namespace
 
-TEST_CASE("derivatives experiment by experiment are those of any target") {
+TEST_CASE("differences experiment by experiment are those of any target") {
   for (bool const free_start : {false, true}) {
     CAPTURE(free_start);
-    auto const target = target_of(text, free_start);
+    auto const target = target_of(text, free_start, free_start ? "rk4" : "dopri5");
     REQUIRE(target->dimension() == 15);
+    CHECK(target->derivatives() == DerivativeSource::differences);
     check_same(*target, draws(*target, 4));
   }
 }
 
+TEST_CASE("exact derivatives are near differences, at 0 of every coordinate too") {
+  auto const target = target_of(text, false, "rk4");
+  CHECK(target->derivatives() == DerivativeSource::exact);
+  LaneArray theta = draws(*target, 3);
+  for (int p = 0; p < theta.rows(); ++p)
+    if (target->parameters()[static_cast<std::size_t>(p)].name != "k_mean") theta(p, 2) = 0;
+  for (int w = 0; w < 3; ++w) {
+    CAPTURE(w);
+    Ledger ledger;
+    LaneArray one(theta.rows(), 1);
+    for (int p = 0; p < theta.rows(); ++p) one(p, 0) = theta(p, w);
+    Slopes const found = by_experiments(*target, one, ledger), expected = of_any_target(*target, one, ledger);
+    REQUIRE(std::isfinite(found.value[0]));
+    CHECK(found.value == expected.value);
+    CHECK(same(found.residuals, expected.residuals));
+    // Central differences over 1e-5 of widths: rounding leaves some 1e-10 of the residuals' size, curvature of the same order.
+    CHECK(furthest(found.gradient, expected.gradient) <= 1e-6 * largest(expected.gradient));
+    CHECK(furthest(found.step, expected.step) <= 1e-6 * largest(expected.step));
+    CHECK(furthest(found.curvature, expected.curvature) <= 1e-6 * largest(expected.curvature));
+    CHECK(same(found.gradient, found.step));
+  }
+}
+
+TEST_CASE("what has more parameters than pay has its derivatives by differences") {
+  constexpr int count = 9;  // first-order lags in a row
+  std::string lags = "model lags {\n  input x\n";
+  auto const numbered = [](std::string const& name, int i) { return name + std::to_string(i); };
+  for (int i = 1; i <= count; ++i) {
+    lags += "  state " + numbered("y", i) + "\n  initial " + numbered("y", i) + " = 0\n";
+    lags += "  parameter " + numbered("rate", i) + " ~ log_uniform(5, 100)\n";
+    lags += "  parameter " + numbered("gain", i) + " ~ normal(1, sd = 0.2)\n";
+    lags += "  " + numbered("y", i) + "' = " + numbered("rate", i) + "*(" + numbered("gain", i) + "*" +
+            (i == 1 ? "x" : numbered("y", i - 1)) + " - " + numbered("y", i) + ")\n";
+  }
+  lags += "  observe position ~ normal(y9, sd = 0.1)\n  observe speed ~ normal(y3, sd = 0.1)\n}\n";
+  auto const target = target_of(lags, false, "rk4");
+  CHECK(target->derivatives() == DerivativeSource::differences);
+  check_same(*target, draws(*target, 2));
+}
+
+TEST_CASE("equations that jump where states or parameters are have their derivatives by differences; those that bend have not") {
+  auto const with = [](std::string const& rate, std::string const& centre) {
+    return target_of("model switched {\n  input x\n  state y\n  initial y = 0\n  parameter limit ~ normal(2, sd = 0.5)\n  y' = " +
+                         rate + "\n  observe level ~ normal(" + centre + ", sd = 0.1)\n  observe other ~ normal(y, sd = 0.2)\n}\n",
+                     false, "rk4")
+        ->derivatives();
+  };
+  CHECK(with("x - limit*y", "y") == DerivativeSource::exact);
+  CHECK(with("x - limit*abs(y)*y + min(y, limit)", "y") == DerivativeSource::exact);
+  CHECK(with("x*sign(x - 1) - limit*y", "y") == DerivativeSource::exact);
+  CHECK(with("if x > 0.5 then x else -limit*y", "y") == DerivativeSource::exact);
+  CHECK(with("x - limit*sign(y)", "y") == DerivativeSource::differences);
+  CHECK(with("if abs(y) >= limit then 0 else x", "y") == DerivativeSource::differences);
+  CHECK(with("if x > limit then x else -y", "y") == DerivativeSource::differences);
+  CHECK(with("x - limit*y", "floor(y)") == DerivativeSource::differences);
+}
+
+TEST_CASE("a lane whose tangents are not finite has its derivatives by differences") {
+  // atan2 has no derivative where both arguments are 0, as they are at the start.
+  auto const target = target_of(R"(
+model turn {
+  input x
+  state y
+  initial y = 0
+  parameter rate ~ normal(2, sd = 0.5)
+  y' = rate*(1 + atan2(y, y^2)) + 0*x
+  observe level ~ normal(y, sd = 0.1)
+  observe other ~ normal(y, sd = 0.2)
+}
+)",
+                                false, "rk4");
+  CHECK(target->derivatives() == DerivativeSource::exact);
+  LaneArray const theta = draws(*target, 3);
+  check_same(*target, theta);
+  Ledger ledger;
+  Slopes const found = by_experiments(*target, theta, ledger);
+  CHECK(ledger.failed() == 0);
+  CHECK(largest(found.curvature) > 0.1);
+}
+
 TEST_CASE("derivatives are the same bytes for any threads, lanes and neighbours") {
-  auto const one = target_of(text, true), two = target_of(text, true, {.lanes = 4, .threads = 2});
+  bool free_start = false;  // exact derivatives; differences
+  SUBCASE("exact") {}
+  SUBCASE("differences") { free_start = true; }
+  auto const one = target_of(text, free_start, "rk4"), two = target_of(text, free_start, "rk4", {.lanes = 4, .threads = 2});
   LaneArray const theta = draws(*one, 5);
   Ledger ledger;
   Slopes const first = by_experiments(*one, theta, ledger), second = by_experiments(*two, theta, ledger);
@@ -191,7 +277,7 @@ TEST_CASE("derivatives are the same bytes for any threads, lanes and neighbours"
 }
 
 TEST_CASE("an experiment is simulated for the coordinates that it reads, and once for lanes that are the same to it") {
-  auto const target = target_of(text, false);
+  auto const target = target_of(text, false, "dopri5"), exact = target_of(text, false, "rk4");
   LaneArray const theta = draws(*target, 2);
   // Its own y0, k and bias, the bound of bias, c and sigma: not the population's mean and spread, and nothing of the others.
   constexpr int read = 6, lanes = 2;
@@ -203,6 +289,12 @@ TEST_CASE("an experiment is simulated for the coordinates that it reads, and onc
   Ledger any;
   target->Target::residuals_with_jacobian(theta, residuals, jacobian, any);
   CHECK(any.solves() == ledger.solves());
+  // All parameters at once: a value with its derivatives by five, by the bound of bias through the chain rule.
+  Ledger exactly;
+  Slopes squares = empty_slopes(*exact, lanes);
+  exact->gauss_newton(theta, steps_of(*exact), squares.step, squares.curvature, exactly);
+  CHECK(exactly.solves() == experiments * lanes * read);
+  CHECK(exact->derivative_cost() == read + 1);
   // A hyper-parameter has no slope.
   for (int p = 0; p < target->dimension(); ++p) {
     if (!target->parameters()[static_cast<std::size_t>(p)].name.starts_with("k_")) continue;
@@ -236,7 +328,10 @@ model runaway {
   observe rate ~ normal(y', sd = 100)
 }
 )";
-  auto const target = target_of(runaway, false);
+  std::string method = "dopri5";
+  SUBCASE("differences") {}
+  SUBCASE("exact") { method = "rk4"; }
+  auto const target = target_of(runaway, false, method);
   REQUIRE(target->dimension() == 5);
   Ledger ledger;
   // The largest starts whose likelihood, and whose residuals, are finite, to within a part of a difference.
@@ -257,7 +352,7 @@ model runaway {
   theta(0, 1) = 10;
   theta(0, 2) = 0.05;
   theta(0, 3) = largest_start(true);
-  check_same(*target, theta);
+  if (method == "dopri5") check_same(*target, theta);
   Slopes const found = by_experiments(*target, theta, ledger);
   CHECK(std::isfinite(found.value[0]));
   CHECK(found.value[1] == -infinity);

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -138,4 +139,38 @@ TEST_CASE("a new experiment draws its own parameters given the shared ones and t
   LaneArray const fixed = space.of_new_experiment(declared, constants({{2, 6e3}}), {3, Purpose::population, 0, 0});
   CHECK(fixed(2, 0) == 6e3);
   CHECK(fixed(3, 0) == 2);
+}
+
+TEST_CASE("the slopes of values by coordinates are those of differences, also at 0 and through estimated bounds") {
+  ParameterSpace const space(model_with("parameter free ~ normal(0, sd = 1)\n"
+                                        "parameter positive ~ half_normal(2)\n"
+                                        "parameter negative ~ normal(0, sd = 1, upper = 3)\n"
+                                        "parameter between ~ uniform(-1, 2)\n"
+                                        "parameter decades ~ log_uniform(0.1, 1000)\n"
+                                        "parameter share ~ beta(2, 3)\n"
+                                        "parameter own per experiment ~ normal(free, sd = positive)\n"
+                                        "parameter tied per experiment ~ uniform(-positive, positive + 2*share)\n"),
+                             {{"a", {}}, {"b", {}}});
+  int const rows = static_cast<int>(space.rows().size()), dimension = space.dimension();
+  LaneArray theta(dimension, 3);
+  space.sample_prior({3, Purpose::prior, 0, 0}, theta);
+  for (int p = 0; p < dimension; ++p) theta(p, 2) = 0;
+  LaneArray slopes(static_cast<int>(space.slopes().size()), 3);
+  space.slopes(theta, slopes);
+  constexpr double h = 1e-5;
+  for (int c = 0; c < dimension; ++c) {
+    LaneArray ahead = theta, behind = theta;
+    for (int w = 0; w < 3; ++w) ahead(c, w) += h, behind(c, w) -= h;
+    LaneArray const up = space.values(ahead), down = space.values(behind);
+    for (int r = 0; r < rows; ++r)
+      for (int w = 0; w < 3; ++w) {
+        double found = 0;
+        for (std::size_t s = 0; s < space.slopes().size(); ++s)
+          if (space.slopes()[s].row == r && space.slopes()[s].coordinate == c) found = slopes(static_cast<int>(s), w);
+        double const expected = (up(r, w) - down(r, w)) / (2 * h);
+        CHECK(found == doctest::Approx(expected).epsilon(1e-7).scale(1));
+        auto const& read = space.coordinates_of(r);
+        if (expected != 0) CHECK(std::find(read.begin(), read.end(), c) != read.end());
+      }
+  }
 }
