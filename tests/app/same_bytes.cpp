@@ -83,7 +83,7 @@ TEST_CASE("a run interrupted three times and resumed gives the bytes of an unbro
   auto const name = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing/duffing.sysid";
   int interruptions = 0;
   // Polls before the first sample belong to the search; every later run resumes and stops some batches further on.
-  for (std::uint64_t const polls : {200u, 20u, 15u}) {
+  for (std::uint64_t const polls : {120u, 20u, 15u}) {
     options.interrupt_after = polls;
     RunResult const result = run_text(name, shortened(), options);
     clear_interrupt();
