@@ -137,19 +137,13 @@ MadeRecord oscillation() {
 }  // namespace
 
 TEST_CASE("a period is found where every wrong one scores worse than none") {
-  int whole_found = 0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
     MadeRecord const record = make_record(oscillation(), seed);
     Grown const grown = search_grown(record, ObjectiveKind::declared_posterior, 100 + seed);
     check_found(record, grown);
     CHECK(grown.announced < 6000);
-    if (seed > 1) continue;
-    Bench bench(100 + seed);
-    std::vector<Mode> const whole = search(RowsSeen(record, record.rows), ObjectiveKind::declared_posterior, bench.context).modes;
-    whole_found += !whole.empty() && std::fabs(whole.front().declared[0] - 0.137) < 1e-3 ? 1 : 0;
   }
-  MESSAGE("of two searches on the whole record found it: ", whole_found);
 }
 
 TEST_CASE("rows that show nothing decide nothing") {
@@ -189,7 +183,7 @@ TEST_CASE("what later rows show to be better replaces what the first rows were f
                              [](std::vector<double> const& w, double t) { return w[0] * std::exp(-t / w[1]) + w[2]; },
                              12'000,
                              0.1};
-  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
     CAPTURE(seed);
     MadeRecord const record = make_record(fitted, seed, [&](std::vector<double> const& w, double t) {
       return t < 500 ? -2 * std::exp(-t / 40) - 1 : fitted.curve(w, t);
