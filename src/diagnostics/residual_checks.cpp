@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
@@ -77,6 +79,7 @@ struct ScoredChannel {
   std::vector<double> observed, predicted;  // where scored, declared unit
   std::vector<std::size_t> places;          // of these along the experiment
   SizedResiduals sized;
+  int together;  // channels of all experiments that are checked
 
   Model const& model() const { return target.compiled()->model; }
   Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
@@ -183,7 +186,7 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
 }
 
 void check_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Findings& findings) {
-  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis);
+  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, of.together);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (!size.fires()) return;
   char const* help = "the noise is larger than stated, or the model is incomplete: estimate the noise, then check the residuals";
@@ -244,8 +247,16 @@ FitLine check_channel(ScoredChannel const& of, Findings& findings) {
   return line;
 }
 
-// values: [D x 1] declared; residuals: all rows of the target.
-void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals, FitCheck& check) {
+int scored_channels(ModelTarget const& target) {
+  std::set<std::pair<int, int>> channels;
+  for (auto const& [experiment, channel, sample] : target.residual_places())
+    if (sample >= 0) channels.emplace(experiment, channel);
+  return std::max(1, static_cast<int>(channels.size()));
+}
+
+// values: [D x 1] declared; residuals: all rows of the target; together: channels that are checked.
+void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals, int together,
+                      FitCheck& check) {
   Model const& model = target.compiled()->model;
   Experiment const& experiment = target.experiments()[static_cast<std::size_t>(e)];
   Trajectory const trajectory(target.compiled(), experiment, target.options().solver, target.options().start_rows,
@@ -256,7 +267,7 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
   for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {
     auto const channel = static_cast<std::size_t>(c);
     if (experiment.measured[channel].empty()) continue;
-    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}};
+    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}, together};
     for (std::size_t r = 0; r < target.residual_places().size(); ++r) {
       auto const [of_experiment, at_channel, sample] = target.residual_places()[r];
       if (of_experiment != e || at_channel != c || sample < 0) continue;
@@ -317,7 +328,8 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   target.unconstrain(values, theta);
   Ledger ledger;
   target.residuals(theta, residuals, ledger);
-  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) check_experiment(target, e, values, residuals, check);
+  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e)
+    check_experiment(target, e, values, residuals, scored_channels(target), check);
   return check;
 }
 

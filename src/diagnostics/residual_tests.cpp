@@ -121,11 +121,11 @@ double rmse(std::span<double const> observed, std::span<double const> predicted)
   return std::sqrt(square / samples);
 }
 
-ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis) {
+ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis, int together) {
   auto const [sum, samples] = products(standardised, 0, standardised, 0, 0);
   if (samples == 0) return {};
-  double const half = samples / (2 + excess_kurtosis);
-  return {sum / samples, boost::math::gamma_p_inv(half, 5e-4) / half, boost::math::gamma_q_inv(half, 5e-4) / half};
+  double const half = samples / (2 + excess_kurtosis), tail = 5e-4 / together;
+  return {sum / samples, boost::math::gamma_p_inv(half, tail) / half, boost::math::gamma_q_inv(half, tail) / half};
 }
 
 }  // namespace sysid

@@ -45,13 +45,13 @@ double rmse(std::span<double const> observed, std::span<double const> predicted)
 /// Mean square of standardised residuals, 1 for noise of the stated size.
 struct ChiSquaredTest {
   double per_sample = 0;
-  double low = 0, high = 0;  // 99.9 % of noise lies between
+  double low = 0, high = 0;  // noise lies between, but for one in a thousand runs
   bool fires() const { return per_sample < low || per_sample > high; }
 };
 
 /// standardised: (y - location) / sd, independent under the model. n * per_sample ~ chi^2(n) for normal ones. Where they have an
 /// excess kurtosis k (counts: 1/mean for Poisson's) the variance of the sum is n (2 + k), that of chi^2 with 2 n/(2 + k) degrees of
-/// freedom in place of n.
-ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis = 0);
+/// freedom in place of n. together: how many series of a run are tested, each on its part of the thousandth.
+ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis = 0, int together = 1);
 
 }  // namespace sysid

@@ -121,3 +121,16 @@ TEST_CASE("residuals of the stated size pass the chi-squared test, others do not
   CHECK(test.low == doctest::Approx(std::pow(1 - a - 3.290526731 * std::sqrt(a), 3)).epsilon(1e-4));
   CHECK_FALSE(chi_squared({}).fires());
 }
+
+TEST_CASE("of the sizes of many series one is found wrong in a thousand runs, not in a thousand series") {
+  constexpr int runs = 1000, together = 20;
+  int wrong = 0;
+  for (unsigned run = 0; run < runs; ++run) {
+    bool fires = false;
+    for (unsigned k = 0; k < together; ++k)
+      fires = fires || chi_squared(noise(100, 1000 + together * run + k), 0, together).fires();
+    wrong += fires ? 1 : 0;
+  }
+  CHECK(wrong <= 5);  // one is expected, and 20 of series that know nothing of each other
+  CHECK(chi_squared(noise(500, 70, 1.3), 0, together).fires());
+}
