@@ -175,7 +175,11 @@ TEST_CASE("the help names what is missing") {
                 "observe d ~ normal(y, sd = 1)\n}\n")
             .help == "did you mean `y'` instead of `y`, or `c [N/m]`?");
   CHECK(with_equation("m*y'' + c*y + k*y = x").help ==
-        "did you mean `y'` instead of `y`, or `c [N/m]`?");             // and not a rate, which `w` is
+        "did you mean `y'` instead of `y`, or `c [N/m]`?");  // and not a rate, which `w` is
+  // A noise precision has the missing unit by accident.
+  CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter k3 [N/m] = 1\nparameter beta [1/m^2] = 1\ninput x [N]\n"
+                "initial y = 0\n1 [N s/m]*y' + k*y + k3*y^3 = x\nobserve d ~ normal(y, precision = beta)\n}\n")
+            .help == "declare `k3` in [N/m^3]");
   CHECK(with("let a = k*t + x").help.find("t'") == std::string::npos);  // time has no primes
   CHECK(with("let a = exp(y)").help == "divide it by a length");
   CHECK(with("let a = abs(y)^n").help == "make the base a pure number: divide `abs(y)` by a reference value in [m]");

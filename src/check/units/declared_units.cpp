@@ -124,6 +124,15 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
                                   coefficient ? coefficient->name : "", other);
     }
   }
+  // A unit of no kind of its own, such as 1/m^2, is a slip in the declaration of the one coefficient: a name by that unit, such as
+  // a noise precision, would be a factor by accident.
+  bool const divides = is_plain_kind(inverse(missing)) && !named(inverse(missing), but).empty();
+  if (odd != nullptr && !pure && !is_plain_kind(missing) && !divides)
+    if (auto const coefficient = only_coefficient(*odd, declared_)) {
+      Unit factor;
+      factor.dimension = missing;
+      return errors::declare_in(coefficient->name, words(multiply(plain(coefficient->unit), factor)));
+    }
   if (std::string const names = named(missing, but); !names.empty())
     return errors::multiply_by(kind_words(missing, names_in_use_), names);
   if (std::string const names = named(inverse(missing), but); !names.empty())

@@ -149,8 +149,7 @@ Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string co
     conflict.secondary.push_back({declared.span, more});
   else
     shown->text += ", " + more;
-  std::string const vector = declared.text.substr(0, declared.text.find('['));  // whose elements share a declaration
-  conflict.help = fmt::format("declare `{}` in [{}]: then {} agree", vector, unit,
+  conflict.help = fmt::format("{}: then {} agree", declare_in(declared.text, unit),
                               places == 2 ? "both places" : fmt::format("all {} places", places));
   return conflict;
 }
@@ -168,6 +167,9 @@ std::string multiply_by(std::string const& kind, std::string const& names) {
 }
 std::string divide_by(std::string const& kind, std::string const& names) {
   return with_names(fmt::format("divide it by {}", kind), names);
+}
+std::string declare_in(std::string const& name, std::string const& unit) {
+  return fmt::format("declare `{}` in [{}]", name.substr(0, name.find('[')), unit);
 }
 std::string should_be_in(std::string const& unit) {
   return unit == "-" ? "make it a pure number" : fmt::format("make it a quantity in [{}]", unit);
