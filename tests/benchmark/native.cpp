@@ -1,7 +1,5 @@
 // Time per trajectory of machine code, beside the interpreter in lanes and the hand-written loops: thread processor time, measured
 // in turns so that all see the same machine, medians of the ratios of each turn.
-#include <ctime>
-
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -9,22 +7,12 @@
 #include "cases.hpp"
 #include "core/numeric/instruction_set.hpp"
 #include "native/module.hpp"
+#include "processor_time.hpp"
 #include "program/interpreter/executor.hpp"
 
 using namespace benchmark_cases;
 
 namespace {
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 /// Microseconds per trajectory of each contestant in each turn.
 class Turns {
@@ -38,16 +26,16 @@ class Turns {
   void run(int turns) {
     for (int turn = 0; turn < turns; ++turn)
       for (std::size_t i = 0; i < works_.size(); ++i) {
-        double const begin = cpu_seconds();
+        double const begin = processor_time::seconds();
         works_[i]();
-        times_[i].push_back(1e6 * (cpu_seconds() - begin) / trajectories_);
+        times_[i].push_back(1e6 * (processor_time::seconds() - begin) / trajectories_);
       }
   }
-  double time(std::size_t i) const { return median(times_[i]); }
+  double time(std::size_t i) const { return processor_time::median(times_[i]); }
   double ratio(std::size_t i, std::size_t to) const {
     std::vector<double> ratios;
     for (std::size_t turn = 0; turn < times_[i].size(); ++turn) ratios.push_back(times_[i][turn] / times_[to][turn]);
-    return median(ratios);
+    return processor_time::median(ratios);
   }
 
  private:
@@ -121,9 +109,9 @@ void chain_of(int masses) {
   turns.add(batches(each, parameters, trajectories, 0, ExecutorKind::lanes));
   for (Executor const& executor : native_executors(instruction_set())) {
     if (executor.width == 1) continue;
-    double const begin = cpu_seconds();
+    double const begin = processor_time::seconds();
     turns.add(batches(each, parameters, executor.width, executor.width, ExecutorKind::native));
-    std::printf(" compiled for %d lanes in %.0f ms;", executor.width, 1e3 * (cpu_seconds() - begin));
+    std::printf(" compiled for %d lanes in %.0f ms;", executor.width, 1e3 * (processor_time::seconds() - begin));
   }
   turns.run(15);
   std::printf("\n  interpreter %.2f us a trajectory; native", turns.time(0));
@@ -134,13 +122,13 @@ void chain_of(int masses) {
 /// From the source of a program to its first results: what is waited for.
 void until_first_batch() {
   for (int round = 0; round < 5; ++round) {
-    double const begin = cpu_seconds();
+    double const begin = processor_time::seconds();
     Case const each = duffing();
-    double const compiled = cpu_seconds();
+    double const compiled = processor_time::seconds();
     LaneArray const parameters = each.parameters(32);
     batches(each, parameters, 32, 32, ExecutorKind::native)();
-    std::printf("until the first native batch: %5.1f ms, of which the program %4.1f ms%s\n", 1e3 * (cpu_seconds() - begin),
-                1e3 * (compiled - begin), round == 0 ? " (loads the compiler)" : "");
+    std::printf("until the first native batch: %5.1f ms, of which the program %4.1f ms%s\n",
+                1e3 * (processor_time::seconds() - begin), 1e3 * (compiled - begin), round == 0 ? " (loads the compiler)" : "");
   }
 }
 

@@ -1,35 +1,17 @@
 // Time per trajectory of the lane bytecode over that of the hand-written scalar loop: thread CPU time, measured in turns so that
 // both see the same machine, medians of the ratios of each turn.
-#include <ctime>
-
 #include <algorithm>
 #include <cstdio>
 #include <functional>
 
 #include "cases.hpp"
 #include "core/numeric/instruction_set.hpp"
+#include "processor_time.hpp"
 #include "program/interpreter/executor.hpp"
 
 using namespace benchmark_cases;
 
 namespace {
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double timed(std::function<void()> const& work) {
-  double const begin = cpu_seconds();
-  work();
-  return cpu_seconds() - begin;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 double volatile sink;
 
@@ -49,12 +31,12 @@ void compare(Case const& each, InstructionSet set, int width) {
   int const batches = std::max(1, trajectories / 4 / width);
   std::vector<double> ratios, engine, loop;
   for (int round = 0; round < 40; ++round) {
-    double const a = timed([&] {
+    double const a = processor_time::of([&] {
                        for (int b = 0; b < batches; ++b)
                          simulator.sums(parameters.view().columns(b * width % trajectories, width), sums, outcome);
                      }) /
                      (batches * width);
-    double const b = timed([&] {
+    double const b = processor_time::of([&] {
                        for (int w = 0; w < 32; ++w)
                          sink = each.loop(each.record, columns[static_cast<std::size_t>((round * 32 + w) % trajectories)]);
                      }) /
@@ -64,8 +46,8 @@ void compare(Case const& each, InstructionSet set, int width) {
     ratios.push_back(a / b);
   }
   std::printf("%-30s %-7s W=%-3d  %8.3f us per trajectory, %8.1f us per batch; loop %7.3f us; ratio %.3f\n", each.name,
-              std::string(name(set)).c_str(), width, 1e6 * median(engine), 1e6 * median(engine) * width, 1e6 * median(loop),
-              median(ratios));
+              std::string(name(set)).c_str(), width, 1e6 * processor_time::median(engine),
+              1e6 * processor_time::median(engine) * width, 1e6 * processor_time::median(loop), processor_time::median(ratios));
 }
 
 }  // namespace

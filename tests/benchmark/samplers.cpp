@@ -2,8 +2,6 @@
 // included, the search for modes not. Samplers run in turns on one posterior, with several seeds; medians.
 //
 //   bench_samplers [FILE [ROUNDS]]        the first fit of a file whose data exist; models/duffing/duffing.sysid, 5 rounds
-#include <ctime>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,22 +12,12 @@
 #include "inference/table.hpp"
 #include "likelihood/model_target.hpp"
 #include "load/load.hpp"
+#include "processor_time.hpp"
 #include "search/search.hpp"
 
 using namespace sysid;
 
 namespace {
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 /// The posterior of a fit, by its own solver without refinements, on one thread.
 std::unique_ptr<ModelTarget> target_of(CheckedFile const& file, FitTask const& fit, std::filesystem::path const& folder) {
@@ -55,9 +43,9 @@ void measure(Target const& target, SearchResult const& found, BackendRow const& 
   Ledger ledger;
   RunContext context{.seed = seed, .progress = progress, .ledger = ledger};
   context.modes = found.modes;
-  double const begin = cpu_seconds();
+  double const begin = processor_time::seconds();
   FitResult const result = backend.run(target, Settings(backend.settings), context);
-  measured.seconds.push_back(cpu_seconds() - begin);
+  measured.seconds.push_back(processor_time::seconds() - begin);
   double least = HUGE_VAL;
   for (Summary const& each : summarise(result)) least = std::min(least, each.ess_bulk);
   measured.draws.push_back(least);
@@ -93,7 +81,8 @@ int main(int count, char** arguments) {
     std::vector<double> rates;
     for (std::size_t i = 0; i < measured[s].draws.size(); ++i) rates.push_back(measured[s].draws[i] / measured[s].seconds[i]);
     std::printf("%-6s %9.0f effective draws, %7.3f s, %10.0f simulations, %9.0f effective draws per second\n", names[s],
-                median(measured[s].draws), median(measured[s].seconds), median(measured[s].simulations), median(rates));
+                processor_time::median(measured[s].draws), processor_time::median(measured[s].seconds),
+                processor_time::median(measured[s].simulations), processor_time::median(rates));
   }
   return 0;
 }

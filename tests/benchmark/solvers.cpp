@@ -1,26 +1,14 @@
 // What a trajectory costs with each solver, relative to RK4 with one step per sample in one lane and in 64: thread CPU time in
 // turns, medians of the ratios.
-#include <ctime>
-
 #include <algorithm>
 #include <cstdio>
 
 #include "cases.hpp"
+#include "processor_time.hpp"
 
 using namespace benchmark_cases;
 
 namespace {
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 struct Contender {
   Contender(Case const& each, SolverSettings const& solver, int width)
@@ -34,9 +22,9 @@ struct Contender {
     simulator.emplace(program, Schedule(*program, each.experiment, solver), ExecutionOptions{.lanes = width, .threads = 1});
   }
   double seconds() {
-    double const begin = cpu_seconds();
+    double const begin = processor_time::seconds();
     simulator->sums(parameters, sums, outcome);
-    return (cpu_seconds() - begin) / width;
+    return (processor_time::seconds() - begin) / width;
   }
   int width;
   LaneArray parameters, sums;
@@ -59,7 +47,7 @@ int main() {
           time.push_back(a), to_one.push_back(a / b), to_lanes.push_back(a / c);
         }
         std::printf("%-30s %-30s %8.2f ms, %6.0f x one lane of rk4, %6.0f x 64 lanes\n", each.name, solver.option().c_str(),
-                    1e3 * median(time), median(to_one), median(to_lanes));
+                    1e3 * processor_time::median(time), processor_time::median(to_one), processor_time::median(to_lanes));
       }
   }
 }
