@@ -175,9 +175,24 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
 
 /// The one room that may include headers that begin like this.
 std::pair<std::string, std::string> const owned[] = {
-    {"<boost/spirit", "grammar"}, {"<nlopt", "gaussian_process"}, {"<netcdf", "exchange"},  {"<cvode", "simulate"},
-    {"<ida", "simulate"},         {"<arkode", "simulate"},        {"<nvector", "simulate"}, {"<sunmatrix", "simulate"},
-    {"<sunlinsol", "simulate"},   {"<sundials", "simulate"},      {"<llvm", "native/llvm"},
+    {"<boost/spirit", "grammar"},
+    {"<nlopt", "gaussian_process"},
+    {"<netcdf", "exchange"},
+    {"<cvode", "simulate"},
+    {"<ida", "simulate"},
+    {"<arkode", "simulate"},
+    {"<nvector", "simulate"},
+    {"<sunmatrix", "simulate"},
+    {"<sunlinsol", "simulate"},
+    {"<sundials", "simulate"},
+    {"<llvm", "native/llvm"},
+    // Decompositions, the slowest of Eigen's templates to compile.
+    {"<Eigen/Dense", "linear_algebra"},
+    {"<Eigen/Cholesky", "linear_algebra"},
+    {"<Eigen/Eigen", "linear_algebra"},
+    {"<Eigen/LU", "linear_algebra"},
+    {"<Eigen/QR", "linear_algebra"},
+    {"<Eigen/SVD", "linear_algebra"},
 };
 
 std::set<std::string> const* allowed(std::string const& room) {
@@ -248,6 +263,7 @@ TEST_CASE("an include that points upwards is found") {
   CHECK(wrong("core/text", "#include \"core/numeric/unit.hpp\"") == "core/text includes core/numeric");
   CHECK(wrong("cellar", "#include \"core/text/source.hpp\"") == "cellar is not listed");
   CHECK(wrong("check", "#include <boost/spirit/home/x3.hpp>") == "check includes <boost/spirit, which is for grammar");
+  CHECK(wrong("search", "#include <Eigen/Dense>") == "search includes <Eigen/Dense, which is for linear_algebra");
   CHECK(wrong("check", "#include \"core/text/source.hpp\"").empty());
 }
 

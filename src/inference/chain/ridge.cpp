@@ -1,12 +1,13 @@
 // Steps along a ridge and back onto it.
 #include "inference/chain/ridge.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "core/numeric/elementary.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 
@@ -42,7 +43,9 @@ class Tracer {
     if (!std::isfinite(place.log_density)) return std::nullopt;
     for (int i = 0; i < most_newton_steps; ++i) {
       auto const [gradient, curvature] = slope(x);
-      place.inverse = curvature.llt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
+      auto const factor = cholesky(curvature);
+      if (!factor) return std::nullopt;
+      place.inverse = solve_cholesky(*factor, Eigen::MatrixXd::Identity(x.size(), x.size()));
       if (!place.inverse.allFinite()) return std::nullopt;
       Eigen::VectorXd const along_tangent = place.inverse * tangent, whole = place.inverse * gradient;
       Eigen::VectorXd const step = whole - along_tangent * (tangent.dot(whole) / tangent.dot(along_tangent));
@@ -59,8 +62,9 @@ class Tracer {
     place.tangent = (place.inverse * tangent).normalized();
     if (place.tangent.dot(tangent) < 0) place.tangent = -place.tangent;
     double log_volume = 0;
-    Eigen::MatrixXd const factor = place.inverse.llt().matrixL();
-    for (Eigen::Index p = 0; p < x.size(); ++p) log_volume += elementary::log(factor(p, p));
+    auto const factor = cholesky(place.inverse);
+    if (!factor) return std::nullopt;
+    for (Eigen::Index p = 0; p < x.size(); ++p) log_volume += elementary::log((*factor)(p, p));
     place.log_across = log_volume - elementary::log(place.tangent.dot(place.inverse * place.tangent)) / 2;
     if (!std::isfinite(place.log_across)) return std::nullopt;
     return place;
@@ -82,7 +86,7 @@ class Tracer {
         off = 25;
         if (!next) continue;
         Eigen::VectorXd const missed = next->x - ahead;
-        off = std::sqrt(std::max(0.0, missed.dot(next->inverse.llt().solve(missed))));
+        off = std::sqrt(std::max(0.0, missed.dot(solve_symmetric(next->inverse, missed))));
         if (off <= 1.5) break;
         next.reset();
       }
@@ -125,11 +129,10 @@ class Tracer {
 std::vector<Independence::Component> along_ridge(Objective const& objective, Mode const& mode, Ledger& ledger) {
   Eigen::VectorXd const& s = objective.scale;
   Eigen::MatrixXd const covariance = s.cwiseInverse().asDiagonal() * covariance_of(mode) * s.cwiseInverse().asDiagonal();
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const axes(covariance);
+  SymmetricEigen const axes = symmetric_eigen(covariance);
   std::vector<Independence::Component> const alone{{1, theta_of(mode), covariance_of(mode)}};
-  if (axes.info() != Eigen::Success) return alone;
   Tracer tracer(objective, ledger);
-  std::optional<Place> centre = tracer.top(theta_of(mode).cwiseQuotient(s), axes.eigenvectors().rightCols(1));
+  std::optional<Place> centre = tracer.top(theta_of(mode).cwiseQuotient(s), axes.vectors.rightCols(1));
   if (!centre) return alone;
   double highest = centre->log_density + centre->log_across;
   std::vector<Place> places = tracer.side(*centre, centre->tangent, highest);
