@@ -113,23 +113,18 @@ std::optional<SearchResult> modes_for(Target const& target, ObjectiveKind object
                                       RunContext& context, FitResult& result) {
   if (!context.modes.empty()) return SearchResult{context.modes, context.mode_findings, {}, false};
   if (!context.checkpoint && !context.resume) return search(target, objective_kind, context);
-  try {
+  std::optional<SearchResult> found;
+  result.failure = checkpoint::read([&] {
     auto const save = [&](nlohmann::json const& steps) {
       if (context.checkpoint) context.checkpoint({{"identity", identity}, {"journal", steps}});
     };
     Journal journal(save, context.checkpoint_interval, context.resume ? &context.resume->at("journal") : nullptr);
     context.journal = &journal;
-    SearchResult found = search(target, objective_kind, context);
-    context.journal = nullptr;
-    if (found.interrupted) journal.save();
-    return found;
-  } catch (checkpoint::Mismatch const& mismatch) {
-    result.failure = checkpoint::unusable(mismatch.what());
-  } catch (nlohmann::json::exception const&) {
-    result.failure = checkpoint::unusable("it is damaged");
-  }
+    found = search(target, objective_kind, context);
+    if (found->interrupted) journal.save();
+  });
   context.journal = nullptr;
-  return std::nullopt;
+  return result.failure ? std::nullopt : found;
 }
 
 FitResult run(std::string_view backend, Target const& target, ObjectiveKind objective_kind, Settings const& settings,

@@ -117,7 +117,7 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
       work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part);
   }
   context.progress.end(!stop());
-  return conclude(target, objective_kind, std::move(modes), begun, of_draws * most_passes, context);
+  return conclude(target, objective_kind, std::move(modes), begun, of_draws * static_cast<std::uint64_t>(passes), context);
 }
 
 }  // namespace
@@ -228,7 +228,15 @@ std::optional<LaneArray> prior_starts(Target const& target, int chains, RunConte
                         prior_start_step + static_cast<std::uint64_t>(attempt)};
     return column(draw_prior(target, key, 1), 0);
   };
-  if (!make_finite(target, starts, 1000, context.ledger, redraw).empty()) return std::nullopt;
+  std::vector<int> const without = make_finite(target, starts, 1000, context.ledger, redraw);
+  if (static_cast<int>(without.size()) == chains) return std::nullopt;
+  // The others begin where those begin that have found a place.
+  for (int const chain : without) {
+    int lender = chain;
+    do lender = (lender + 1) % chains;
+    while (std::find(without.begin(), without.end(), lender) != without.end());
+    for (int p = 0; p < starts.rows(); ++p) starts(p, chain) = starts(p, lender);
+  }
   return starts;
 }
 

@@ -45,7 +45,8 @@ std::vector<int> spread_over_modes(std::vector<Mode> const& modes, int chains);
 LaneArray overdispersed_starts(Target const& target, std::vector<Mode> const& modes, std::vector<int> const& mode_of_chain,
                                RunContext& context);
 
-/// Starts [P x chains] from the prior, each redrawn until its density is finite; nothing after 1000 attempts.
+/// Starts [P x chains] from the prior, each redrawn until its density is finite. Chains without one after 1000 attempts begin where
+/// another does; nothing where none has found one.
 std::optional<LaneArray> prior_starts(Target const& target, int chains, RunContext& context);
 
 /// The failure of a run whose prior holds no point with a finite likelihood.

@@ -36,9 +36,9 @@ nlohmann::json encode(LaneArray const& values) {
 
 LaneArray decode(nlohmann::json const& stored, int rows, int width) {
   std::vector<double> const values = decode(stored);
-  LaneArray array(rows, width);
-  if (values.size() != static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))
+  if (rows < 0 || width < 0 || values.size() != static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))
     throw Mismatch("its chains differ in number or dimension");
+  LaneArray array(rows, width);
   std::copy(values.begin(), values.end(), array.view().data());
   return array;
 }
@@ -93,16 +93,19 @@ nlohmann::json encode(Mode const& mode) {
 }
 
 Mode decode_mode(nlohmann::json const& stored) {
+  std::vector<double> theta = decode(stored.at("theta")), flat = decode(stored.at("flat"));
+  std::size_t const n = theta.size();
+  if (n == 0 || flat.size() % n != 0) throw Mismatch("it is damaged");
   std::vector<double> const numbers = decode(stored.at("numbers"), 5);
-  return {decode(stored.at("theta")),
-          decode(stored.at("declared")),
-          decode(stored.at("sd")),
-          decode(stored.at("covariance")),
+  return {std::move(theta),
+          decode(stored.at("declared"), n),
+          decode(stored.at("sd"), n),
+          decode(stored.at("covariance"), n * n),
           numbers.at(0),
           numbers.at(1),
           numbers.at(2),
           stored.at("hits").get<int>(),
-          decode(stored.at("flat")),
+          std::move(flat),
           numbers.at(3),
           numbers.at(4) != 0};
 }
@@ -117,7 +120,7 @@ Findings decode_findings(nlohmann::json const& stored) {
   Findings findings;
   for (auto const& f : stored) {
     auto const code = finding_code(f.at(0).get<std::string>());
-    if (!code) throw nlohmann::json::other_error::create(501, "a finding without a row", &f);
+    if (!code) throw Mismatch("it has a finding that is not known");
     findings.push_back({*code, severity(f.at(1)), f.at(2).get<std::vector<std::string>>(), f.at(3).get<std::string>(),
                         f.at(4).get<std::string>()});
   }

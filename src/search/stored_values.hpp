@@ -36,6 +36,7 @@ LaneArray decode(nlohmann::json const& stored, int rows, int width);
 nlohmann::json encode(Ledger const& ledger);
 Ledger decode_ledger(nlohmann::json const& stored);
 nlohmann::json encode(Mode const& mode);
+/// Throws Mismatch where its parts are of different dimensions.
 Mode decode_mode(nlohmann::json const& stored);
 nlohmann::json encode(Findings const& findings);
 Findings decode_findings(nlohmann::json const& stored);

@@ -11,7 +11,7 @@
 #include "inference/chain/local_learning.hpp"
 #include "inference/chain/metropolis.hpp"
 #include "inference/chain/mh.hpp"
-#include "inference/targets.hpp"
+#include "inference/interruptions.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -218,7 +218,7 @@ TEST_CASE("a place that the mixture hardly reaches takes no independence moves a
     sums[2] = longest_stay;
     stored["sums"] = checkpoint::encode(std::span<double const>(sums));
     stored["counts"].back() = 1;  // windows
-    return IndependenceLearning::restore(stored, 1).moves();
+    return IndependenceLearning::restore(stored, 1, 2).moves();
   };
   CHECK(moves(0.6, 1) == 15);
   CHECK(moves(0.6, 10) == 3);
@@ -304,29 +304,10 @@ TEST_CASE("a run with autoregressive moves about declared values goes on from wh
   Settings settings(mh::settings());
   settings.set("samples", std::int64_t{2500});
   settings.set("burn_in", std::int64_t{1500});
-  Bench whole(9);
-  int questions = 0;
-  nlohmann::json last;
-  whole.context.interrupted = [&] { return ++questions < 0; };
-  whole.context.checkpoint_end = true;
-  whole.context.checkpoint = [&](nlohmann::json const& state) { last = state; };
-  FitResult const unbroken = mh::run(target, settings, whole.context);
+  Unbroken const whole = unbroken(mh::run, target, settings);
   // That it is such a run: moves of the kind were made, and the mixture in use is one over declared values.
-  CHECK(last.at("independence").at("mixtures").at(0).at("declared").get<bool>());
-  CHECK(last.at("local").at("counts").at(2).get<std::uint64_t>() > 50);
-  for (int const limit : {questions - 1, questions - 60, questions - 200, questions - 500, questions - 900}) {
-    CAPTURE(limit);
-    std::vector<std::uint8_t> saved;
-    int asked = 0;
-    Bench first(9);
-    first.context.interrupted = [&] { return ++asked > limit; };
-    first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
-    REQUIRE(mh::run(target, settings, first.context).interrupted);
-    Bench second(9);
-    second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
-    FitResult const resumed = mh::run(target, settings, second.context);
-    CHECK(resumed.unthinned == unbroken.unthinned);
-    CHECK(resumed.acceptance_rate == unbroken.acceptance_rate);
-    CHECK(second.ledger.solves() == whole.ledger.solves());
-  }
+  CHECK(whole.last.at("independence").at("mixtures").at(0).at("declared").get<bool>());
+  CHECK(whole.last.at("local").at("counts").at(2).get<std::uint64_t>() > 50);
+  int const end = whole.questions;
+  check_stops(mh::run, target, settings, whole, {end - 1, end - 60, end - 200, end - 500, end - 900});
 }

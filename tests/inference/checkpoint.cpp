@@ -38,6 +38,7 @@ TEST_CASE("damaged numbers are refused, not guessed") {
   CHECK_THROWS_AS(checkpoint::decode("AAAAAAAA8D8"), checkpoint::Mismatch);  // text, as an older format stored numbers
   CHECK_THROWS_AS(checkpoint::decode(nlohmann::json::binary({1, 2, 3})), checkpoint::Mismatch);
   CHECK_THROWS_AS(checkpoint::decode(checkpoint::encode(std::vector<double>{1, 2, 3}), 2, 2), checkpoint::Mismatch);
+  CHECK_THROWS_AS(checkpoint::decode(checkpoint::encode(std::vector<double>{1, 2, 3}), 3, -1), checkpoint::Mismatch);
 }
 
 TEST_CASE("ledgers and modes survive storing") {
@@ -64,6 +65,9 @@ TEST_CASE("ledgers and modes survive storing") {
   CHECK(read.share == mode.share);
   CHECK(read.hits == mode.hits);
   CHECK(read.flat == mode.flat);
+  Mode torn = mode;
+  torn.covariance.pop_back();
+  CHECK_THROWS_AS(checkpoint::decode_mode(checkpoint::encode(torn)), checkpoint::Mismatch);
 }
 
 TEST_CASE("a checkpoint knows its run, and says what differs") {

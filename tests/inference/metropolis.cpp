@@ -80,7 +80,7 @@ TEST_CASE("small moves come in their share and size") {
   Info const info = step(flat, {proposals}, {1, Purpose::proposal, 0, 0}, state, ledger);
   double small = 0, square = 0;
   for (int w = 0; w < chains; ++w) {
-    if (!info[static_cast<std::size_t>(w)].small) continue;
+    if (info[static_cast<std::size_t>(w)].tunes_scale) continue;
     ++small;
     square += state.theta(0, w) * state.theta(0, w);
   }
@@ -173,7 +173,7 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   for (std::uint64_t i = 0; i < 5000; ++i) {
     Info const info =
         step(target, {std::vector<Proposal const*>(4, &adaptation.proposal())}, {1, Purpose::proposal, 0, i}, state, ledger);
-    for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info[w].small ? 0 : info[w].acceptance_probability / (0.9 * 2000 * 4);
+    for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info[w].tunes_scale ? info[w].acceptance_probability / (0.9 * 2000 * 4) : 0;
     adaptation.learn(state, info, std::vector<char>(4));
   }
   auto const& factor = adaptation.proposal().factor;

@@ -9,7 +9,7 @@
 
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/verdict.hpp"
-#include "inference/targets.hpp"
+#include "inference/interruptions.hpp"
 #include "search/search.hpp"
 
 using namespace sysid;
@@ -82,17 +82,6 @@ void check_moments(FitResult const& result, Eigen::VectorXd const& mean, Eigen::
     CHECK(s.sd == doctest::Approx(sd(i)).epsilon(0.05));
   }
   CHECK(verdict_of(result.findings).pass);
-}
-
-bool same_draws(FitResult const& a, FitResult const& b) {
-  if (a.draws.chains.size() != b.draws.chains.size() || a.unthinned != b.unthinned) return false;
-  for (std::size_t c = 0; c < a.draws.chains.size(); ++c) {
-    Chain const &x = a.draws.chains[c], &y = b.draws.chains[c];
-    if (x.values != y.values || x.log_density != y.log_density || x.log_likelihood != y.log_likelihood ||
-        x.log_prior != y.log_prior || x.acceptance != y.acceptance)
-      return false;
-  }
-  return true;
 }
 
 std::vector<std::string> codes(FitResult const& result) {
@@ -277,11 +266,9 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
   for (char const* proposal : {"walk", "adaptive"}) {
     CAPTURE(proposal);
     Settings const settings = short_chains(proposal);
-    Bench whole(9);
     // One question is asked before every batch: those of the search, of burn-in, and of sampling, which has fewer than iterations.
-    int questions = 0;
-    whole.context.interrupted = [&] { return ++questions < 0; };
-    FitResult const unbroken = mh::run(known.target, settings, whole.context);
+    Unbroken const whole = unbroken(mh::run, known.target, settings);
+    int const questions = whole.questions;
     int searching = 0;
     Bench search_alone(9);
     search_alone.context.interrupted = [&] { return ++searching < 0; };
@@ -293,28 +280,9 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
     REQUIRE(questions > searching + 60);
     int const batches = questions - searching;
     // In the search, at the first iteration, in burn-in, around its end, in sampling, before the last batch.
-    for (int const limit : {3, searching, searching + batches / 8, searching + batches / 3, searching + batches * 2 / 5,
-                            searching + batches / 2, searching + batches * 3 / 4, questions - 1}) {
-      CAPTURE(limit);
-      std::vector<std::uint8_t> saved;
-      int asked = 0;
-      Bench first(9);
-      first.context.interrupted = [&] { return ++asked > limit; };
-      first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
-      FitResult const part = mh::run(known.target, settings, first.context);
-      REQUIRE(part.interrupted);
-      CHECK(part.draws.total() < unbroken.draws.total());
-      Bench second(9);
-      second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
-      FitResult const resumed = mh::run(known.target, settings, second.context);
-      CHECK_FALSE(resumed.interrupted);
-      CHECK(same_draws(unbroken, resumed));
-      CHECK(unbroken.acceptance_rate == resumed.acceptance_rate);
-      CHECK(unbroken.distinct_states == resumed.distinct_states);
-      CHECK(unbroken.findings == resumed.findings);
-      CHECK(whole.ledger.solves() == second.ledger.solves());
-      CHECK(unbroken.proposals[0].factor == resumed.proposals[0].factor);
-    }
+    check_stops(mh::run, known.target, settings, whole,
+                {3, searching, searching + batches / 8, searching + batches / 3, searching + batches * 2 / 5,
+                 searching + batches / 2, searching + batches * 3 / 4, questions - 1});
   }
 }
 
@@ -323,28 +291,13 @@ TEST_CASE("a run whose batch is given up goes on from before it, to the same byt
   for (char const* proposal : {"walk", "adaptive"}) {
     CAPTURE(proposal);
     Settings const settings = short_chains(proposal);
-    Bench whole(9);
-    GivenUp const never(known.target, -1);
-    FitResult const unbroken = mh::run(never, settings, whole.context);
-    GivenUp const searched(known.target, -1);
-    Bench search_alone(9);
+    GivenUp const never(known.target, -1), searched(known.target, -1);
+    Bench whole(interrupted_seed), search_alone(interrupted_seed);
+    mh::run(never, settings, whole.context);
     SearchResult const modes = search(searched, ObjectiveKind::posterior, search_alone.context);
     // In burn-in and in sampling; before them lie the search and the batch of the starts.
-    int const first = searched.batches + 2, count = never.batches - first;
-    for (int const batch : {first + 2, first + count / 4, first + count / 2, first + count * 3 / 4, never.batches - 1}) {
-      CAPTURE(batch);
-      nlohmann::json saved;
-      Bench part(9);
-      part.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
-      GivenUp const given_up(known.target, batch);
-      REQUIRE(mh::run(given_up, settings, part.context).interrupted);
-      Bench rest(9);
-      rest.context.resume = std::make_shared<nlohmann::json const>(saved);
-      FitResult const resumed = mh::run(known.target, settings, rest.context);
-      CHECK(same_draws(unbroken, resumed));
-      CHECK(unbroken.findings == resumed.findings);
-      CHECK(whole.ledger.solves() == rest.ledger.solves());
-    }
+    int const count = never.batches - searched.batches - 2;
+    check_given_up(mh::run, known.target, settings, {count - 2, count - count / 4, count - count / 2, count - count * 3 / 4, 1});
   }
 }
 

@@ -9,8 +9,8 @@
 
 #include "diagnostics/verdict.hpp"
 #include "inference/chain/mh.hpp"
+#include "inference/interruptions.hpp"
 #include "inference/nuts/trajectory_checks.hpp"
-#include "inference/targets.hpp"
 
 namespace sysid::nuts {
 namespace {
@@ -32,15 +32,6 @@ FitResult fit(Target const& target, Settings const& settings, std::uint64_t seed
 
 bool has(FitResult const& result, FindingCode code) {
   return std::any_of(result.findings.begin(), result.findings.end(), [&](Finding const& each) { return each.code == code; });
-}
-
-bool same_draws(FitResult const& a, FitResult const& b) {
-  if (a.draws.chains.size() != b.draws.chains.size() || a.unthinned != b.unthinned) return false;
-  for (std::size_t c = 0; c < a.draws.chains.size(); ++c) {
-    sysid::Chain const &x = a.draws.chains[c], &y = b.draws.chains[c];
-    if (x.values != y.values || x.log_density != y.log_density || x.acceptance != y.acceptance) return false;
-  }
-  return true;
 }
 
 /// Mean and sd within four Monte Carlo standard errors, by the effective sizes that the run states.
@@ -184,49 +175,16 @@ TEST_CASE("a run stopped anywhere and resumed gives the bytes of one that never 
     Settings settings = chosen(50, 25, 3);
     settings.set("depth", std::int64_t{6});
     settings.set("start", std::string(start));
-    int questions = 0;
-    Bench whole(9);
-    whole.context.interrupted = [&] { return ++questions < 0; };
-    FitResult const unbroken = nuts::run(target, settings, whole.context);
-    for (int const limit : {3, questions - 300, questions - 213, questions - 120, questions - 57, questions - 1}) {
-      CAPTURE(limit);
-      std::vector<std::uint8_t> saved;
-      int asked = 0;
-      Bench first(9);
-      first.context.interrupted = [&] { return ++asked > limit; };
-      first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
-      REQUIRE(nuts::run(target, settings, first.context).interrupted);
-      Bench second(9);
-      second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
-      FitResult const resumed = nuts::run(target, settings, second.context);
-      CHECK(same_draws(unbroken, resumed));
-      CHECK(unbroken.acceptance_rate == resumed.acceptance_rate);
-      CHECK(unbroken.findings == resumed.findings);
-      CHECK(whole.ledger.solves() == second.ledger.solves());
-    }
+    Unbroken const whole = unbroken(nuts::run, target, settings);
+    int const end = whole.questions;
+    check_stops(nuts::run, target, settings, whole, {3, end - 300, end - 213, end - 120, end - 57, end - 1});
   }
 }
 
 TEST_CASE("a run whose batch is given up goes on from before it, to the same bytes") {
   Settings settings = chosen(60, 30, 3);
   settings.set("start", std::string("prior"));
-  Bench whole(9);
-  GivenUp const never(gaussian().target, -1);
-  FitResult const unbroken = nuts::run(never, settings, whole.context);
-  for (int const batch : {never.batches - 150, never.batches - 30, never.batches}) {
-    CAPTURE(batch);
-    nlohmann::json saved;
-    Bench part(9);
-    part.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
-    GivenUp const given_up(gaussian().target, batch);
-    REQUIRE(nuts::run(given_up, settings, part.context).interrupted);
-    Bench rest(9);
-    rest.context.resume = std::make_shared<nlohmann::json const>(saved);
-    FitResult const resumed = nuts::run(gaussian().target, settings, rest.context);
-    CHECK(same_draws(unbroken, resumed));
-    CHECK(unbroken.findings == resumed.findings);
-    CHECK(whole.ledger.solves() == rest.ledger.solves());
-  }
+  check_given_up(nuts::run, gaussian().target, settings, {150, 30, 0});
 }
 
 TEST_CASE("checkpoints of another run, and damaged ones, are refused") {

@@ -8,7 +8,7 @@
 
 #include "inference/chain/mh.hpp"
 #include "inference/chain/ridge.hpp"
-#include "inference/targets.hpp"
+#include "inference/interruptions.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 
@@ -118,32 +118,15 @@ TEST_CASE("chains cross a curved ridge that walks do not cross, and go on from w
     settings.set("proposal", std::string(proposal));
     return settings;
   };
-  Bench whole(4), walking(4);
-  int questions = 0;
-  nlohmann::json last;
-  whole.context.interrupted = [&] { return ++questions < 0; };
-  whole.context.checkpoint_end = true;
-  whole.context.checkpoint = [&](nlohmann::json const& state) { last = state; };
-  FitResult const unbroken = mh::run(target, settings_of("adaptive"), whole.context);
-  REQUIRE(last.at("independence").at("ridge").at(1).get<bool>());  // the mixture in use is one along the ridge
-  auto const found = summarise(unbroken), walk = summarise(mh::run(target, settings_of("walk"), walking.context));
+  Unbroken const whole = unbroken(mh::run, target, settings_of("adaptive"));
+  REQUIRE(whole.last.at("independence").at("ridge").at(1).get<bool>());  // the mixture in use is one along the ridge
+  Bench walking(interrupted_seed);
+  auto const found = summarise(whole.result), walk = summarise(mh::run(target, settings_of("walk"), walking.context));
   MESSAGE("effective draws of a: " << found[0].ess_bulk << " and " << walk[0].ess_bulk);
   CHECK(found[0].rhat < 1.01);
   CHECK(found[0].ess_bulk > 5 * walk[0].ess_bulk);
   CHECK(std::fabs(found[0].mean) < 4 * found[0].mcse_mean);
   CHECK(found[0].sd == doctest::Approx(1).epsilon(0.06));
-  for (int const limit : {questions - 1, questions * 3 / 4, questions / 2, questions / 4, questions / 8}) {
-    CAPTURE(limit);
-    std::vector<std::uint8_t> saved;
-    int asked = 0;
-    Bench first(4);
-    first.context.interrupted = [&] { return ++asked > limit; };
-    first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
-    REQUIRE(mh::run(target, settings_of("adaptive"), first.context).interrupted);
-    Bench second(4);
-    second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
-    FitResult const resumed = mh::run(target, settings_of("adaptive"), second.context);
-    CHECK(resumed.unthinned == unbroken.unthinned);
-    CHECK(second.ledger.solves() == whole.ledger.solves());
-  }
+  int const end = whole.questions;
+  check_stops(mh::run, target, settings_of("adaptive"), whole, {end - 1, end * 3 / 4, end / 2, end / 4, end / 8});
 }

@@ -9,7 +9,7 @@
 #include "diagnostics/verdict.hpp"
 #include "inference/chain/difference_moves.hpp"
 #include "inference/chain/ladder.hpp"
-#include "inference/targets.hpp"
+#include "inference/interruptions.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -159,48 +159,14 @@ TEST_CASE("differences of an archive lead along it, and from one of its parts to
 TEST_CASE("a tempered run stopped anywhere and resumed gives the bytes of one that never stopped") {
   TestTarget const target = four_modes();
   for (char const* start : {"global", "prior"}) {
+    CAPTURE(start);
     Settings const settings = tempered(400, 200, 5, start);
-    int questions = 0;
-    Bench whole(9);
-    whole.context.interrupted = [&] { return ++questions < 0; };
-    FitResult const unbroken = tempering::run(target, settings, whole.context);
-    for (int const limit : {3, questions - 350, questions - 230, questions - 200, questions - 57, questions - 1}) {
-      CAPTURE(limit);
-      std::vector<std::uint8_t> saved;
-      int asked = 0;
-      Bench first(9);
-      first.context.interrupted = [&] { return ++asked > limit; };
-      first.context.checkpoint = [&](nlohmann::json const& state) { saved = nlohmann::json::to_cbor(state); };
-      REQUIRE(tempering::run(target, settings, first.context).interrupted);
-      Bench second(9);
-      second.context.resume = std::make_shared<nlohmann::json const>(nlohmann::json::from_cbor(saved));
-      FitResult const resumed = tempering::run(target, settings, second.context);
-      CHECK(unbroken.unthinned == resumed.unthinned);
-      CHECK(unbroken.acceptance_rate == resumed.acceptance_rate);
-      CHECK(unbroken.findings == resumed.findings);
-      CHECK(whole.ledger.solves() == second.ledger.solves());
-      for (std::size_t c = 0; c < 4; ++c) CHECK(unbroken.draws.chains[c].values == resumed.draws.chains[c].values);
-    }
+    Unbroken const whole = unbroken(tempering::run, target, settings);
+    int const end = whole.questions;
+    check_stops(tempering::run, target, settings, whole, {3, end - 350, end - 230, end - 200, end - 57, end - 1});
   }
 }
 
 TEST_CASE("a tempered run whose move is given up goes on from before it, to the same bytes") {
-  Settings const settings = tempered(400, 200, 5, "prior");
-  Bench whole(9);
-  GivenUp const never(four_modes(), -1);
-  FitResult const unbroken = tempering::run(never, settings, whole.context);
-  for (int const batch : {never.batches - 390, never.batches - 150, never.batches}) {
-    CAPTURE(batch);
-    nlohmann::json saved;
-    Bench part(9);
-    part.context.checkpoint = [&](nlohmann::json const& state) { saved = state; };
-    GivenUp const given_up(four_modes(), batch);
-    REQUIRE(tempering::run(given_up, settings, part.context).interrupted);
-    Bench rest(9);
-    rest.context.resume = std::make_shared<nlohmann::json const>(saved);
-    FitResult const resumed = tempering::run(four_modes(), settings, rest.context);
-    CHECK(unbroken.unthinned == resumed.unthinned);
-    CHECK(unbroken.findings == resumed.findings);
-    CHECK(whole.ledger.solves() == rest.ledger.solves());
-  }
+  check_given_up(tempering::run, four_modes(), tempered(400, 200, 5, "prior"), {390, 150, 0});
 }

@@ -333,6 +333,22 @@ TEST_CASE("a window of draws leaves a metric that is right as it is, and correct
     CHECK(diagonal.factor[static_cast<std::size_t>(i)] == doctest::Approx(std::sqrt(truth(i, i))).epsilon(0.15));
 }
 
+TEST_CASE("a window of fewer states than directions narrows none of them") {
+  Eigen::MatrixXd const truth = Eigen::MatrixXd::Identity(45, 45);
+  Metric const right = metric_of(truth, true);
+  CHECK(learnt_from(truth, right, 25).factor == right.factor);
+  // The same where a chain stood still for half of the window.
+  Metric const small = metric_of(Eigen::MatrixXd::Identity(11, 11), true);
+  WindowOfDraws window;
+  for (std::uint64_t i = 0; i < 25; ++i) {
+    Stream stream({3, Purpose::test, i / 2, 0});
+    std::vector<double> theta(11);
+    for (double& v : theta) v = stream.normal();
+    window.add(small, theta, i % 2 == 0);
+  }
+  CHECK(relative(Eigen::MatrixXd::Identity(11, 11), window.estimate(small)).minCoeff() > 0.05);
+}
+
 TEST_CASE("a chain that stands still teaches no metric") {
   Metric const metric = some_metric(2, true);
   WindowOfDraws window;

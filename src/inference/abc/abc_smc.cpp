@@ -273,15 +273,8 @@ class Run {
     if (context_.resume) {
       result_.failure = checkpoint::refuse(*context_.resume, identity_);
       if (result_.failure) return false;
-      try {
-        state_ = restore(*context_.resume, candidates_, context_.ledger);
-        return true;
-      } catch (checkpoint::Mismatch const& mismatch) {
-        result_.failure = checkpoint::unusable(mismatch.what());
-      } catch (json::exception const&) {
-        result_.failure = checkpoint::unusable("it is damaged");
-      }
-      return false;
+      result_.failure = checkpoint::read([&] { state_ = restore(*context_.resume, candidates_, context_.ledger); });
+      return !result_.failure;
     }
     for (int m = 0; m < candidates_.size(); ++m) last_.widths.push_back(prior_width(m));
     last_.models.resize(static_cast<std::size_t>(candidates_.size()));

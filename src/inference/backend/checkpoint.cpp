@@ -33,4 +33,15 @@ Finding unusable(std::string const& why) {
           "run the task again without --resume, or restore the file and settings of the first run"};
 }
 
+std::optional<Finding> read(std::function<void()> const& what) {
+  try {
+    what();
+    return std::nullopt;
+  } catch (Mismatch const& mismatch) {
+    return unusable(mismatch.what());
+  } catch (nlohmann::json::exception const&) {
+    return unusable("it is damaged");
+  }
+}
+
 }  // namespace sysid::checkpoint

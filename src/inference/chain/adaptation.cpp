@@ -57,7 +57,7 @@ void Adaptation::learn_scale(Info const& info) {
     Move const& move = info[static_cast<std::size_t>(chain)];
     bool const walked = move.kind == MoveKind::walk;
     walks += walked ? 1 : 0;
-    if (!walked || move.failed || move.small) continue;  // a failed solve says nothing of the posterior's width
+    if (!walked || move.failed || !move.tunes_scale) continue;  // a failed solve says nothing of the posterior's width
     acceptance += move.acceptance_probability;
     ++moves;
   }
@@ -106,10 +106,13 @@ nlohmann::json Adaptation::store() const {
           {"scales", checkpoint::encode(std::vector<double>{log_scale_, proposal_.scale})}};
 }
 
-Adaptation Adaptation::restore(nlohmann::json const& stored) {
+Adaptation Adaptation::restore(nlohmann::json const& stored, int parameters, int chains) {
   Adaptation a;
   a.chains_ = stored.at("chains").get<std::vector<int>>();
   auto const dimension = stored.at("dimension").get<Eigen::Index>();
+  bool const known = std::all_of(a.chains_.begin(), a.chains_.end(), [&](int chain) { return chain >= 0 && chain < chains; });
+  if (dimension != parameters || a.chains_.empty() || !known)
+    throw checkpoint::Mismatch("its chains differ in number or dimension");
   a.first_ = to_matrix(checkpoint::decode(stored.at("first")), dimension, dimension);
   a.covariance_ = to_matrix(checkpoint::decode(stored.at("covariance")), dimension, dimension);
   a.iteration_ = stored.at("iteration").get<std::uint64_t>();

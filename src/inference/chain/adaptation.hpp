@@ -30,7 +30,8 @@ class Adaptation {
   Eigen::MatrixXd covariance() const;
 
   nlohmann::json store() const;
-  static Adaptation restore(nlohmann::json const& stored);
+  /// Throws checkpoint::Mismatch for another number of parameters or chains.
+  static Adaptation restore(nlohmann::json const& stored, int parameters, int chains);
 
  private:
   void learn_scale(Info const& info);

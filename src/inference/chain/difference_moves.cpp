@@ -53,7 +53,7 @@ void DifferenceMoves::learn(State const& state, Info const& info, int first, int
   int moves = 0;
   for (int w = first; w < first + count; ++w) {
     Move const& move = info[static_cast<std::size_t>(w)];
-    if (move.failed || move.small) continue;
+    if (move.failed || !move.tunes_scale) continue;
     acceptance += move.acceptance_probability;
     ++moves;
   }

@@ -135,17 +135,21 @@ void IndependenceLearning::archive(State const& state, std::span<char const> awa
     Archive& archive = archives_[static_cast<std::size_t>(component_of_chain_[w])];
     if (away[w] != 0 || iterations_ % archive.interval != 0) continue;
     for (int p = 0; p < state.theta.rows(); ++p) archive.states.push_back(state.theta(p, static_cast<int>(w)));
+    archive.iterations.push_back(iterations_);
   }
   for (Archive& archive : archives_) {
-    if (archive.states.size() < most_archived * dimension) continue;
+    if (archive.iterations.size() < most_archived) continue;
+    archive.interval *= 2;
     std::size_t kept = 0;
-    for (std::size_t n = 0; n * dimension < archive.states.size(); n += 2, ++kept) {
-      if (n == kept) continue;
+    // Whole iterations go: every second state would be those of every second chain.
+    for (std::size_t n = 0; n < archive.iterations.size(); ++n) {
+      if (archive.iterations[n] % archive.interval != 0) continue;
       std::copy_n(archive.states.begin() + static_cast<std::ptrdiff_t>(n * dimension), dimension,
                   archive.states.begin() + static_cast<std::ptrdiff_t>(kept * dimension));
+      archive.iterations[kept++] = archive.iterations[n];
     }
     archive.states.resize(kept * dimension);
-    archive.interval *= 2;
+    archive.iterations.resize(kept);
   }
 }
 
@@ -226,7 +230,7 @@ void IndependenceLearning::propose_mixtures(Target const& target, std::span<Adap
     if (auto component = declared(target, k)) over_values.push_back(std::move(*component));
   }
   // Modes without a chain have nothing new: a candidate that lost them would lose the posterior's mass there.
-  mixtures_[1] = plain.size() == weights_.size() ? Independence(plain) : Independence();
+  mixtures_[1] = plain.size() == weights_.size() && usable(plain) ? Independence(plain) : Independence();
   mixtures_[2] = over_values.size() == weights_.size() && usable(over_values) ? Independence(over_values, true) : Independence();
 }
 
@@ -234,7 +238,9 @@ nlohmann::json IndependenceLearning::store() const {
   nlohmann::json mixtures = nlohmann::json::array(), archives = nlohmann::json::array();
   for (Independence const& mixture : mixtures_) mixtures.push_back(mixture.store());
   for (Archive const& each : archives_)
-    archives.push_back({{"states", checkpoint::encode(std::span<double const>(each.states))}, {"interval", each.interval}});
+    archives.push_back({{"states", checkpoint::encode(std::span<double const>(each.states))},
+                        {"iterations", each.iterations},
+                        {"interval", each.interval}});
   std::vector<double> sums{window_.acceptance, acceptance_, longest_stay_};
   for (Fit const& fit : window_.fits) sums.insert(sums.end(), {fit.log_density, fit.log_highest, fit.log_inverse});
   return {{"component_of_chain", component_of_chain_},
@@ -246,20 +252,29 @@ nlohmann::json IndependenceLearning::store() const {
           {"sums", checkpoint::encode(std::span<double const>(sums))}};
 }
 
-IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored, int dimension) {
+bool IndependenceLearning::fits(int chains) const {
+  auto const known = [&](int component) { return component >= 0 && static_cast<std::size_t>(component) < weights_.size(); };
+  std::size_t const count = weights_.empty() ? 0 : static_cast<std::size_t>(chains);
+  return component_of_chain_.size() == count && std::all_of(component_of_chain_.begin(), component_of_chain_.end(), known);
+}
+
+IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored, int dimension, int chains) {
   IndependenceLearning all;
   all.component_of_chain_ = stored.at("component_of_chain").get<std::vector<int>>();
   all.weights_ = checkpoint::decode(stored.at("weights"));
   auto const counts = stored.at("counts").get<std::vector<std::uint64_t>>();
   std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 15);
   if (counts.size() != 6 || stored.at("mixtures").size() != all.mixtures_.size() ||
-      stored.at("archives").size() != all.weights_.size())
+      stored.at("archives").size() != all.weights_.size() || !all.fits(chains))
     throw checkpoint::Mismatch("its independence moves differ in form");
   for (std::size_t m = 0; m < all.mixtures_.size(); ++m)
     all.mixtures_[m] = Independence::restore(stored.at("mixtures").at(m), dimension);
-  for (nlohmann::json const& each : stored.at("archives"))
+  for (nlohmann::json const& each : stored.at("archives")) {
+    auto iterations = each.at("iterations").get<std::vector<std::uint64_t>>();
+    std::vector<double> states = checkpoint::decode(each.at("states"), iterations.size() * static_cast<std::size_t>(dimension));
     all.archives_.push_back(
-        {checkpoint::decode(each.at("states")), std::max<std::uint64_t>(1, each.at("interval").get<std::uint64_t>())});
+        {std::move(states), std::move(iterations), std::max<std::uint64_t>(1, each.at("interval").get<std::uint64_t>())});
+  }
   all.window_ = {counts[0], counts[1], counts[2], {}, sums[0]};
   for (std::size_t m = 0; m < all.window_.fits.size(); ++m)
     all.window_.fits[m] = {sums[3 + 3 * m], sums[4 + 3 * m], sums[5 + 3 * m]};

@@ -57,7 +57,8 @@ class IndependenceLearning {
   bool too_few() const;
 
   nlohmann::json store() const;
-  static IndependenceLearning restore(nlohmann::json const& stored, int dimension);
+  /// Throws checkpoint::Mismatch for another number of parameters or chains.
+  static IndependenceLearning restore(nlohmann::json const& stored, int dimension, int chains);
 
  private:
   /// What the states of a window say of a mixture.
@@ -71,9 +72,11 @@ class IndependenceLearning {
     std::array<Fit, 4> fits;  // of the mixtures
     double acceptance = 0;    // sum over moves
   };
-  /// States of the chains of one mode while they were near it, at equal intervals, which double when there are too many.
+  /// States of the chains of one mode while they were near it, of iterations at equal intervals, which double when there are too
+  /// many.
   struct Archive {
-    std::vector<double> states;  // P numbers each
+    std::vector<double> states;             // P numbers each
+    std::vector<std::uint64_t> iterations;  // of each state
     std::uint64_t interval = 1;
   };
   void archive(State const& state, std::span<char const> away);
@@ -84,11 +87,13 @@ class IndependenceLearning {
   bool compared(std::size_t m) const { return !mixtures_[m].empty() && (m < 2 || sees_declared()); }
   bool sees_declared() const { return too_few() || mixture().declared(); }
   int worth() const;
+  /// Whether each of `chains` has its component.
+  bool fits(int chains) const;
 
   std::vector<int> component_of_chain_;
   std::vector<double> weights_;
-  /// In use; candidates over theta, over declared values, over these as the modes are, and along a ridge; empty where there are
-  /// none.
+  /// In use (one along a ridge ends the comparison); candidates over theta, over declared values, and over these as the modes are;
+  /// empty where there are none.
   std::array<Independence, 4> mixtures_;
   std::vector<Archive> archives_;  // of the components
   Window window_;

@@ -25,7 +25,7 @@ void LocalLearning::learn(Info const& info) {
     Worth& worth = is_autoregressive ? autoregressive_ : walk_;
     worth.jump += move.acceptance_probability * move.squared_jump;
     ++worth.moves;
-    if (!is_autoregressive || move.failed || move.small) continue;  // a failed solve says nothing of the posterior's shape
+    if (!is_autoregressive || move.failed || !move.tunes_scale) continue;  // a failed solve says nothing of the posterior's shape
     acceptance += move.acceptance_probability;
     ++moves;
   }

@@ -41,12 +41,13 @@ Move propose(LocalMoves const& local, StreamKey key, ConstLanes from, Framed con
   Move move;
   if (local.share > 0 && stream.uniform() < local.share) {
     move.kind = MoveKind::autoregressive;
-    move.small = stream.uniform() < local.shorter;
-    double const step = local.step * (move.small ? stream.uniform() : 1);
+    move.tunes_scale = stream.uniform() >= local.shorter;
+    double const step = local.step * (move.tunes_scale ? 1 : stream.uniform());
     move.squared_jump = local.mixture->move_about(stream, step, here.x, chain, to.drawn(lane), lane);
   } else {
-    move.small = proposal.small_share > 0 && stream.uniform() < proposal.small_share;
-    move.squared_jump = walk(proposal, stream, move.small, from, chain, to.theta(), lane);
+    bool const small = proposal.small_share > 0 && stream.uniform() < proposal.small_share;
+    move.tunes_scale = !small;
+    move.squared_jump = walk(proposal, stream, small, from, chain, to.theta(), lane);
   }
   return move;
 }
@@ -67,7 +68,7 @@ Move settle(LocalMoves const& local, Move const& proposal, StreamKey key, State&
   }
   Move move = decide(key, state, w, candidates.theta(), lane, candidates.log_prior(lane), candidates.log_likelihood(lane), odds);
   move.failed = move.failed && !candidates.outside(lane);
-  move.small = proposal.small;
+  move.tunes_scale = proposal.tunes_scale;
   move.kind = proposal.kind;
   move.squared_jump = proposal.squared_jump;
   return move;

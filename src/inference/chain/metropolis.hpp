@@ -39,7 +39,7 @@ struct LocalMoves {
   double shorter = 0.5;
 };
 
-/// (8.17): N(x, variance I).
+/// N(x, variance I), as (8.17) of the tutorial that docs/methods/sources.md names first.
 Proposal spherical(int dimension, double variance);
 
 /// What the next step needs, and a checkpoint holds.
@@ -55,8 +55,8 @@ enum class MoveKind { walk, autoregressive, independent };
 struct Move {
   double acceptance_probability = 0;  // 0 where the proposal failed
   bool accepted = false;
-  bool failed = false;  // the proposal's density was not finite; such a move must not steer adaptation
-  bool small = false;   // it was a small one
+  bool failed = false;      // the proposal's density was not finite; such a move must not steer adaptation
+  bool tunes_scale = true;  // it was of the length that adaptation tunes
   MoveKind kind = MoveKind::walk;
   double squared_jump = 0;  // of a walk or an autoregressive move, taken or refused, over the proposal's covariance
 };

@@ -12,14 +12,13 @@
 #include "diagnostics/chain_checks.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/adaptation.hpp"
-#include "inference/chain/chain_record.hpp"
+#include "inference/chain/chain_run.hpp"
 #include "inference/chain/independence_learning.hpp"
 #include "inference/chain/local_learning.hpp"
 #include "inference/chain/metropolis.hpp"
 #include "inference/chain/ridge.hpp"
 #include "inference/chain/watch.hpp"
 #include "search/laplace.hpp"
-#include "search/search.hpp"
 
 namespace sysid::mh {
 namespace {
@@ -41,22 +40,16 @@ constexpr SettingRow rows[] = {
 /// Unthinned draws are kept for the diagnostics while they fit into this many numbers (160 MB).
 constexpr double most_recorded = 2e7;
 
-/// Draws of all chains: more than any figure shows and any other program likes to read.
-constexpr std::int64_t most_kept = 10'000'000;
-
 /// A batch of 16 lanes takes half as long again as one of 4 on the machines we know, and a chain rejects three moves in four.
 constexpr int lanes_worth_filling = 16, most_ahead = 8;
 
 /// All that a run is between two iterations.
-struct State {
+struct State : ChainRun {
   std::vector<std::uint64_t> next;  // [W] iterations each chain has finished: all the same in burn-in
   metropolis::State chains;
   std::vector<metropolis::Adaptation> groups;  // empty for a spherical proposal
   metropolis::IndependenceLearning independence;
   metropolis::LocalLearning local;
-  std::vector<Mode> modes;
-  Findings findings;  // of the search
-  ChainRecord record;
 };
 
 struct Plan {
@@ -84,39 +77,31 @@ Plan plan_of(Target const& target, Settings const& s) {
 
 nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json const& identity) {
   auto const block = [](std::vector<double> const& v) { return checkpoint::encode(std::span<double const>(v)); };
-  nlohmann::json groups = nlohmann::json::array(), modes = nlohmann::json::array();
+  nlohmann::json groups = nlohmann::json::array();
   for (auto const& group : state.groups) groups.push_back(group.store());
-  for (Mode const& mode : state.modes) modes.push_back(checkpoint::encode(mode));
-  return {{"identity", identity},
-          {"next", state.next},
-          {"theta", checkpoint::encode(state.chains.theta)},
-          {"log_prior", block(state.chains.log_prior)},
-          {"log_likelihood", block(state.chains.log_likelihood)},
-          {"groups", groups},
-          {"independence", state.independence.store()},
-          {"local", state.local.store()},
-          {"modes", modes},
-          {"findings", checkpoint::encode(state.findings)},
-          {"record", state.record.store()},
-          {"ledger", checkpoint::encode(ledger)}};
+  nlohmann::json stored = sysid::store(state, ledger, identity);
+  stored["next"] = state.next;
+  stored["theta"] = checkpoint::encode(state.chains.theta);
+  stored["log_prior"] = block(state.chains.log_prior);
+  stored["log_likelihood"] = block(state.chains.log_likelihood);
+  stored["groups"] = groups;
+  stored["independence"] = state.independence.store();
+  stored["local"] = state.local.store();
+  return stored;
 }
 
-State restore(nlohmann::json const& stored, Target const& target, Plan const& plan, Ledger& ledger) {
-  State state;
+void restore(nlohmann::json const& stored, Target const& target, Plan const& plan, State& state, Ledger& ledger) {
+  sysid::restore(stored, target, plan.chains, state, ledger);
   state.next = stored.at("next").get<std::vector<std::uint64_t>>();
   state.chains = {checkpoint::decode(stored.at("theta"), target.dimension(), plan.chains),
                   checkpoint::decode(stored.at("log_prior")), checkpoint::decode(stored.at("log_likelihood"))};
   auto const chains = static_cast<std::size_t>(plan.chains);
   if (state.next.size() != chains || state.chains.log_prior.size() != chains || state.chains.log_likelihood.size() != chains)
     throw checkpoint::Mismatch("its chains differ in number or dimension");
-  for (auto const& group : stored.at("groups")) state.groups.push_back(metropolis::Adaptation::restore(group));
-  state.independence = metropolis::IndependenceLearning::restore(stored.at("independence"), target.dimension());
+  for (auto const& group : stored.at("groups"))
+    state.groups.push_back(metropolis::Adaptation::restore(group, target.dimension(), plan.chains));
+  state.independence = metropolis::IndependenceLearning::restore(stored.at("independence"), target.dimension(), plan.chains);
   state.local = metropolis::LocalLearning::restore(stored.at("local"));
-  for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
-  state.findings = checkpoint::decode_findings(stored.at("findings"));
-  state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
-  ledger = checkpoint::decode_ledger(stored.at("ledger"));
-  return state;
 }
 
 /// Chains of one mode learn together.
@@ -142,35 +127,18 @@ std::vector<metropolis::Adaptation> make_prior_groups(Target const& target, int 
   return groups;
 }
 
-/// The state before the first iteration, or why there is none.
-std::optional<State> begin(Target const& target, Plan const& plan, RunContext& context, FitResult& result) {
-  State state;
-  LaneArray starts;
-  if (plan.global) {
-    SearchResult found = context.modes.empty() ? search(target, ObjectiveKind::posterior, context)
-                                               : SearchResult{context.modes, context.mode_findings, {}, false};
-    result.interrupted = found.interrupted;
-    result.failure = found.failure;
-    if (found.interrupted || found.failure) return std::nullopt;
-    std::vector<int> const mode_of_chain = spread_over_modes(found.modes, plan.chains);
-    starts = overdispersed_starts(target, found.modes, mode_of_chain, context);
-    if (plan.adaptive) state.groups = make_groups(found.modes, mode_of_chain);
-    if (plan.independent) state.independence = {target, found.modes, mode_of_chain};
-    state.modes = std::move(found.modes);
-    state.findings = std::move(found.findings);
-  } else {
-    std::optional<LaneArray> drawn = prior_starts(target, plan.chains, context);
-    if (!drawn) {
-      result.failure = no_finite_start(context.ledger, 1000);
-      return std::nullopt;
-    }
-    starts = std::move(*drawn);
-    if (plan.adaptive) state.groups = make_prior_groups(target, plan.chains, context.seed);
-  }
-  state.chains = metropolis::init(target, std::move(starts), context.ledger);
+/// The state before the first iteration; false where there is none.
+bool begin(Target const& target, Plan const& plan, RunContext& context, State& state, FitResult& result) {
+  std::optional<ChainStarts> starts = find_starts(target, plan.global, plan.chains, context, state, result);
+  if (!starts) return false;
+  if (plan.adaptive)
+    state.groups =
+        plan.global ? make_groups(state.modes, starts->mode_of_chain) : make_prior_groups(target, plan.chains, context.seed);
+  if (plan.global && plan.independent) state.independence = {target, state.modes, starts->mode_of_chain};
+  state.chains = metropolis::init(target, std::move(starts->theta), context.ledger);
   state.record = ChainRecord(target.dimension(), plan.chains);
   state.next.assign(static_cast<std::size_t>(plan.chains), 0);
-  return state;
+  return true;
 }
 
 /// The local moves to make now: with autoregressive ones where there is a mixture that they can go about.
@@ -284,16 +252,12 @@ void add_proposals(Target const& target, Plan const& plan, State const& state, F
 std::span<SettingRow const> settings() { return rows; }
 
 std::string refuse(Settings const& settings) {
-  std::int64_t const samples = settings.integer("samples"), burn_in = settings.integer("burn_in"), thin = settings.integer("thin");
-  if (burn_in >= samples)
-    return fmt::format("burn_in ({}) must be smaller than samples ({}), which counts all iterations", burn_in, samples);
-  if (thin > samples - burn_in)
-    return fmt::format("thin ({}) is more than the {} iterations left after burn-in, so no draw would be kept", thin,
-                       samples - burn_in);
+  if (std::string why = refuse_lengths(settings); !why.empty()) return why;
+  std::int64_t const kept =
+      (settings.integer("samples") - settings.integer("burn_in")) / settings.integer("thin") * settings.integer("chains");
   // All of them are held in memory and written out.
-  if (std::int64_t const kept = (samples - burn_in) / thin * settings.integer("chains"); kept > most_kept)
-    return fmt::format("{} draws would be kept, more than {}: increase `thin`, or use fewer samples", kept, most_kept);
-  return {};
+  if (kept <= most_kept_draws) return {};
+  return fmt::format("{} draws would be kept, more than {}: increase `thin`, or use fewer samples", kept, most_kept_draws);
 }
 
 FitResult run(Target const& target, Settings const& settings, RunContext& context) {
@@ -301,36 +265,15 @@ FitResult run(Target const& target, Settings const& settings, RunContext& contex
   result.settings = settings;
   Plan const plan = plan_of(target, settings);
   nlohmann::json const identity = checkpoint::identity("mh", settings, context.seed, target);
-  std::optional<State> state;
-  if (context.resume) {
-    result.failure = checkpoint::refuse(*context.resume, identity);
-    if (result.failure) return result;
-    // A run stopped during its search has nothing but its identity to resume from.
-    if (context.resume->contains("next")) {
-      try {
-        state = restore(*context.resume, target, plan, context.ledger);
-      } catch (checkpoint::Mismatch const& mismatch) {
-        result.failure = checkpoint::unusable(mismatch.what());
-      } catch (nlohmann::json::exception const&) {
-        result.failure = checkpoint::unusable("it is damaged");
-      }
-      if (result.failure) return result;
-    }
-  }
-  if (!state) state = begin(target, plan, context, result);
-  if (!state) {
-    if (result.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
+  State state;
+  if (!resume_or_begin(
+          identity, context, result, [&](auto const& stored) { restore(stored, target, plan, state, context.ledger); },
+          [&] { return begin(target, plan, context, state, result); }))
     return result;
-  }
 
-  result.interrupted = sample(target, plan, context, identity, *state);
-  state->record.write(target, plan.thin / plan.stride, plan.stride == 1, result);
-  result.acceptance_rate = state->record.acceptance_rate();
-  result.distinct_states = state->record.distinct_states();
-  add_proposals(target, plan, *state, result);
-  result.modes = state->modes;
-  result.findings = state->findings;
-  result.search_told = plan.global;
+  result.interrupted = sample(target, plan, context, identity, state);
+  report(target, state, plan.thin, plan.stride, plan.global, result);
+  add_proposals(target, plan, state, result);
   if (plan.stride != 1)
     result.findings.push_back({FindingCode::diagnostics_on_thinned,
                                Severity::note,

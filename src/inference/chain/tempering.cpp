@@ -11,14 +11,13 @@
 #include "core/system/interrupt.hpp"
 #include "diagnostics/chain_checks.hpp"
 #include "inference/backend/checkpoint.hpp"
-#include "inference/chain/chain_record.hpp"
+#include "inference/chain/chain_run.hpp"
 #include "inference/chain/difference_moves.hpp"
 #include "inference/chain/ladder.hpp"
 #include "inference/chain/metropolis.hpp"
 #include "inference/chain/watch.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/laplace.hpp"
-#include "search/search.hpp"
 
 namespace sysid::tempering {
 namespace {
@@ -34,7 +33,6 @@ constexpr SettingRow rows[] = {
      "where the replicas start; global: around the modes of a search over the prior; prior: at draws from it"},
 };
 
-constexpr std::int64_t most_kept = 10'000'000;
 /// Iterations until the powers are first moved; then after twice as many, and so on.
 constexpr std::uint64_t first_round = 100;
 /// Below it states hardly pass, and an ensemble is a few chains in a row.
@@ -55,37 +53,30 @@ Plan plan_of(Settings const& s) {
 
 /// All that a run is between two iterations. Column k chains + c is the replica of ensemble c at rung k: the first are what is
 /// kept.
-struct State {
+struct State : ChainRun {
   std::uint64_t next = 0, round_end = first_round;
   metropolis::State replicas;
   Ladder ladder;
   std::vector<metropolis::DifferenceMoves> moves;  // [K - 1], none for the prior
-  std::vector<Mode> modes;
-  Findings findings;  // of the search
-  ChainRecord record;
 };
 
 nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json const& identity) {
   auto const block = [](std::vector<double> const& v) { return checkpoint::encode(std::span<double const>(v)); };
-  nlohmann::json moves = nlohmann::json::array(), modes = nlohmann::json::array();
+  nlohmann::json moves = nlohmann::json::array();
   for (auto const& each : state.moves) moves.push_back(each.store());
-  for (Mode const& mode : state.modes) modes.push_back(checkpoint::encode(mode));
-  return {{"identity", identity},
-          {"next", state.next},
-          {"round_end", state.round_end},
-          {"theta", checkpoint::encode(state.replicas.theta)},
-          {"log_prior", block(state.replicas.log_prior)},
-          {"log_likelihood", block(state.replicas.log_likelihood)},
-          {"ladder", state.ladder.store()},
-          {"moves", moves},
-          {"modes", modes},
-          {"findings", checkpoint::encode(state.findings)},
-          {"record", state.record.store()},
-          {"ledger", checkpoint::encode(ledger)}};
+  nlohmann::json stored = sysid::store(state, ledger, identity);
+  stored["next"] = state.next;
+  stored["round_end"] = state.round_end;
+  stored["theta"] = checkpoint::encode(state.replicas.theta);
+  stored["log_prior"] = block(state.replicas.log_prior);
+  stored["log_likelihood"] = block(state.replicas.log_likelihood);
+  stored["ladder"] = state.ladder.store();
+  stored["moves"] = moves;
+  return stored;
 }
 
-State restore(nlohmann::json const& stored, Target const& target, Plan const& plan, Ledger& ledger) {
-  State state;
+void restore(nlohmann::json const& stored, Target const& target, Plan const& plan, State& state, Ledger& ledger) {
+  sysid::restore(stored, target, plan.chains, state, ledger);
   state.next = stored.at("next").get<std::uint64_t>();
   state.round_end = stored.at("round_end").get<std::uint64_t>();
   auto const columns = static_cast<std::size_t>(plan.columns());
@@ -94,11 +85,6 @@ State restore(nlohmann::json const& stored, Target const& target, Plan const& pl
   state.ladder = Ladder::restore(stored.at("ladder"), plan.rungs);
   for (auto const& each : stored.at("moves")) state.moves.push_back(metropolis::DifferenceMoves::restore(each, target.dimension()));
   if (state.moves.size() + 1 != static_cast<std::size_t>(plan.rungs)) throw checkpoint::Mismatch("its replicas differ in number");
-  for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
-  state.findings = checkpoint::decode_findings(stored.at("findings"));
-  state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
-  ledger = checkpoint::decode_ledger(stored.at("ledger"));
-  return state;
 }
 
 /// What the archive of a rung holds at first: draws from the normal distributions at the modes, as wide as the power leaves them,
@@ -133,36 +119,19 @@ LaneArray first_archive(Target const& target, std::vector<Mode> const& modes, Ei
   return archive;
 }
 
-/// The state before the first iteration, or why there is none.
-std::optional<State> begin(Target const& target, Plan const& plan, RunContext& context, FitResult& result) {
-  State state;
-  LaneArray starts;
-  if (plan.global) {
-    SearchResult found = context.modes.empty() ? search(target, ObjectiveKind::posterior, context)
-                                               : SearchResult{context.modes, context.mode_findings, {}, false};
-    result.interrupted = found.interrupted;
-    result.failure = found.failure;
-    if (found.interrupted || found.failure) return std::nullopt;
-    starts = overdispersed_starts(target, found.modes, spread_over_modes(found.modes, plan.columns()), context);
-    state.modes = std::move(found.modes);
-    state.findings = std::move(found.findings);
-  } else {
-    std::optional<LaneArray> drawn = prior_starts(target, plan.columns(), context);
-    if (!drawn) {
-      result.failure = no_finite_start(context.ledger, 1000);
-      return std::nullopt;
-    }
-    starts = std::move(*drawn);
-  }
+/// The state before the first iteration; false where there is none.
+bool begin(Target const& target, Plan const& plan, RunContext& context, State& state, FitResult& result) {
+  std::optional<ChainStarts> starts = find_starts(target, plan.global, plan.columns(), context, state, result);
+  if (!starts) return false;
   state.ladder = Ladder(plan.rungs);
   constexpr std::uint64_t scale_step = 7'000'000;  // of streams that start this run, beyond those of the search
   Objective const objective = make_objective(target, ObjectiveKind::posterior, context.seed, scale_step);
   for (int k = 0; k + 1 < plan.rungs; ++k)
     state.moves.emplace_back(first_archive(target, state.modes, objective.scale, state.ladder.power(k),
                                            {context.seed, Purpose::start, 0, scale_step + 1 + static_cast<std::uint64_t>(k)}));
-  state.replicas = metropolis::init(target, std::move(starts), context.ledger);
+  state.replicas = metropolis::init(target, std::move(starts->theta), context.ledger);
   state.record = ChainRecord(target.dimension(), plan.chains);
-  return state;
+  return true;
 }
 
 /// One move of every replica.
@@ -189,7 +158,7 @@ metropolis::Info move(Target const& target, Plan const& plan, std::uint64_t seed
     double const log_reverse = lane >= hottest ? state.replicas.log_prior[w] - log_prior[w] : 0;
     info[w] = metropolis::decide(key(Purpose::accept, lane), state.replicas, w, proposed, lane, log_prior[w], log_likelihood[w],
                                  {log_reverse, state.ladder.power(lane / plan.chains)});
-    info[w].small = whole[w] != 0;
+    info[w].tunes_scale = whole[w] == 0;
   }
   return info;
 }
@@ -244,7 +213,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     watch.look(state.next, state.record.mean_acceptance());
   }
   context.progress.end(!stopped);
-  if (stopped) watch.store_now();
+  if (stopped || context.checkpoint_end) watch.store_now();
   return stopped;
 }
 
@@ -266,55 +235,24 @@ Findings check_exchange(Plan const& plan, Ladder const& ladder) {
 
 std::span<SettingRow const> settings() { return rows; }
 
-std::string refuse(Settings const& settings) {
-  std::int64_t const samples = settings.integer("samples"), burn_in = settings.integer("burn_in"), thin = settings.integer("thin");
-  if (burn_in >= samples)
-    return fmt::format("burn_in ({}) must be smaller than samples ({}), which counts all iterations", burn_in, samples);
-  if (thin > samples - burn_in)
-    return fmt::format("thin ({}) is more than the {} iterations left after burn-in, so no draw would be kept", thin,
-                       samples - burn_in);
-  if (std::int64_t const kept = (samples - burn_in) * settings.integer("chains"); kept > most_kept)
-    return fmt::format("{} iterations would be kept in memory, more than {}: use fewer samples", kept, most_kept);
-  return {};
-}
+std::string refuse(Settings const& settings) { return refuse_unthinned(settings); }
 
 FitResult run(Target const& target, Settings const& settings, RunContext& context) {
   FitResult result;
   result.settings = settings;
   Plan const plan = plan_of(settings);
   nlohmann::json const identity = checkpoint::identity("tempering", settings, context.seed, target);
-  std::optional<State> state;
-  if (context.resume) {
-    result.failure = checkpoint::refuse(*context.resume, identity);
-    if (result.failure) return result;
-    // A run stopped during its search has nothing but its identity to resume from.
-    if (context.resume->contains("next")) {
-      try {
-        state = restore(*context.resume, target, plan, context.ledger);
-      } catch (checkpoint::Mismatch const& mismatch) {
-        result.failure = checkpoint::unusable(mismatch.what());
-      } catch (nlohmann::json::exception const&) {
-        result.failure = checkpoint::unusable("it is damaged");
-      }
-      if (result.failure) return result;
-    }
-  }
-  if (!state) state = begin(target, plan, context, result);
-  if (!state) {
-    if (result.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
+  State state;
+  if (!resume_or_begin(
+          identity, context, result, [&](auto const& stored) { restore(stored, target, plan, state, context.ledger); },
+          [&] { return begin(target, plan, context, state, result); }))
     return result;
-  }
 
-  result.interrupted = sample(target, plan, context, identity, *state);
-  state->record.write(target, plan.thin, true, result);
-  result.acceptance_rate = state->record.acceptance_rate();
-  result.distinct_states = state->record.distinct_states();
-  result.modes = state->modes;
-  result.findings = state->findings;
-  result.search_told = plan.global;
+  result.interrupted = sample(target, plan, context, identity, state);
+  report(target, state, plan.thin, 1, plan.global, result);
   if (result.draws.total() > 0) {
     result.summaries = summarise(result);
-    for (Finding& finding : check_exchange(plan, state->ladder)) result.findings.push_back(std::move(finding));
+    for (Finding& finding : check_exchange(plan, state.ladder)) result.findings.push_back(std::move(finding));
     for (Finding& finding :
          check_chains({result.summaries, result.acceptance_rate, result.distinct_states, true, &result.draws, true}))
       result.findings.push_back(std::move(finding));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid::nuts {
@@ -98,16 +99,18 @@ bool WindowOfDraws::fits(Metric const& metric) const {
 Metric WindowOfDraws::estimate(Metric const& metric) const {
   if (moves_ < least_moves) return metric;
   auto const n = static_cast<Eigen::Index>(metric.dimension);
-  auto const states = static_cast<double>(count_);
+  auto const states = static_cast<double>(std::min(count_, moves_ + 1));  // a state that stayed tells nothing new
   double const ratio = std::sqrt(2 * (metric.dense ? static_cast<double>(n) : 1) / states);
-  double const low = ratio < 1 ? (1 - ratio) * (1 - ratio) : 0, high = (1 + ratio) * (1 + ratio);
+  // Fewer states than directions leave some of these out: a variance of 0, or less by rounding, contradicts nothing.
+  double const low = ratio < 1 ? (1 - ratio) * (1 - ratio) : -infinity, high = (1 + ratio) * (1 + ratio);
+  auto const counted = static_cast<double>(count_);
   Metric next = metric;
   if (!metric.dense) {
     for (std::size_t i = 0; i < next.factor.size(); ++i)
-      next.factor[i] *= std::sqrt(learnt(squares_[i] / (states - 1), low, high, states));
+      next.factor[i] *= std::sqrt(learnt(squares_[i] / (counted - 1), low, high, states));
     return next;
   }
-  Eigen::MatrixXd const covariance = Eigen::Map<Eigen::MatrixXd const>(squares_.data(), n, n) / (states - 1);
+  Eigen::MatrixXd const covariance = Eigen::Map<Eigen::MatrixXd const>(squares_.data(), n, n) / (counted - 1);
   SymmetricEigen shape = symmetric_eigen(covariance);
   for (double& value : shape.values) value = learnt(value, low, high, states);
   if ((shape.values.array() == 1).all()) return metric;

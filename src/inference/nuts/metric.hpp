@@ -38,10 +38,10 @@ class WindowOfDraws {
   ///
   ///   (1 - sqrt(P/n))^2 and (1 + sqrt(P/n))^2                                                      Marchenko and Pastur 1967
   ///
-  /// are 1, as those of n independent draws from the metric itself would lie there. The others are e^(N/(N + 5)), N the number of
-  /// states: half as many count as independent (n = N/2). Of a diagonal metric the same holds for each coordinate alone (P = 1).
-  /// So the estimate shrinks to the metric in use, which at first is that of the Laplace approximation. The metric as it is where
-  /// the chain has moved less than ten times.
+  /// are 1, as those of n independent draws from the metric itself would lie there (where P > n, the lower bound is 0). The others
+  /// are raised to the power N/(N + 5), N the number of different states: half as many count as independent (n = N/2). Of a
+  /// diagonal metric the same holds for each coordinate alone (P = 1). So the estimate shrinks to the metric in use, which at first
+  /// is that of the Laplace approximation. The metric as it is where the chain has moved less than ten times.
   Metric estimate(Metric const& metric) const;
   void clear() { *this = {}; }
   /// Whether what it holds is of the dimension and form of `metric`.

@@ -10,13 +10,12 @@
 #include "core/system/interrupt.hpp"
 #include "diagnostics/chain_checks.hpp"
 #include "inference/backend/checkpoint.hpp"
-#include "inference/chain/chain_record.hpp"
+#include "inference/chain/chain_run.hpp"
 #include "inference/chain/watch.hpp"
 #include "inference/nuts/chain.hpp"
 #include "inference/nuts/number_block.hpp"
 #include "inference/nuts/trajectory_checks.hpp"
 #include "search/laplace.hpp"
-#include "search/search.hpp"
 
 namespace sysid::nuts {
 namespace {
@@ -35,7 +34,6 @@ constexpr SettingRow rows[] = {
      "where the chains start; global: around the modes of a search over the prior; prior: at draws from it"},
 };
 
-constexpr std::int64_t most_kept = 10'000'000;
 constexpr int most_dense = 100;  // parameters
 
 struct Plan {
@@ -59,33 +57,27 @@ Plan plan_of(Target const& target, Settings const& s) {
 }
 
 /// All that a run is between two leapfrog steps.
-struct State {
+struct State : ChainRun {
   std::vector<Chain> chains;
-  std::vector<Mode> modes;
-  Findings findings;  // of the search
-  ChainRecord record;
 };
 
 StreamKey key_of(std::uint64_t seed, std::size_t chain) { return {seed, Purpose::proposal, chain, 0}; }
 
 nlohmann::json store(State& state, Ledger const& ledger, nlohmann::json const& identity) {
-  nlohmann::json chains = nlohmann::json::array(), modes = nlohmann::json::array();
+  nlohmann::json chains = nlohmann::json::array();
   for (Chain& chain : state.chains) {
     NumberWriter writer;
     chain.visit(writer);
     chains.push_back(checkpoint::encode(std::span<double const>(writer.numbers())));
   }
-  for (Mode const& mode : state.modes) modes.push_back(checkpoint::encode(mode));
-  return {{"identity", identity},
-          {"trajectories", chains},
-          {"modes", modes},
-          {"findings", checkpoint::encode(state.findings)},
-          {"record", state.record.store()},
-          {"ledger", checkpoint::encode(ledger)}};
+  nlohmann::json stored = sysid::store(state, ledger, identity);
+  stored["trajectories"] = chains;
+  return stored;
 }
 
-State restore(nlohmann::json const& stored, Target const& target, Plan const& plan, std::uint64_t seed, Ledger& ledger) {
-  State state;
+void restore(nlohmann::json const& stored, Target const& target, Plan const& plan, std::uint64_t seed, State& state,
+             Ledger& ledger) {
+  sysid::restore(stored, target, plan.chains, state, ledger);
   for (auto const& each : stored.at("trajectories")) {
     NumberReader reader(checkpoint::decode(each));
     Chain& chain = state.chains.emplace_back();
@@ -95,11 +87,6 @@ State restore(nlohmann::json const& stored, Target const& target, Plan const& pl
   }
   if (state.chains.size() != static_cast<std::size_t>(plan.chains))
     throw checkpoint::Mismatch("its chains differ in number or dimension");
-  for (auto const& mode : stored.at("modes")) state.modes.push_back(checkpoint::decode_mode(mode));
-  state.findings = checkpoint::decode_findings(stored.at("findings"));
-  state.record = ChainRecord::restore(stored.at("record"), target.dimension(), plan.chains);
-  ledger = checkpoint::decode_ledger(stored.at("ledger"));
-  return state;
 }
 
 /// The log density and its gradient at the columns of theta [P x W].
@@ -132,36 +119,17 @@ std::vector<Metric> first_metrics(Target const& target, Plan const& plan, std::v
   return {metric_of(objective.scale.cwiseAbs2().asDiagonal(), plan.dense)};
 }
 
-/// The state before the first step, or why there is none.
-std::optional<State> begin(Target const& target, Plan const& plan, RunContext& context, FitResult& result) {
-  State state;
-  LaneArray starts;
-  std::vector<int> mode_of_chain(static_cast<std::size_t>(plan.chains), 0);
-  if (plan.global) {
-    SearchResult found = context.modes.empty() ? search(target, ObjectiveKind::posterior, context)
-                                               : SearchResult{context.modes, context.mode_findings, {}, false};
-    result.interrupted = found.interrupted;
-    result.failure = found.failure;
-    if (found.interrupted || found.failure) return std::nullopt;
-    mode_of_chain = spread_over_modes(found.modes, plan.chains);
-    starts = overdispersed_starts(target, found.modes, mode_of_chain, context);
-    state.modes = std::move(found.modes);
-    state.findings = std::move(found.findings);
-  } else {
-    std::optional<LaneArray> drawn = prior_starts(target, plan.chains, context);
-    if (!drawn) {
-      result.failure = no_finite_start(context.ledger, 1000);
-      return std::nullopt;
-    }
-    starts = std::move(*drawn);
-  }
+/// The state before the first step; false where there is none.
+bool begin(Target const& target, Plan const& plan, RunContext& context, State& state, FitResult& result) {
+  std::optional<ChainStarts> const starts = find_starts(target, plan.global, plan.chains, context, state, result);
+  if (!starts) return false;
   std::vector<Metric> const metrics = first_metrics(target, plan, state.modes, context.seed);
-  std::vector<Point> points = evaluate(target, starts, context.ledger);
+  std::vector<Point> points = evaluate(target, starts->theta, context.ledger);
   for (std::size_t c = 0; c < points.size(); ++c)
-    state.chains.emplace_back(key_of(context.seed, c), std::move(points[c]), metrics[static_cast<std::size_t>(mode_of_chain[c])],
-                              plan.acceptance, plan.depth);
+    state.chains.emplace_back(key_of(context.seed, c), std::move(points[c]),
+                              metrics[static_cast<std::size_t>(starts->mode_of_chain[c])], plan.acceptance, plan.depth);
   state.record = ChainRecord(target.dimension(), plan.chains);
-  return state;
+  return true;
 }
 
 /// Takes the iteration that chain c has just finished into the record.
@@ -217,56 +185,26 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
 
 std::span<SettingRow const> settings() { return rows; }
 
-std::string refuse(Settings const& settings) {
-  std::int64_t const samples = settings.integer("samples"), burn_in = settings.integer("burn_in"), thin = settings.integer("thin");
-  if (burn_in >= samples)
-    return fmt::format("burn_in ({}) must be smaller than samples ({}), which counts all iterations", burn_in, samples);
-  if (thin > samples - burn_in)
-    return fmt::format("thin ({}) is more than the {} iterations left after burn-in, so no draw would be kept", thin,
-                       samples - burn_in);
-  if (std::int64_t const kept = (samples - burn_in) * settings.integer("chains"); kept > most_kept)
-    return fmt::format("{} iterations would be kept in memory, more than {}: use fewer samples", kept, most_kept);
-  return {};
-}
+std::string refuse(Settings const& settings) { return refuse_unthinned(settings); }
 
 FitResult run(Target const& target, Settings const& settings, RunContext& context) {
   FitResult result;
   result.settings = settings;
   Plan const plan = plan_of(target, settings);
   nlohmann::json const identity = checkpoint::identity("nuts", settings, context.seed, target);
-  std::optional<State> state;
-  if (context.resume) {
-    result.failure = checkpoint::refuse(*context.resume, identity);
-    if (result.failure) return result;
-    // A run stopped during its search has nothing but its identity to resume from.
-    if (context.resume->contains("trajectories")) {
-      try {
-        state = restore(*context.resume, target, plan, context.seed, context.ledger);
-      } catch (checkpoint::Mismatch const& mismatch) {
-        result.failure = checkpoint::unusable(mismatch.what());
-      } catch (nlohmann::json::exception const&) {
-        result.failure = checkpoint::unusable("it is damaged");
-      }
-      if (result.failure) return result;
-    }
-  }
-  if (!state) state = begin(target, plan, context, result);
-  if (!state) {
-    if (result.interrupted && context.checkpoint) context.checkpoint({{"identity", identity}});
+  State state;
+  if (!resume_or_begin(
+          identity, context, result,
+          [&](auto const& stored) { restore(stored, target, plan, context.seed, state, context.ledger); },
+          [&] { return begin(target, plan, context, state, result); }))
     return result;
-  }
 
-  result.interrupted = sample(target, plan, context, identity, *state);
-  state->record.write(target, plan.thin, true, result);
-  result.acceptance_rate = state->record.acceptance_rate();
-  result.distinct_states = state->record.distinct_states();
-  result.modes = state->modes;
-  result.findings = state->findings;
-  result.search_told = plan.global;
+  result.interrupted = sample(target, plan, context, identity, state);
+  report(target, state, plan.thin, 1, plan.global, result);
   if (result.draws.total() > 0) {
     result.summaries = summarise(result);
     std::vector<Tally> tallies;
-    for (Chain const& chain : state->chains) tallies.push_back(chain.tally());
+    for (Chain const& chain : state.chains) tallies.push_back(chain.tally());
     for (Finding& finding : check_trajectories({target, result.draws, tallies, plan.acceptance, plan.depth}))
       result.findings.push_back(std::move(finding));
     for (Finding& finding : check_chains({result.summaries, result.acceptance_rate, result.distinct_states, true, &result.draws}))

@@ -15,6 +15,9 @@ namespace {
 /// A rise of the energy by which a state's share of the trajectory is nothing, whatever follows it.     Betancourt 2017; Stan
 constexpr double divergence = 1000;
 
+/// More than any trajectory takes: two for each of its states, of which there are 2^15.
+constexpr int most_uniforms = 1 << 16;
+
 double dot(std::vector<double> const& a, std::vector<double> const& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
@@ -168,7 +171,7 @@ void Trajectory::resume(StreamKey key, int dimension) {
                whole(begun_.momentum);
   for (Part const& part : half_)
     sound = sound && whole(part.first) && whole(part.last) && whole(part.sum) && known(part.draw) && part.depth <= depth_;
-  if (!sound || uniforms_ < 0) throw checkpoint::Mismatch("its trajectories differ in dimension");
+  if (!sound || uniforms_ < 0 || uniforms_ > most_uniforms) throw checkpoint::Mismatch("its trajectories differ in dimension");
   stream_ = Stream(of_choices(key));
   for (int i = 0; i < uniforms_; ++i) stream_.uniform();
 }
